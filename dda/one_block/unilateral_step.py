@@ -92,7 +92,8 @@ class Room(NamedTuple):
     slide: Vector  # (c,) displacement of the contacts along the base
     A: Matrix  # (n, n)
     scale: Vector
-    base: Vector  # (2,) displacement of the base in the step, along and away from itself [m]
+    start: Vector  # (2,) displacement of the base at the start of the step, along and away from itself [m]
+    base: Vector  # (2,) that in the step [m]
     change: Vector  # (n,)
 
 
@@ -130,7 +131,7 @@ def block_equations(
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
-    vectors += zeros(c, (n, n), n, 2, n)
+    vectors += zeros(c, (n, n), n, 2, 2, n)
     block = BlockEquations(
         law=law_of(law, slides=q > c),
         stiffness=law.stiffness,
@@ -261,7 +262,7 @@ def free_step(
         room.f[i] = ratio * ratio * state.f[i]
         room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
     if block.moves:
-        base_displacement(base, block.step, begun, ratio, room.base)
+        base_displacement(base, block.step, begun, ratio, room.start, room.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], room.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
@@ -380,7 +381,8 @@ def account(
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
-    sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
+    if gg != 1:
+        sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
     stiff = 0.0
     for i in range(n):
         room.change[i] = after.D[i] - state.D[i]

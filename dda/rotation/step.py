@@ -311,9 +311,9 @@ def predict(
     room = body.room
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
+    base_at(base, body.step * begun, room.start)
+    base_at(base, body.step * (begun + ratio), room.base)
     for axis in range(2):
-        room.start[axis] = base_at(base, axis, body.step * begun)
-        room.base[axis] = base_at(base, axis, body.step * (begun + ratio))
         room.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
     for i in range(6):
@@ -590,7 +590,8 @@ def account(
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
     room = body.room
     gg = body.gg**ratio
-    sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
+    if gg != 1:
+        sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
         body.law,
         state.contacts,

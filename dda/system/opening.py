@@ -202,7 +202,7 @@ class OpeningBody:
 
     def moved_base(self, base: BaseRecord, begun: float, ratio: float) -> Array:
         """Return how far the base moves in a part of a step, along and away from itself [m]."""
-        base_displacement(base, self.scheme.step, begun, ratio, self.carried)
+        base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
         return self.carried
 
 
