@@ -50,6 +50,8 @@ FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent co
 ROUNDING = 1e-12  # of the limit, by which |T| of a sticking contact may exceed it
 CROSSING_STEPS = 60  # of Newton's method, which takes about five
 CROSSING_CHANGE = 1e-9  # of beta in its last step, whose square is below rounding
+TO_PAIR = ((0.5, 0.5), (-1.0, 1.0))  # mean and difference of two slides
+TO_OWN = ((1.0, -0.5), (1.0, 0.5))  # two slides from mean and difference
 TRIED = 256  # contact states up to which all are tried: of 8 bonded contacts, or of 4 with friction
 
 
@@ -127,7 +129,7 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     shears = bool(law.shear) and slides
     return Law(
         compliance=law.compliance,
-        softness=1 / law.shear if shears else 0.0,
+        softness=law.softness if shears else 0.0,
         friction=law.friction or 0.0,
         cohesion=law.cohesion,
         closing=-law.band[0],
@@ -150,38 +152,21 @@ def work_for(n: int) -> Work:
     return Work(*(zeros(n, n, 2, n, n, n, dtype=np.int64) + vectors))
 
 
-def set_own_flexibility(paired: Matrix, flexibility: Matrix) -> None:
-    """Write C of two contacts in their own slides from that in their mean and difference, s = mean -+ difference/2."""
+def change_slides(flexibility: Matrix, change: tuple[tuple[float, float], tuple[float, float]], out: Matrix) -> None:
+    """Write C of two contacts in other coordinates of their slides: by `TO_PAIR` or `TO_OWN` times these."""
     for row in range(4):
         for column in range(4):
-            flexibility[row][column] = paired[row][column]
+            out[row][column] = flexibility[row][column]
     for row in range(4):
-        mean = flexibility[row][2]
-        half = flexibility[row][3] / 2
-        flexibility[row][2] = mean - half
-        flexibility[row][3] = mean + half
+        first = out[row][2]
+        second = out[row][3]
+        for k in range(2):
+            out[row][2 + k] = change[k][0] * first + change[k][1] * second
     for column in range(4):
-        mean = flexibility[2][column]
-        half = flexibility[3][column] / 2
-        flexibility[2][column] = mean - half
-        flexibility[3][column] = mean + half
-
-
-def set_paired_flexibility(flexibility: Matrix, paired: Matrix) -> None:
-    """Write C of two contacts in mean and difference of their slides from that in their own."""
-    for row in range(4):
-        for column in range(4):
-            paired[row][column] = flexibility[row][column]
-    for row in range(4):
-        first = paired[row][2]
-        second = paired[row][3]
-        paired[row][2] = (first + second) / 2
-        paired[row][3] = second - first
-    for column in range(4):
-        first = paired[2][column]
-        second = paired[3][column]
-        paired[2][column] = (first + second) / 2
-        paired[3][column] = second - first
+        first = out[2][column]
+        second = out[3][column]
+        for k in range(2):
+            out[2 + k][column] = change[k][0] * first + change[k][1] * second
 
 
 # ---- the iteration ---------------------------------------------------------------------------------------------------
@@ -212,9 +197,8 @@ def find_contacts(
         work.held[i] = law.cohesion
     for solve in range(1, limit + 1):
         trial(law, before, free, flexible, law.friction, after, work)
-        if states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, n) == 0:
             return FOUND, solve
-        update_states(law, after, work.tried, n)
     if not law.shears:
         return one_by_one(law, before, free, flexible, limit, after, work)
     choices = 4 if law.slips else 2
@@ -271,21 +255,16 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
     return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i])
 
 
-def states_agree(law: Law, after: Contacts, states: States) -> bool:
-    """Tell whether the forces of all contacts agree with the states that were tried."""
-    for i in range(len(after.gap)):  # noqa: SIM110  (numba knows no generators)
-        if agreed(law, after, i) != states[i]:
-            return False
-    return True
-
-
-def update_states(law: Law, after: Contacts, states: States, most: int) -> None:
-    """Set the states that disagree with their forces, `most` at most."""
+def update_states(law: Law, after: Contacts, states: States, most: int) -> int:
+    """Set the states that disagree with their forces, `most` at most; return how many disagree."""
+    wrong = 0
     for i in range(len(after.gap)):
         state = agreed(law, after, i)
-        if state != states[i] and most > 0:
-            states[i] = state
-            most -= 1
+        if state != states[i]:
+            wrong += 1
+            if wrong <= most:
+                states[i] = state
+    return wrong
 
 
 def one_by_one(
@@ -299,9 +278,8 @@ def one_by_one(
     while True:
         trial(law, before, free, flexible, law.friction, after, work)
         solves += 1
-        if states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, 1) == 0:
             return FOUND, solves
-        update_states(law, after, work.tried, 1)
         changes += 1
         if all_equal(work.tried, work.saved, n):
             return NONE, solves
@@ -329,7 +307,7 @@ def every_state(
         set_states(work.tried, number, choices, n)
         trial(law, before, free, flexible, law.friction, after, work)
         solves += 1
-        if not states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, 0) > 0:
             continue
         if consistent < 0:
             consistent = number

@@ -31,14 +31,15 @@ from dda.contact.conserving import conserving
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
+    TO_OWN,
     Contacts,
     Free,
     Law,
     Work,
     at_rest,
+    change_slides,
     find_contacts,
     law_of,
-    set_own_flexibility,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -202,7 +203,7 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
                 total += block.B[i][k] * length.pushed[k][j]
             length.C_paired[i][j] = total
     if q == 4:
-        set_own_flexibility(length.C_paired, length.C)
+        change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C, q)
     block.made[0] += 1

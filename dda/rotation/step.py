@@ -29,6 +29,7 @@ from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert
 from dda.contact.kernel import (
     FOUND,
     NONE,
+    TO_PAIR,
     Contacts,
     Flexibility,
     Free,
@@ -36,9 +37,9 @@ from dda.contact.kernel import (
     States,
     Work,
     at_rest,
+    change_slides,
     find_contacts,
     law_of,
-    set_paired_flexibility,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -484,7 +485,7 @@ def set_free(body: RollingEquations, pair: Touching, state: RollingState) -> Non
         free.gap[k] = y - room.base[1] - dot(C[k], pair.force, rows)
         free.slide[k] = x - room.base[0] - room.before[corner][0] - dot(C[near + k], pair.force, rows)
     if near == 2:
-        set_paired_flexibility(C, pair.flexible.C_paired)
+        change_slides(C, TO_PAIR, pair.flexible.C_paired)
         free.paired[0] = (free.slide[0] + free.slide[1]) / 2
         free.paired[1] = free.slide[1] - free.slide[0]
 

@@ -82,6 +82,5 @@ def bulk_loss(alpha: float, delta: float, h2: float, stiff: float, kinetic: floa
 
 def spring_energies(law: Unilateral, normal: Array, shear: Array) -> Array:
     """Return the energy of the springs of all contacts after every step, whose rows the forces have [J]."""
-    softness = 1 / law.shear if law.shear else 0.0
-    energies: Array = np.sum(normal**2 * law.compliance + shear**2 * softness, axis=1) / 2
+    energies: Array = np.sum(normal**2 * law.compliance + shear**2 * law.softness, axis=1) / 2
     return energies

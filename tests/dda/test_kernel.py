@@ -21,7 +21,7 @@ def solved(law, C, gap, slide=None, before=None, limit=6):
     paired = np.array([slide.sum() / 2, slide[-1] - slide[0]]) if n == 2 else slide
     C_paired = np.array(C, dtype=float)
     if n == 2 and len(C) == 4:
-        kernel.set_paired_flexibility(np.array(C), C_paired)
+        kernel.change_slides(np.array(C), kernel.TO_PAIR, C_paired)
     given = (before, Free(np.array(gap), slide, paired), Flexibility(np.array(C), C_paired))
     after, work = as_lists(kernel.at_rest(np.zeros(n))), as_lists(work_for(n))
     outcome, solves = find_contacts(law_of(law), *map(as_lists, given), limit, after, work)
@@ -119,8 +119,8 @@ def test_two_contacts_in_mean_and_difference_are_those_in_their_own_slides(p_s):
     for _ in range(20):
         A = rng.standard_normal((4, 4))
         C, paired, own = A @ A.T + 0.1 * np.eye(4), np.zeros((4, 4)), np.zeros((4, 4))
-        kernel.set_paired_flexibility(C, paired)
-        kernel.set_own_flexibility(paired, own)
+        kernel.change_slides(C, kernel.TO_PAIR, paired)
+        kernel.change_slides(paired, kernel.TO_OWN, own)
         assert np.allclose(own, C, rtol=1e-13, atol=1e-13)
         gap, slide = -1 - rng.random(2), rng.standard_normal(2)
         before = Contacts(np.full(2, STICK), -np.ones(2), *(np.zeros(2) for _ in range(5)))
