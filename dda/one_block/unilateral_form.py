@@ -72,7 +72,7 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
     if load.motion is not None:
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
     reached = dict(zip(GAP_UNKNOWNS, form.reached_from(pushed != 0), strict=True))
-    names = UNKNOWNS
+    names: tuple[str, ...] = UNKNOWNS
     if not full and not (reached["U"] or reached["s"] or reached["gxy"]):
         names = ONE if reached["ex"] else ONE[1:]
     contacts = 1 if names != UNKNOWNS else 2

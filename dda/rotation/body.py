@@ -125,8 +125,9 @@ class RollingMotion(NamedTuple):
         ex, ey, gxy = self.e.T[:, :, None]
         across = x + (x * ex + y * gxy / 2)
         up = y + (x * gxy / 2 + y * ey)
-        placed = [across * row[:, :1] + up * row[:, 1:] for row in (self.Q[:, 0], self.Q[:, 1])]
-        return self.c[:, None] + np.stack(placed, axis=-1)
+        turned_parts = [across * row[:, :1] + up * row[:, 1:] for row in (self.Q[:, 0], self.Q[:, 1])]
+        placed: Array = self.c[:, None] + np.stack(turned_parts, axis=-1)
+        return placed
 
 
 def motion_of(rows: Array) -> RollingMotion:
