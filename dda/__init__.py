@@ -25,8 +25,7 @@ from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_u
 from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
-from dda.system.opening import OpeningSystem, opening_subdivided
-from dda.system.opening_solution import solve_opening_system
+from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
 from dda.system.response import system_response
 from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
 from dda.system.subdivision import subdivided

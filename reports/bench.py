@@ -500,8 +500,8 @@ the last column is the greatest difference of the two answers over the maximum. 
 
 ## Contact that opens
 
-Constant acceleration. The rest of the time over that of locked contact is that of the switches, some 20 microseconds
-each, which are found, stepped singly and left again; single steps are those of `--full`.
+Constant acceleration. Locked contact has a closed form, contact that opens is stepped; single steps are those of
+`--full`, in all six unknowns and with both corners.
 
 | p | dt [s] | steps | switches | locked [s] | opens [s] | over locked | single steps over it | difference |
 |---|---|---|---|---|---|---|---|---|
@@ -517,8 +517,9 @@ with scikit-fem and one factorisation for each set of closed nodes, with its fac
 ## Steps that switch
 
 Microseconds of processor time a step of one history with its set-up, the least of some runs; the budget is what a step
-is allowed to take. What numba compiles is not counted: for the first long history some 30 s of processor time, once an
-install, and as much again for the first one of a block that turns. MuJoCo and pymunk step the same box as a rigid one
+is allowed to take. What numba compiles is not counted: some 30 s of processor time, once an install, for the first long
+history of each kind of block (symmetric or on two corners, with shear or without), and 45 s for the first one that
+turns, for each number of its corners. MuJoCo and pymunk step the same box as a rigid one
 on a plane with their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
 
 | what | steps | switches | ours [us] | budget [us] | met | MuJoCo [us] | pymunk [us] | answers apart |

@@ -1,4 +1,4 @@
-r"""Response of a column to a steady vibration, without a step.
+r"""Response of a column to a steady vibration, without a step, and its highest natural frequency.
 
 With V = S D and A = -W2 D of one frequency (`dda.scheme.harmonic`) the equations are (K + S C - W2 M) D = F, a band of
 two diagonals on each side, which is eliminated for every frequency. A base that is told how to move is told its own
@@ -7,14 +7,16 @@ acceleration -w^2 y, whatever the scheme makes of the others.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.column.column import Column
-from dda.column.equations import WIDTH, equations
+from dda.column.equations import WIDTH, Bands, equations
 from dda.column.stepping import DISPLACEMENT, PRESSURE, Stepper, observers
 from dda.scheme.harmonic import Complex, chosen, velocity_factor
 from dda.scheme.newmark import Scheme
@@ -77,3 +79,21 @@ def _solved(lower: Complex, right: Complex) -> Complex:
         return np.asarray(solve_banded((WIDTH, WIDTH), band, right, check_finite=False))
     except np.linalg.LinAlgError:
         return np.full(n, np.inf, complex)
+
+
+def highest_frequency(column: Column) -> float:
+    """Return the highest natural frequency [rad/s], on a base that is held, which limits a conditionally stable scheme.
+
+    A half-space below is left out: it damps, and a spring to it joins what has no inertia.
+    """
+    from scipy.linalg import eigh
+
+    system = equations(replace(column, impedance=None))
+    M, K = (_dense(Bands(matrix.rows[:, 1:])) for matrix in (system.M, system.K))
+    last = len(M) - 1
+    return math.sqrt(float(eigh(K, M, eigvals_only=True, subset_by_index=[last, last])[0]))
+
+
+def _dense(matrix: Bands) -> np.ndarray:
+    n = matrix.rows.shape[1]
+    return np.column_stack([matrix @ unit for unit in np.eye(n)])

@@ -36,7 +36,7 @@ def conserving(
     C = flexible.C
     w0 = before.gap
     w_f = free.gap
-    if before.n == 1:
+    if len(before.gap) == 1:
         after.gap[0], work.mean[0], _ = one_contact(p, C[0][0], w0[0], w_f[0])
         write_springs(p, after)
         return FOUND, 1
@@ -62,7 +62,7 @@ def conserving(
 
 def write_springs(p: float, after: Contacts) -> None:
     """Write what follows from the gaps at the end of the step."""
-    for i in range(after.n):
+    for i in range(len(after.gap)):
         after.state[i] = STICK if after.gap[i] < 0 else OPEN
         after.normal[i] = p * max(-after.gap[i], 0.0)
         after.shear[i] = 0.0

@@ -50,6 +50,8 @@ FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent co
 ROUNDING = 1e-12  # of the limit, by which |T| of a sticking contact may exceed it
 CROSSING_STEPS = 60  # of Newton's method, which takes about five
 CROSSING_CHANGE = 1e-9  # of beta in its last step, whose square is below rounding
+TO_PAIR = ((0.5, 0.5), (-1.0, 1.0))  # mean and difference of two slides
+TO_OWN = ((1.0, -0.5), (1.0, 0.5))  # two slides from mean and difference
 TRIED = 256  # contact states up to which all are tried: of 8 bonded contacts, or of 4 with friction
 
 
@@ -70,7 +72,6 @@ class Law(NamedTuple):
 class Contacts(NamedTuple):
     """State of n contacts, one entry each."""
 
-    n: int
     state: States  # OPEN, STICK (closed, without friction too), or SLIP in its direction
     gap: Vector  # w [m]
     stretch: Vector  # s - r of the closed ones [m]; 0 where open
@@ -128,7 +129,7 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     shears = bool(law.shear) and slides
     return Law(
         compliance=law.compliance,
-        softness=1 / law.shear if shears else 0.0,
+        softness=law.softness if shears else 0.0,
         friction=law.friction or 0.0,
         cohesion=law.cohesion,
         closing=-law.band[0],
@@ -139,13 +140,10 @@ def law_of(law: Unilateral, slides: bool = True) -> Law:
     )
 
 
-def at_rest(gap: Array, capacity: int) -> Contacts:
-    """Return contacts without force, closed where they touch, in room for `capacity` of them."""
-    state = np.zeros(capacity, dtype=np.int64)
-    state[: len(gap)] = np.where(gap <= 0, STICK, OPEN)
-    vectors = np.zeros((6, capacity))
-    vectors[0, : len(gap)] = gap
-    return Contacts(len(gap), state, *vectors)
+def at_rest(gap: Array) -> Contacts:
+    """Return contacts without force, closed where they touch."""
+    state = np.where(gap <= 0, STICK, OPEN)
+    return Contacts(state, gap, *np.zeros((5, len(gap))))
 
 
 def work_for(n: int) -> Work:
@@ -154,38 +152,21 @@ def work_for(n: int) -> Work:
     return Work(*(zeros(n, n, 2, n, n, n, dtype=np.int64) + vectors))
 
 
-def set_own_flexibility(paired: Matrix, flexibility: Matrix) -> None:
-    """Write C of two contacts in their own slides from that in their mean and difference, s = mean -+ difference/2."""
+def change_slides(flexibility: Matrix, change: tuple[tuple[float, float], tuple[float, float]], out: Matrix) -> None:
+    """Write C of two contacts in other coordinates of their slides: by `TO_PAIR` or `TO_OWN` times these."""
     for row in range(4):
         for column in range(4):
-            flexibility[row][column] = paired[row][column]
+            out[row][column] = flexibility[row][column]
     for row in range(4):
-        mean = flexibility[row][2]
-        half = flexibility[row][3] / 2
-        flexibility[row][2] = mean - half
-        flexibility[row][3] = mean + half
+        first = out[row][2]
+        second = out[row][3]
+        for k in range(2):
+            out[row][2 + k] = change[k][0] * first + change[k][1] * second
     for column in range(4):
-        mean = flexibility[2][column]
-        half = flexibility[3][column] / 2
-        flexibility[2][column] = mean - half
-        flexibility[3][column] = mean + half
-
-
-def set_paired_flexibility(flexibility: Matrix, paired: Matrix) -> None:
-    """Write C of two contacts in mean and difference of their slides from that in their own."""
-    for row in range(4):
-        for column in range(4):
-            paired[row][column] = flexibility[row][column]
-    for row in range(4):
-        first = paired[row][2]
-        second = paired[row][3]
-        paired[row][2] = (first + second) / 2
-        paired[row][3] = second - first
-    for column in range(4):
-        first = paired[2][column]
-        second = paired[3][column]
-        paired[2][column] = (first + second) / 2
-        paired[3][column] = second - first
+        first = out[2][column]
+        second = out[3][column]
+        for k in range(2):
+            out[2 + k][column] = change[k][0] * first + change[k][1] * second
 
 
 # ---- the iteration ---------------------------------------------------------------------------------------------------
@@ -210,15 +191,14 @@ def find_contacts(
     """
     if law.lagged:
         return lagged(law, before, free, flexible, limit, after, work)
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = law.cohesion
     for solve in range(1, limit + 1):
         trial(law, before, free, flexible, law.friction, after, work)
-        if states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, n) == 0:
             return FOUND, solve
-        update_states(law, after, work.tried, n)
     if not law.shears:
         return one_by_one(law, before, free, flexible, limit, after, work)
     choices = 4 if law.slips else 2
@@ -275,37 +255,31 @@ def agreed(law: Law, after: Contacts, i: int) -> int:
     return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i])
 
 
-def states_agree(law: Law, after: Contacts, states: States) -> bool:
-    """Tell whether the forces of all contacts agree with the states that were tried."""
-    for i in range(after.n):  # noqa: SIM110  (numba knows no generators)
-        if agreed(law, after, i) != states[i]:
-            return False
-    return True
-
-
-def update_states(law: Law, after: Contacts, states: States, most: int) -> None:
-    """Set the states that disagree with their forces, `most` at most."""
-    for i in range(after.n):
+def update_states(law: Law, after: Contacts, states: States, most: int) -> int:
+    """Set the states that disagree with their forces, `most` at most; return how many disagree."""
+    wrong = 0
+    for i in range(len(after.gap)):
         state = agreed(law, after, i)
-        if state != states[i] and most > 0:
-            states[i] = state
-            most -= 1
+        if state != states[i]:
+            wrong += 1
+            if wrong <= most:
+                states[i] = state
+    return wrong
 
 
 def one_by_one(
     law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.saved[i] = work.tried[i]
     changes, next_save = 0, 1
     while True:
         trial(law, before, free, flexible, law.friction, after, work)
         solves += 1
-        if states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, 1) == 0:
             return FOUND, solves
-        update_states(law, after, work.tried, 1)
         changes += 1
         if all_equal(work.tried, work.saved, n):
             return NONE, solves
@@ -327,13 +301,13 @@ def every_state(
     law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, choices: int, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Try all states; take the only ones that agree with their forces, but for rounding."""
-    n = before.n
+    n = len(before.gap)
     consistent = -1
     for number in range(choices**n):
         set_states(work.tried, number, choices, n)
         trial(law, before, free, flexible, law.friction, after, work)
         solves += 1
-        if not states_agree(law, after, work.tried):
+        if update_states(law, after, work.tried, 0) > 0:
             continue
         if consistent < 0:
             consistent = number
@@ -359,7 +333,7 @@ def set_states(states: States, number: int, choices: int, n: int) -> None:
 
 def same_forces(after: Contacts, first: Vector) -> bool:
     """Tell whether two answers differ by rounding only, as at the very limit of stick and slip."""
-    n = after.n
+    n = len(after.gap)
     size = 0.0
     apart = 0.0
     for i in range(n):
@@ -388,7 +362,7 @@ def lagged(
     A contact that slips too late carries too much, one that sticks again has lost its force: a stable block creeps,
     all the more the smaller the step. Dead bands (`Unilateral.band`) are another matter, and make it worse.
     """
-    n = before.n
+    n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = shear_limit(law, before.normal[i])
@@ -439,7 +413,7 @@ def trial(
     friction
         tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
     """
-    n = before.n
+    n = len(before.gap)
     closed = 0
     closing = 0
     for i in range(n):
@@ -480,7 +454,7 @@ def trial(
 
 def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
-    n = after.n
+    n = len(after.gap)
     total = dot(row, after.normal, n)
     if law.shears:
         for j in range(n):
@@ -562,7 +536,7 @@ def solve_forces(
             work.active[active] = place
             active += 1
     size = closed + active
-    paired = active == 2 and before.n == 2 and keeps_pair(law, flexible, work)
+    paired = active == 2 and len(before.gap) == 2 and keeps_pair(law, flexible, work)
     assemble(law, before, free, flexible, paired, closed, active, work)
     for place in range(size):
         work.scale[place] = scale_of(work.A[place][place])
@@ -594,7 +568,7 @@ def assemble(
     law: Law, before: Contacts, free: Free, flexible: Flexible, paired: bool, closed: int, active: int, work: Work
 ) -> None:
     """Write the equations of N of the closed contacts and T of those that stick, without the slipping ones' T."""
-    n = before.n
+    n = len(before.gap)
     A = work.A
     C = flexible.C_paired if paired else flexible.C
     for row in range(closed + active):
@@ -631,7 +605,7 @@ def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
 
 def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
     """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
-    n = before.n
+    n = len(before.gap)
     for place in range(closed):
         i = work.closed[place]
         if abs(work.tried[i]) != SLIP:

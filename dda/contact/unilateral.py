@@ -85,6 +85,11 @@ class Unilateral:
         return 1 / self.stiffness
 
     @property
+    def softness(self) -> float:
+        """1/p_s [m/N]; 0 without shear."""
+        return 1 / self.shear if self.shear else 0.0
+
+    @property
     def pull(self) -> float:
         """Greatest tension p band[1] of a closed corner [N]."""
         return self.stiffness * self.band[1] if self.band[1] else 0.0

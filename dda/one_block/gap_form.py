@@ -73,11 +73,15 @@ class GapForm:
         They are found by connectivity: an unknown stays if it is loaded, or coupled by a
         structural non-zero of M to one that stays (K is diagonal and couples nothing).
         """
-        reached = (self.F != 0) | np.any(self.M @ self.R != 0, axis=1)
+        return self.restricted(np.flatnonzero(self.reached_from((self.F != 0) | np.any(self.M @ self.R != 0, axis=1))))
+
+    def reached_from(self, pushed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which unknowns move: the pushed ones and those that M couples to them, (n,)."""
+        reached = pushed
         coupled = self.M != 0
         while np.any((grown := reached | coupled @ reached) != reached):
             reached = grown
-        return self.restricted(np.flatnonzero(reached))
+        return reached
 
     def restricted(self, unknowns: NDArray[np.intp]) -> GapForm:
         """Return the form in the unknowns with the given indices."""

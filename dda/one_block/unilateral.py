@@ -202,7 +202,7 @@ def _parts(
     momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
     parts = contact_parts(
         history,
-        softness=1 / model.contact.shear if model.contact.shear else 0.0,
+        softness=model.contact.softness,
         slide=lambda: form.slide @ history.motion[1:, :n].T,
         horizontal_velocity=lambda: history.motion[1:, n:] @ momentum[0],
         velocity=lambda: history.motion[1:, n:] @ momentum[1],

@@ -15,7 +15,7 @@ corners are then one contact of twice the stiffness, with the unknowns (ex, e2, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,14 +25,23 @@ from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
 from dda.model.loaded import LoadedBlock
-from dda.one_block.gap_form import GapForm, gap_form
+from dda.one_block.gap_form import UNKNOWNS as GAP_UNKNOWNS
+from dda.one_block.gap_form import gap_form
 
 Array = NDArray[np.float64]
 
 UNKNOWNS = ("ex", "e2", "gxy", "U", "w_M", "w_N")
 ONE = ("ex", "e2", "w")  # of a symmetric motion
 U_INDEX = UNKNOWNS.index("U")
-_SYMMETRIC = [3, 4, 1]  # ex, e2, w in gap_form.UNKNOWNS
+_AS_GAPS: dict[str, Callable[[float], list[float]]] = {  # unknowns of gap_form, (U, w, s, ex, e2, gxy), by one of these
+    "ex": lambda a: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    "e2": lambda a: [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    "gxy": lambda a: [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    "U": lambda a: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "w": lambda a: [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    "w_M": lambda a: [0.0, 0.5, -1 / a, 0.0, 0.0, 0.0],
+    "w_N": lambda a: [0.0, 0.5, 1 / a, 0.0, 0.0, 0.0],
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,83 +71,39 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
     pushed = form.F + velocity * (form.M[:, :2] @ axes[:, 1])
     if load.motion is not None:
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
-    reached = _reached(form, pushed)
-    if not full and not reached[0] and not reached[2] and not reached[5]:
-        unknowns = [i for i in _SYMMETRIC if reached[i] or i != 3]
-        return _symmetric(block, law, form, a, axes, unknowns)
-    return _two_corners(block, law, form, a, axes)
-
-
-def _reached(form: GapForm, pushed: Array) -> NDArray[np.bool_]:
-    """Return which unknowns move: pushed ones and those that M couples to them, (6,)."""
-    reached: NDArray[np.bool_] = pushed != 0
-    coupled = form.M != 0
-    while np.any((grown := reached | coupled @ reached) != reached):
-        reached = grown
-    return reached
-
-
-def _elastic(block: Block) -> Array:
-    """Return the block's own stiffness of ex, e2 and gxy [N m]."""
-    material = block.material
-    moduli = (material.free_modulus, material.constrained_modulus, material.shear_modulus)
-    return block.section.area * np.array(moduli)
-
-
-def _symmetric(
-    block: Block, law: Unilateral, form: GapForm, a: float, axes: Array, unknowns: Sequence[int]
-) -> UnilateralForm:
-    """Both corners as one contact; its tangential displacement is that of N, and M has the opposite one."""
-    names = {3: "ex", 4: "e2", 1: "w"}
-    elastic = dict(zip((3, 4, 1), (*_elastic(block)[:2], 0.0), strict=True))
-    rows = [[1.0 if i == 1 else 0.0 for i in unknowns]]
-    if law.shear and 3 in unknowns:  # else the corners do not slide
-        rows.append([a / 2 if i == 3 else 0.0 for i in unknowns])
-    index = np.array(unknowns)
-    return UnilateralForm(
-        unknowns=tuple(names[i] for i in unknowns),
-        M=form.M[np.ix_(index, index)],
-        K=np.array([elastic[i] for i in unknowns]),
-        F=form.F[index],
-        translation=np.eye(6, 2)[index],
-        axes=axes,
-        B=np.array(rows),
-        contacts=1,
-        multiplicity=2.0,
-        start=np.array([law.gap if i == 1 else 0.0 for i in unknowns]),
-        observers=_observers(form, np.eye(6)[:, index]),
-        slide=np.array([[side * a / 2 if i == 3 else 0.0 for i in unknowns] for side in (-1, 1)]),
-    )
-
-
-def _two_corners(block: Block, law: Unilateral, form: GapForm, a: float, axes: Array) -> UnilateralForm:
-    T = np.zeros((6, 6))  # gap_form's unknowns (U, w, s, ex, e2, gxy) from (ex, e2, gxy, U, w_M, w_N)
-    T[0, 3] = T[3, 0] = T[4, 1] = T[5, 2] = 1.0
-    T[1, 4:] = 0.5
-    T[2, 4:] = -1 / a, 1 / a
-    B = np.zeros((4, 6))
-    B[0, 4] = B[1, 5] = 1.0
-    B[2, 3], B[3, 0] = 1.0, a
-    translation = np.zeros((6, 2))
-    translation[3, 0] = 1.0
-    translation[4:, 1] = 1.0
+    reached = dict(zip(GAP_UNKNOWNS, form.reached_from(pushed != 0), strict=True))
+    names: tuple[str, ...] = UNKNOWNS
+    if not full and not (reached["U"] or reached["s"] or reached["gxy"]):
+        names = ONE if reached["ex"] else ONE[1:]
+    contacts = 1 if names != UNKNOWNS else 2
+    T = np.column_stack([_AS_GAPS[name](a) for name in names])
+    gaps = np.array([name.startswith("w") for name in names])
+    # Both corners as one: its tangential displacement is that of N, and M has the opposite one.
+    slides = [[side * a / 2 if name == "ex" else 1.0 * (name == "U") for name in names] for side in (-1, 1)]
+    B = np.eye(len(names))[gaps]
+    if law.shear and contacts == 2:
+        B = np.vstack([B, np.mean(slides, axis=0), np.subtract(slides[1], slides[0])])
+    elif law.shear and "ex" in names:  # else the corners do not slide
+        B = np.vstack([B, slides[1]])
     M = T.T @ form.M @ T
     return UnilateralForm(
-        unknowns=UNKNOWNS,
+        unknowns=names,
         M=(M + M.T) / 2,
-        K=np.array([*_elastic(block), 0.0, 0.0, 0.0]),
+        K=np.array([_modulus(block, name) for name in names]),
         F=T.T @ form.F,
-        translation=translation,
+        translation=np.column_stack([[1.0 * (name == "U") for name in names], 1.0 * gaps]),
         axes=axes,
-        B=B if law.shear else B[:2],
-        contacts=2,
-        multiplicity=1.0,
-        start=np.array([0.0, 0.0, 0.0, 0.0, law.gap, law.gap]),
-        observers=_observers(form, T),
-        slide=np.array([[-a / 2, 0.0, 0.0, 1.0, 0.0, 0.0], [a / 2, 0.0, 0.0, 1.0, 0.0, 0.0]]),
+        B=B,
+        contacts=contacts,
+        multiplicity=2.0 / contacts,
+        start=law.gap * gaps,
+        observers={name: row @ T for name, row in form.observers.items() if name != "contact_pressure"},
+        slide=np.array(slides),
     )
 
 
-def _observers(form: GapForm, T: Array) -> dict[str, Array]:
-    """Return the rows of the displacement columns in the unknowns."""
-    return {name: row @ T for name, row in form.observers.items() if name != "contact_pressure"}
+def _modulus(block: Block, unknown: str) -> float:
+    """Return the block's own stiffness of an unknown [N m], none of a rigid motion."""
+    material = block.material
+    moduli = {"ex": material.free_modulus, "e2": material.constrained_modulus, "gxy": material.shear_modulus}
+    return block.section.area * moduli.get(unknown, 0.0)

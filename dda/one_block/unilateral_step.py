@@ -22,7 +22,7 @@ momentum M R (y1 - y).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +31,15 @@ from dda.contact.conserving import conserving
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
+    TO_OWN,
     Contacts,
     Free,
     Law,
     Work,
     at_rest,
+    change_slides,
     find_contacts,
     law_of,
-    set_own_flexibility,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -57,7 +58,6 @@ from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_l
 Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
 RULES = (NEWMARK, IMPLICIT, CONSERVING)
-UNKNOWNS, CONTACTS = 6, 2  # room that there is for them
 
 
 class StepLength(NamedTuple):
@@ -93,16 +93,14 @@ class Room(NamedTuple):
     slide: Vector  # (c,) displacement of the contacts along the base
     A: Matrix  # (n, n)
     scale: Vector
-    base: Vector  # (2,) displacement of the base in the step, along and away from itself [m]
+    start: Vector  # (2,) displacement of the base at the start of the step, along and away from itself [m]
+    base: Vector  # (2,) that in the step [m]
     change: Vector  # (n,)
 
 
 class BlockEquations(NamedTuple):
     """One block, its law and its scheme, as numbers."""
 
-    unknowns: int  # n
-    contacts: int  # c
-    forces: int  # q
     law: Law
     stiffness: float  # p [N/m]
     rule: int  # place in RULES
@@ -132,10 +130,10 @@ def block_equations(
 ) -> BlockEquations:
     """Return the equations as numbers, with the matrices of a whole step."""
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
+    vectors: list[Any] = zeros(n, n, n, n, q)
+    vectors.append(Free(*zeros(c, c, c)))
+    vectors += zeros(c, (n, n), n, 2, 2, n)
     block = BlockEquations(
-        unknowns=n,
-        contacts=c,
-        forces=q,
         law=law_of(law, slides=q > c),
         stiffness=law.stiffness,
         rule=RULES.index(rule),
@@ -144,43 +142,23 @@ def block_equations(
         delta=scheme.delta,
         gg=scheme.gg,
         step=scheme.step,
-        M=padded(form.M, UNKNOWNS, UNKNOWNS),
-        K=padded(form.K, UNKNOWNS),
-        load=padded(form.F, UNKNOWNS),
-        B=padded(form.B, 2 * CONTACTS, UNKNOWNS),
+        M=form.M,
+        K=form.K,
+        load=form.F,
+        B=form.B,
         multiplicity=form.multiplicity,
-        translation=padded(form.translation, UNKNOWNS, 2),
-        carried=padded(form.M @ form.translation, UNKNOWNS, 2),
+        translation=form.translation,
+        carried=form.M @ form.translation,
         moves=moves,
-        inverse_mass=padded(np.asarray(np.linalg.inv(form.M), np.float64), UNKNOWNS, UNKNOWNS),
-        whole=empty_length(),
-        part=empty_length(),
+        inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
+        whole=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
+        part=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
         made=np.zeros(1),
-        room=empty_room(),
-        work=work_for(CONTACTS),
+        room=Room(*vectors),
+        work=work_for(c),
     )
     set_length(block, 1.0, block.whole)
     return block
-
-
-def empty_room() -> Room:
-    """Return room for the vectors of a step."""
-    n, c = UNKNOWNS, CONTACTS
-    free = [Free(*zeros(c, c, c))]
-    return Room(*(zeros(n, n, n, n, 2 * c) + free + zeros(c, (n, n), n, 2, n)))
-
-
-def empty_length() -> StepLength:
-    """Return room for what belongs to a length."""
-    n, q = UNKNOWNS, 2 * CONTACTS
-    return StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q)))
-
-
-def padded(values: Array, *shape: int) -> Array:
-    """Return an array with zeros behind, so that all blocks are made of the same arrays."""
-    out = np.zeros(shape)
-    out[tuple(slice(0, size) for size in values.shape)] = values
-    return out
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -189,8 +167,7 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
     P = (dt * velocity) * (form.M @ (form.translation @ form.axes[:, 1]))
     F = dt * dt * form.F
     f = F if rule == CONSERVING else initial_acceleration(scheme, F)
-    contacts = at_rest(np.full(form.contacts, law.gap), CONTACTS)
-    return BlockState(padded(form.start, UNKNOWNS), padded(P, UNKNOWNS), padded(f, UNKNOWNS), contacts)
+    return BlockState(form.start, P, f, at_rest(np.full(form.contacts, law.gap)))
 
 
 # ---- the step --------------------------------------------------------------------------------------------------------
@@ -201,8 +178,8 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
     """
-    n = block.unknowns
-    q = block.forces
+    n = len(block.K)
+    q = len(block.B)
     room = block.room
     step = block.step * ratio
     h2 = step * step
@@ -226,7 +203,7 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
                 total += block.B[i][k] * length.pushed[k][j]
             length.C_paired[i][j] = total
     if q == 4:
-        set_own_flexibility(length.C_paired, length.C)
+        change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C, q)
     block.made[0] += 1
@@ -279,14 +256,14 @@ def free_step(
 ) -> None:
     """Write the increments of a step without contact forces, and what it does to the contacts."""
     room = block.room
-    n = block.unknowns
-    c = block.contacts
+    n = len(block.K)
+    c = len(block.room.slide)
     for i in range(n):
         room.P[i] = ratio * state.P[i]
         room.f[i] = ratio * ratio * state.f[i]
         room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
     if block.moves:
-        base_displacement(base, block.step, begun, ratio, room.base)
+        base_displacement(base, block.step, begun, ratio, room.start, room.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], room.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
@@ -298,10 +275,10 @@ def free_step(
 
 def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
     """Write how far the contacts slide by x; room.free.paired is left with the coordinates of B."""
-    c = block.contacts
+    c = len(block.room.slide)
     paired = block.room.free.paired
     for i in range(c):
-        paired[i] = dot(block.B[c + i], x, block.unknowns)
+        paired[i] = dot(block.B[c + i], x, len(block.K))
     slide[0] = paired[0]
     if c == 2:
         slide[0] = paired[0] - paired[1] / 2
@@ -313,12 +290,12 @@ def accept(
 ) -> None:
     """Write (D, P, f) at the end of the step under the contact forces."""
     room = block.room
-    n = block.unknowns
-    c = block.contacts
+    n = len(block.K)
+    c = len(block.room.slide)
     contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
-        after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, block.forces)
+        after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
     for i in range(c):
         after.D[n - c + i] = after.contacts.gap[i]
     for i in range(n):
@@ -336,7 +313,7 @@ def accept(
 def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None:
     """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
     room = block.room
-    c = block.contacts
+    c = len(block.room.slide)
     for i in range(c):
         room.forces[i] = normal[i]
     if not block.law.shears:
@@ -350,7 +327,7 @@ def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None
 def pushed_by(block: BlockEquations, i: int) -> float:
     """Return an entry of multiplicity B' lambda, with the forces of `contact_forces` [N]."""
     total = 0.0
-    for j in range(block.forces):
+    for j in range(len(block.B)):
         total += block.B[j][i] * block.room.forces[j]
     return block.multiplicity * total
 
@@ -361,7 +338,7 @@ def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:
     The sum of increments that U was may hold the rounding of a much larger motion without forces.
     """
     room = block.room
-    c = block.contacts
+    c = len(block.room.slide)
     contacts = after.contacts
     slides_by(block, after.D, room.slide)
     staying = 0
@@ -400,12 +377,13 @@ def account(
 ) -> None:
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
     room = block.room
-    n = block.unknowns
+    n = len(block.K)
     length = length_of(block, ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
-    sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
+    if gg != 1:
+        sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
     stiff = 0.0
     for i in range(n):
         room.change[i] = after.D[i] - state.D[i]
@@ -436,7 +414,7 @@ def account(
 
 def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:
     """Write D and P at the end of a step; tell whether it is finite."""
-    n = block.unknowns
+    n = len(block.K)
     total = 0.0
     for i in range(n):
         rows[number, i] = state.D[i]

@@ -121,8 +121,12 @@ class RollingMotion(NamedTuple):
 
     def points(self, xi: Array) -> Array:
         """Return points of the unstrained outline where they are, (k, points, 2) [m]."""
-        local = xi + np.einsum("mi,kij->kmj", xi, strain_matrices(self.e))
-        placed: Array = self.c[:, None] + np.einsum("kij,kmj->kmi", self.Q, local)
+        x, y = xi.T
+        ex, ey, gxy = self.e.T[:, :, None]
+        across = x + (x * ex + y * gxy / 2)
+        up = y + (x * gxy / 2 + y * ey)
+        turned_parts = [across * row[:, :1] + up * row[:, 1:] for row in (self.Q[:, 0], self.Q[:, 1])]
+        placed: Array = self.c[:, None] + np.stack(turned_parts, axis=-1)
         return placed
 
 

@@ -14,7 +14,7 @@ from dda.model.load import pressed_part
 from dda.model.loaded import LoadedBlock
 from dda.one_block.unilateral import check_iteration
 from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, turned
-from dda.rotation.step import RollingState, Setting, room_for
+from dda.rotation.step import RollingState, Setting
 from dda.scheme.newmark import Scheme
 
 Array = NDArray[np.float64]
@@ -93,7 +93,7 @@ class RollingModel(LoadedBlock):
                 directions(spin, Q, q, x, y, across, up)
                 push += force[0] * across + force[1] * up
             A[:] = np.linalg.solve(body.M, push)
-        return RollingState(q, Q, V, A, at_rest(gap, room_for(len(gap))))
+        return RollingState(q, Q, V, A, at_rest(gap))
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def solve_rolling(
     start = model.start(setting, scheme)
     base = base_motion(model)
     body = rolling_equations(setting, scheme)
-    history = history_of(steps, STATE, body.corners, energies=True)
+    history = history_of(steps, STATE, len(body.xi), energies=True)
     ready = perf_counter()
     (reached, ended), left, how = run_loop(
         make_steps, (body, start, start), (base_record(base),), (history, steps, options.cut), steps * PLAIN_STEP

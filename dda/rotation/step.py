@@ -29,6 +29,7 @@ from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert
 from dda.contact.kernel import (
     FOUND,
     NONE,
+    TO_PAIR,
     Contacts,
     Flexibility,
     Free,
@@ -36,9 +37,9 @@ from dda.contact.kernel import (
     States,
     Work,
     at_rest,
+    change_slides,
     find_contacts,
     law_of,
-    set_paired_flexibility,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -53,7 +54,6 @@ SETTLED = 1e-12  # last change of a place over the size of the block; the next w
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 PAIRS = 32  # of corners that are tried in a step
 STATE = 16  # numbers that are kept of a state: q, V and Q
-OUTLINE = 8  # corners that there is room for, or a multiple of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,9 +114,6 @@ class Room(NamedTuple):
     start: Vector  # (2,) displacement of the base at the start of the step [m]
     base: Vector  # (2,) at its end
     moved: Vector  # (2,) between them
-    B: Matrix  # (4, 6) directions of the gaps, then of the slides, of the corners that may touch
-    P: Matrix  # (4, 6) what their unit forces move
-    force: Vector  # (4,)
     A: Matrix  # (6, 6)
     at: States  # (2,) corners that may touch
     tried: States  # (PAIRS,)
@@ -127,12 +124,17 @@ class Touching(NamedTuple):
 
     before: Contacts
     after: Contacts
+    free: Free
+    flexible: Flexibility
+    work: Work
+    B: Matrix  # (2n, 6) directions of the gaps, then of the slides
+    P: Matrix  # (2n, 6) what their unit forces move
+    force: Vector  # (2n,) N, then T
 
 
 class RollingEquations(NamedTuple):
     """A block that turns, its law and its scheme, as numbers."""
 
-    corners: int
     loads: int  # dead loads, two at most
     law: Law
     limit: int
@@ -154,27 +156,20 @@ class RollingEquations(NamedTuple):
     room: Room
     one: Touching
     two: Touching
-    free: Free
-    flexible: Flexibility
-    work: Work
 
 
 def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     """Return the equations as numbers."""
     body, loads = setting.body, len(setting.where)
-    capacity = room_for(len(body.xi))
-    xi = np.zeros((capacity, 2))
-    xi[: len(body.xi)] = body.xi
+    corners = len(body.xi)
     where, dead = np.zeros((2, 2, 2))
     where[:loads], dead[:loads] = setting.where, setting.dead
-    pairs = [Touching(at_rest(np.zeros(n), 2), at_rest(np.zeros(n), 2)) for n in (1, 2)]
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
     rows: list[Any] = zeros(*[6] * 12)
     rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
-    rows += zeros((2, 2), (capacity, 2), (capacity, 2), capacity, capacity, 2, 2, 2, (4, 6), (4, 6), 4, (6, 6))
+    rows += zeros((2, 2), (corners, 2), (corners, 2), corners, corners, 2, 2, 2, (6, 6))
     rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
-        corners=len(body.xi),
         loads=loads,
         law=law_of(setting.law),
         limit=setting.limit,
@@ -186,7 +181,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         size=body.size,
         M=np.array(body.M),
         K=np.array(body.K),
-        xi=xi,
+        xi=body.xi,
         weight=np.array(setting.weight, dtype=float),
         where=where,
         dead=dead,
@@ -194,22 +189,26 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         part=lengths[1],
         made=np.zeros(1),
         room=Room(*rows),
-        one=pairs[0],
-        two=pairs[1],
-        free=Free(*np.zeros((3, 2))),
-        flexible=Flexibility(*np.zeros((2, 4, 4))),
-        work=work_for(2),
+        one=touching(1),
+        two=touching(2),
     )
     set_matrices(equations, 1.0, np.eye(2), equations.whole)
     return equations
 
 
-def room_for(corners: int) -> int:
-    """Return the number of corners that there is room for: a few numbers do for all outlines."""
-    capacity = OUTLINE
-    while capacity < corners:
-        capacity *= 2
-    return capacity
+def touching(n: int) -> Touching:
+    """Return room for so many corners that may touch."""
+    m = 2 * n
+    return Touching(
+        before=at_rest(np.zeros(n)),
+        after=at_rest(np.zeros(n)),
+        free=Free(*np.zeros((3, n))),
+        flexible=Flexibility(*np.zeros((2, m, m))),
+        work=work_for(n),
+        B=np.zeros((m, 6)),
+        P=np.zeros((m, 6)),
+        force=np.zeros(m),
+    )
 
 
 # ---- the step --------------------------------------------------------------------------------------------------------
@@ -289,7 +288,7 @@ def advance(
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
         room.tried[attempt] = pair_number(room.at, near)
-        for i in range(body.corners):
+        for i in range(len(body.xi)):
             room.near[i] = after.contacts.gap[i]
         near = nearest(body, room.near, math.inf)
         for k in range(attempt + 1):
@@ -313,9 +312,9 @@ def predict(
     room = body.room
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
+    base_at(base, body.step * begun, room.start)
+    base_at(base, body.step * (begun + ratio), room.base)
     for axis in range(2):
-        room.start[axis] = base_at(base, axis, body.step * begun)
-        room.base[axis] = base_at(base, axis, body.step * (begun + ratio))
         room.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
     for i in range(6):
@@ -326,7 +325,7 @@ def predict(
     place_corners(body, state.q, state.Q, room.start, room.before)
     move(body, state, room.free, 1.0)
     place_corners(body, room.q, room.turn.end, room.base, room.after)
-    for i in range(body.corners):
+    for i in range(len(body.xi)):
         room.near[i] = min(room.before[i][1], room.after[i][1])
 
 
@@ -351,21 +350,21 @@ def move(body: RollingEquations, state: RollingState, D: Vector, share: float) -
 
 def place_corners(body: RollingEquations, q: Vector, Q: Matrix, base: Vector, out: Matrix) -> None:
     """Write where the corners are, from the base."""
-    for i in range(body.corners):
+    for i in range(len(body.xi)):
         x, y = place(q, Q, body.xi[i][0], body.xi[i][1])
         out[i][0] = x - base[0]
         out[i][1] = y - base[1]
 
 
 def nearest(body: RollingEquations, heights: Vector, reach: float) -> int:
-    """Write the two lowest corners below `reach` to own.at, in their order; return how many they are."""
+    """Write the two lowest corners below `reach` to room.at, in their order; return how many they are."""
     at = body.room.at
     first = 0
-    for i in range(1, body.corners):
+    for i in range(1, len(body.xi)):
         if heights[i] < heights[first]:
             first = i
     second = 1 if first == 0 else 0
-    for i in range(body.corners):
+    for i in range(len(body.xi)):
         if i != first and heights[i] < heights[second]:
             second = i
     if not heights[first] < reach:
@@ -380,7 +379,7 @@ def nearest(body: RollingEquations, heights: Vector, reach: float) -> int:
 
 def another_crossed(body: RollingEquations, after: RollingState) -> bool:
     """Tell whether a corner that is not closed lies below the plane."""
-    for i in range(body.corners):  # noqa: SIM110  (numba knows no generators)
+    for i in range(len(body.xi)):  # noqa: SIM110  (numba knows no generators)
         if after.contacts.state[i] == OPEN and after.contacts.gap[i] < 0:
             return True
     return False
@@ -389,19 +388,33 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 def settle(
     body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
 ) -> tuple[int, int]:
-    """Make the step with the corners own.at, and again with the turn that it found until nothing changes."""
+    """Make the step with the corners room.at, one or two or none."""
     room = body.room
-    pair = body.one if near == 1 else body.two
+    if near == 2:
+        return settle_touching(body, body.two, matrices, state, after, near)
+    if near == 1 or body.loads > 0:
+        return settle_touching(body, body.one, matrices, state, after, near)
+    for i in range(6):
+        room.D[i] = room.free[i]
+    accept(body, body.one, matrices, state, after, near)
+    return FOUND, 0
+
+
+def settle_touching(
+    body: RollingEquations,
+    pair: Touching,
+    matrices: StepMatrices,
+    state: RollingState,
+    after: RollingState,
+    near: int,
+) -> tuple[int, int]:
+    """Make the step with the corners room.at, and again with the turn that it found until nothing changes."""
+    room = body.room
     for k in range(near):
         copy_contact(state.contacts, room.at[k], pair.before, k)
         copy_contact(state.contacts, room.at[k], pair.after, k)
     for i in range(6):
         room.D[i] = room.guess[i]
-    if near == 0 and body.loads == 0:
-        for i in range(6):
-            room.D[i] = room.free[i]
-        accept(body, matrices, state, after, near)
-        return FOUND, 0
     solves = 0
     for _ in range(ROUNDS):
         turn(state.Q, room.D[2], body.exact, room.turn)
@@ -409,19 +422,19 @@ def settle(
         for i in range(6):
             room.new[i] = room.free[i] + dot(matrices.flexible[i], room.push, 6)
         if near > 0:
-            set_directions(body, state, near)
-            for row in range(2 * near):
-                multiply(matrices.flexible, room.B[row], 6, 6, room.P[row])
-            take_forces(room, pair.after, near)
-            set_free(body, state, near)
+            set_directions(body, pair, state)
+            for row in range(len(pair.force)):
+                multiply(matrices.flexible, pair.B[row], 6, 6, pair.P[row])
+            take_forces(pair)
+            set_free(body, pair, state)
             outcome, spent = find_contacts(
-                body.law, pair.before, body.free, body.flexible, body.limit, pair.after, body.work
+                body.law, pair.before, pair.free, pair.flexible, body.limit, pair.after, pair.work
             )
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
-            take_forces(room, pair.after, near)
-            add_rows(room.P, room.force, 2 * near, 6, room.new)
+            take_forces(pair)
+            add_rows(pair.P, pair.force, len(pair.force), 6, room.new)
         settled = True
         for i in range(6):
             change = abs(room.new[i] - room.D[i]) * (body.size if i > 1 else 1.0)
@@ -429,7 +442,7 @@ def settle(
                 settled = False
             room.D[i] = room.new[i]
         if settled:
-            accept(body, matrices, state, after, near)
+            accept(body, pair, matrices, state, after, near)
             return FOUND, solves
     return NONE, solves
 
@@ -444,50 +457,53 @@ def copy_contact(source: Contacts, i: int, target: Contacts, k: int) -> None:
     target.slipped[k] = source.slipped[i]
 
 
-def take_forces(room: Room, contacts: Contacts, near: int) -> None:
+def take_forces(pair: Touching) -> None:
     """Write the forces of the corners that may touch: N, then T."""
+    near = len(pair.after.gap)
     for k in range(near):
-        room.force[k] = contacts.normal[k]
-        room.force[near + k] = contacts.shear[k]
+        pair.force[k] = pair.after.normal[k]
+        pair.force[near + k] = pair.after.shear[k]
 
 
-def set_free(body: RollingEquations, state: RollingState, near: int) -> None:
+def set_free(body: RollingEquations, pair: Touching, state: RollingState) -> None:
     """Write gaps and slides for the flexibility about the place to which the present forces bring the corners."""
     room = body.room
-    free = body.free
-    C = body.flexible.C
+    free = pair.free
+    C = pair.flexible.C
+    near = len(pair.after.gap)
     rows = 2 * near
     for row in range(rows):
         for column in range(rows):
-            C[row][column] = dot(room.B[row], room.P[column], 6)
+            C[row][column] = dot(pair.B[row], pair.P[column], 6)
     for i in range(6):
         room.push[i] = room.new[i]
-    add_rows(room.P, room.force, rows, 6, room.push)
+    add_rows(pair.P, pair.force, rows, 6, room.push)
     move(body, state, room.push, 1.0)
     for k in range(near):
         corner = room.at[k]
         x, y = place(room.q, room.turn.end, body.xi[corner][0], body.xi[corner][1])
-        free.gap[k] = y - room.base[1] - dot(C[k], room.force, rows)
-        free.slide[k] = x - room.base[0] - room.before[corner][0] - dot(C[near + k], room.force, rows)
+        free.gap[k] = y - room.base[1] - dot(C[k], pair.force, rows)
+        free.slide[k] = x - room.base[0] - room.before[corner][0] - dot(C[near + k], pair.force, rows)
     if near == 2:
-        set_paired_flexibility(C, body.flexible.C_paired)
+        change_slides(C, TO_PAIR, pair.flexible.C_paired)
         free.paired[0] = (free.slide[0] + free.slide[1]) / 2
         free.paired[1] = free.slide[1] - free.slide[0]
 
 
-def set_directions(body: RollingEquations, state: RollingState, near: int) -> None:
+def set_directions(body: RollingEquations, pair: Touching, state: RollingState) -> None:
     """Write B_f of the corners that may touch, the rows of y before those of x."""
     room = body.room
+    near = len(pair.after.gap)
     for k in range(near):
         corner = room.at[k]
         force_directions(body, state, body.xi[corner][0], body.xi[corner][1])
         for i in range(6):
-            room.B[k][i] = room.up[i]
-            room.B[near + k][i] = room.across[i]
+            pair.B[k][i] = room.up[i]
+            pair.B[near + k][i] = room.across[i]
 
 
 def force_directions(body: RollingEquations, state: RollingState, x: float, y: float) -> None:
-    """Write B_f of a point, for own.D and its turn."""
+    """Write B_f of a point, for room.D and its turn."""
     room = body.room
     late = late_share(body.delta) if body.exact else 0.0
     for i in range(3, 6):
@@ -507,7 +523,7 @@ def force_directions(body: RollingEquations, state: RollingState, x: float, y: f
 
 
 def push_of_loads(body: RollingEquations, state: RollingState) -> None:
-    """Write B_f' f of the dead loads, for own.D and its turn."""
+    """Write B_f' f of the dead loads, for room.D and its turn."""
     room = body.room
     for i in range(6):
         room.push[i] = 0.0
@@ -517,24 +533,30 @@ def push_of_loads(body: RollingEquations, state: RollingState) -> None:
             room.push[i] += body.dead[m][0] * room.across[i] + body.dead[m][1] * room.up[i]
 
 
-def accept(body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int) -> None:
+def accept(
+    body: RollingEquations,
+    pair: Touching,
+    matrices: StepMatrices,
+    state: RollingState,
+    after: RollingState,
+    near: int,
+) -> None:
     """Write the state at the end of the step."""
     room = body.room
     h = matrices.numbers[2]
     turn(state.Q, room.D[2], body.exact, room.turn)
     push_of_loads(body, state)
     contacts = after.contacts
-    for i in range(body.corners):
+    for i in range(len(body.xi)):
         contacts.state[i] = OPEN
         contacts.normal[i] = 0.0
         contacts.shear[i] = 0.0
         contacts.stretch[i] = 0.0
         contacts.slipped[i] = 0.0
     if near > 0:
-        pair = body.one if near == 1 else body.two
-        set_directions(body, state, near)
-        take_forces(room, pair.after, near)
-        add_rows(room.B, room.force, 2 * near, 6, room.push)
+        set_directions(body, pair, state)
+        take_forces(pair)
+        add_rows(pair.B, pair.force, len(pair.force), 6, room.push)
     move(body, state, room.D, 1.0)
     hold(body, matrices, room.q, room.held)
     for i in range(6):
@@ -547,7 +569,7 @@ def accept(body: RollingEquations, matrices: StepMatrices, state: RollingState, 
         for j in range(2):
             after.Q[i][j] = room.turn.end[i][j]
     place_corners(body, room.q, room.turn.end, room.base, room.after)
-    for i in range(body.corners):
+    for i in range(len(body.xi)):
         contacts.gap[i] = room.after[i][1]
         room.slide[i] = room.after[i][0] - room.before[i][0]
     for k in range(near):
@@ -569,7 +591,8 @@ def account(
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
     room = body.room
     gg = body.gg**ratio
-    sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
+    if gg != 1:
+        sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
         body.law,
         state.contacts,

@@ -53,11 +53,13 @@ def run_loop(
         About how long the plain function takes.
     """
     with np.errstate(all="ignore"):
-        if is_worthwhile(loop, seconds):
+        if seconds >= WORTHWHILE_KEPT:
             converted = tuple(as_record(part) for part in records)
-            machine_code = compiled(loop, (*converted, *series, *rows))
+            arguments = (*converted, *series, *rows)
+            worthwhile = is_worthwhile(loop, seconds, types_of(arguments))
+            machine_code = compiled(loop, arguments) if worthwhile else None
             if machine_code is not None:
-                return machine_code(*converted, *series, *rows), converted, COMPILED
+                return machine_code(*arguments), converted, COMPILED
         converted = tuple(as_lists(part) for part in records)
         return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
 
@@ -97,17 +99,29 @@ class Compilable:
         return self.room(argument) if arrays or numbers else argument
 
 
-def is_worthwhile(loop: Loop, seconds: float) -> bool:
-    """Tell whether plain Python takes so long that compiled code pays: at hand, to be kept, or to be made each time."""
+def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return what compiled code is made for: the types of its arguments, with the sizes of all arrays of records."""
+    return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
+
+
+def is_worthwhile(loop: Loop, seconds: float, types: tuple[Any, ...] | None = None) -> bool:
+    """Tell whether plain Python takes so long that compiled code pays: at hand, to be kept, or to be made each time.
+
+    Parameters
+    ----------
+    types
+        Those of the arguments; None where they are not known yet, and code for any counts as at hand.
+    """
     if seconds < WORTHWHILE_KEPT:  # and nothing is looked for, nor made, in the user's cache
         return False
     if seconds < WORTHWHILE:
-        return any(compiled_loop is loop for compiled_loop, _ in loops) or is_kept(loop)
+        at_hand = [known for compiled_loop, known in loops if compiled_loop is loop]
+        return types in at_hand or (types is None and bool(at_hand)) or is_kept(loop, types)
     return seconds >= WORTHWHILE_ANEW or cache_directory() is not None
 
 
-def is_kept(loop: Loop) -> bool:
-    """Tell whether the user's cache holds a loop as its sources are now."""
+def is_kept(loop: Loop, types: tuple[Any, ...] | None) -> bool:
+    """Tell whether the user's cache holds a loop as its sources are now, for these types or for any."""
     from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
 
     directory = cache_directory()
@@ -117,7 +131,8 @@ def is_kept(loop: Loop) -> bool:
         return False
     if directory is None:
         return False
-    return any((directory / _digest(functions_of(loop), numba_version)).rglob("*.nbi"))
+    kept = directory / _digest(functions_of(loop), numba_version)
+    return any((kept if types is None else kept / _types_digest(types)).rglob("*.nbi"))
 
 
 def as_lists(value: Any) -> Any:
@@ -155,7 +170,7 @@ def _fill(records: Any, value: Any) -> None:
 
 def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
     """Return the compiled loop for such arguments, or None where the plain one is to run."""
-    key = loop, tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
+    key = loop, types_of(arguments)
     if key not in loops:
         functions = functions_of(loop)
         uses = [use for function in functions for use in uses_of(function)]
@@ -224,7 +239,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
             _jitable.add(function)
     directory = cache_directory()
     if directory is not None:
-        directory = directory / _digest(functions, numba.__version__)
+        directory = directory / _digest(functions, numba.__version__) / _types_digest(types_of(arguments))
     for place in dict.fromkeys((directory, None)):
         try:
             types = tuple(numba.typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
@@ -255,6 +270,11 @@ def _digest(functions: list[FunctionType], version: str) -> str:
     for name in sorted({function.__code__.co_filename for function in functions}):
         digest.update(Path(name).read_bytes())
     return digest.hexdigest()[:16]
+
+
+def _types_digest(types: tuple[Any, ...]) -> str:
+    """Return what changes with the types of arguments."""
+    return hashlib.sha256(repr(types).encode()).hexdigest()[:16]
 
 
 @functools.cache

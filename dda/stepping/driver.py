@@ -60,39 +60,46 @@ class BaseRecord(NamedTuple):
 
     instants: Any  # (n,) [s]
     displacement: Any  # (n, 2) along and away from itself [m]
+    latest: Any  # (1,) number of the instant before the time that was looked up last
 
 
 def base_record(motion: BaseMotion | None) -> BaseRecord:
     """Return the record of a base that moves, or of one at rest."""
     record = motion or BaseMotion([0.0], [[0.0, 0.0]])
-    return BaseRecord(np.array(record.time, dtype=float), np.array(record.displacement, dtype=float, order="C"))
+    displacement = np.array(record.displacement, dtype=float, order="C")
+    return BaseRecord(np.array(record.time, dtype=float), displacement, np.zeros(1, dtype=np.int64))
 
 
-def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, out: Vector) -> None:
-    """Write how far the base moves in a part of a step [m], which begins and lasts so many steps of `step` [s]."""
+def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, start: Vector, out: Vector) -> None:
+    """Write how far the base moves in a part of a step [m], which begins and lasts so many steps of `step` [s].
+
+    Parameters
+    ----------
+    start
+        Where its displacement at the beginning is written [m].
+    """
+    base_at(base, begun * step, start)
+    base_at(base, (begun + ratio) * step, out)
     for axis in range(2):
-        out[axis] = base_at(base, axis, (begun + ratio) * step) - base_at(base, axis, begun * step)
+        out[axis] -= start[axis]
 
 
-def base_at(base: BaseRecord, axis: int, time: float) -> float:
-    """Return the displacement of the base at a time [m]."""
+def base_at(base: BaseRecord, time: float, out: Vector) -> None:
+    """Write the displacement of the base at a time [m]."""
     instants = base.instants
-    moved = base.displacement
     last = len(instants) - 1
-    if time <= instants[0]:
-        return moved[0][axis]  # type: ignore[no-any-return]
-    if time >= instants[last]:
-        return moved[last][axis]  # type: ignore[no-any-return]
-    low = 0
-    high = last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if instants[middle] <= time:
-            low = middle
-        else:
-            high = middle
-    slope = (moved[high][axis] - moved[low][axis]) / (instants[high] - instants[low])
-    return slope * (time - instants[low]) + moved[low][axis]  # type: ignore[no-any-return]
+    low = base.latest[0]  # times follow each other: the instants before and after are near those of the last look-up
+    while low > 0 and instants[low] > time:
+        low -= 1
+    while low < last and instants[low + 1] <= time:
+        low += 1
+    base.latest[0] = low
+    for axis in range(2):
+        out[axis] = base.displacement[low][axis]
+        if instants[low] < time and low < last:
+            rise = base.displacement[low + 1][axis] - out[axis]
+            slope = rise / (instants[low + 1] - instants[low])
+            out[axis] = slope * (time - instants[low]) + out[axis]
 
 
 def driver(
@@ -137,7 +144,7 @@ def driver(
                     continue
                 if len(history.sums) > 0:
                     account(body, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
-                for i in range(after.contacts.n):
+                for i in range(len(after.contacts.gap)):
                     history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state
                 if ratio == remainder:
@@ -154,7 +161,7 @@ def driver(
 
 def keep_contacts(contacts: Contacts, history: History, number: int) -> None:
     """Write the contacts at the end of a step."""
-    for i in range(contacts.n):
+    for i in range(len(contacts.gap)):
         history.normal[number, i] = contacts.normal[i]
         history.shear[number, i] = contacts.shear[i]
         history.gap[number, i] = contacts.gap[i]

@@ -53,7 +53,7 @@ def add_contact_losses(
     share
         Number of contacts that each of these stands for.
     """
-    for i in range(after.n):
+    for i in range(len(after.gap)):
         N = (1 - late) * before.normal[i] + late * after.normal[i]
         T = (1 - late) * before.shear[i] + late * after.shear[i]
         friction = 0.0 - after.shear[i] * after.slipped[i]
@@ -82,6 +82,5 @@ def bulk_loss(alpha: float, delta: float, h2: float, stiff: float, kinetic: floa
 
 def spring_energies(law: Unilateral, normal: Array, shear: Array) -> Array:
     """Return the energy of the springs of all contacts after every step, whose rows the forces have [J]."""
-    softness = 1 / law.shear if law.shear else 0.0
-    energies: Array = np.sum(normal**2 * law.compliance + shear**2 * softness, axis=1) / 2
+    energies: Array = np.sum(normal**2 * law.compliance + shear**2 * law.softness, axis=1) / 2
     return energies

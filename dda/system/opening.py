@@ -13,32 +13,46 @@ so that one factorisation, and as many solves with it as there are forces, serve
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.kernel import (
     FOUND,
+    TO_PAIR,
     Contacts,
     Flexibility,
     Free,
     at_rest,
+    change_slides,
     find_contacts,
     law_of,
-    set_paired_flexibility,
     work_for,
 )
 from dda.contact.springs import Contact, base_directions
-from dda.contact.unilateral import Unilateral
+from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.model.load import BaseMotion
+from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
+from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel
+from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
+from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import BaseRecord, base_displacement, driver
-from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss
+from dda.stepping.driver import BaseRecord, base_displacement, base_record, driver, history_of, reached_history
+from dda.stepping.energy import (
+    ALGORITHMIC,
+    DAMPING,
+    ENERGIES,
+    GIVEN,
+    add_contact_losses,
+    bulk_loss,
+    spring_energies,
+)
 from dda.system.joints import FIXED
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
@@ -134,7 +148,7 @@ class Length:
         C = (C + C.T) / 2
         self.flexible = Flexibility(C, C.copy())
         if len(C) == 4 and len(opening.normals) == 2:
-            set_paired_flexibility(C, self.flexible.C_paired)
+            change_slides(C, TO_PAIR, self.flexible.C_paired)
 
 
 class SystemEnergy:
@@ -197,12 +211,12 @@ class OpeningBody:
         P = np.einsum("nij,nj->ni", e.mass, upwards).ravel()
         F = dt * dt * e.F * self.opening.system.load_size
         f = F if self.scheme.start == "consistent" else np.zeros_like(F)
-        contacts = at_rest(np.full(self.points, self.opening.law.gap), self.points)
+        contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
     def moved_base(self, base: BaseRecord, begun: float, ratio: float) -> Array:
         """Return how far the base moves in a part of a step, along and away from itself [m]."""
-        base_displacement(base, self.scheme.step, begun, ratio, self.carried)
+        base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
         return self.carried
 
 
@@ -282,3 +296,68 @@ def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> boo
 
 
 make_steps = driver(advance, account, keep)
+
+
+def solve_opening_system(
+    opening: OpeningSystem,
+    scheme: Scheme,
+    steps: int,
+    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    options: UnilateralOptions | None = None,
+) -> ContactResult:
+    """Step sub-blocks on points that open, from rest or from their starting velocity.
+
+    Parameters and outcomes are those of `dda.solve_unilateral`; the rule is "newmark", and all unknowns are kept.
+
+    Raises
+    ------
+    ValueError
+        If the number of steps is not positive, a column is unknown, or rule, scheme and contact exclude each other.
+    """
+    import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
+
+    check_request(steps, columns)
+    options = options or UnilateralOptions()
+    if options.rule != NEWMARK:
+        raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    law = opening.law
+    if law.rules == LAGGED:
+        raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
+    check_scheme(law, scheme)
+    began = perf_counter()
+    body = OpeningBody(opening, scheme, options.solve_limit, columns, steps, options.energies)
+    nonzeros = body.length(1.0).stepper.factor.nonzeros
+    requested, points = len(columns), body.points
+    history = history_of(steps, requested + 2 + points + 3 * options.energies, points, options.energies)
+    base = base_record(opening.motion and opening.motion.along(opening.axes))
+    ready = perf_counter()
+    with np.errstate(all="ignore"):
+        reached, ended = make_steps(body, body.start_state(), body.start_state(), base, history, steps, options.cut)
+    history = reached_history(history, reached)
+    motion = history.motion[1:]
+    mass = math.fsum(block.total_mass for block in opening.system.blocks)
+    velocity = motion[:, requested : requested + 2].T / (mass * scheme.step)
+
+    def slide() -> Array:
+        moved: Array = motion[:, requested + 2 : requested + 2 + points].T
+        if opening.motion is not None:
+            moved = moved - opening.motion.at(step_times(scheme, reached)) @ opening.axes[0]
+        return moved
+
+    def balance() -> dict[str, Array]:
+        kinetic, strain, load = motion[:, requested + 2 + points :].T
+        springs = spring_energies(law, history.normal[1:], history.shear[1:])
+        stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
+        return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
+
+    own_parts = {"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]}
+    return ContactResult(
+        **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),
+        columns=dict(zip(columns, motion[:, :requested].T + 0.0, strict=True)),
+        unknowns=len(opening.equations.F),
+        nonzeros=nonzeros,
+        factorisations=body.made,
+        base_contacts=(0, -1),
+        parts=contact_parts(history, law.softness, **own_parts),
+        balance=balance if options.energies else None,
+    )

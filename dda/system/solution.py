@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from dda.one_block.modes import Mode, scalar_eigenvalues
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, step_times
 from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
-from dda.system.joint_solver import Factor, factor
-from dda.system.system import BlockSystem, Equations, inverses
+from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

@@ -11,14 +11,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.model.block import Block
 from dda.model.load import BaseMotion, falling
-from dda.system.joint_solver import saddle
 from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
@@ -193,6 +192,48 @@ class Equations:
         by_force = [self.pressure if name == "contact_pressure" else none for name in columns]
         shape = len(columns), len(self.F)
         return np.array(by_D).reshape(shape), np.array(by_force).reshape(len(columns), len(self.pressure))
+
+
+@dataclass
+class Factor:
+    """A factorised sparse symmetric matrix and its size."""
+
+    solve: Callable[[Array], Array]
+    nonzeros: int
+
+
+def factor(matrix: csr_array, definite: bool = True) -> Factor:
+    """Factorise a matrix; a definite one keeps its diagonal pivots and its symmetric fill-in."""
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import splu
+
+    options: dict[str, Any] = {
+        "permc_spec": "MMD_AT_PLUS_A",
+        "diag_pivot_thresh": 0.0,
+        "options": {"SymmetricMode": True},
+    }
+    lu = splu(csc_array(matrix), **(options if definite else {}))
+    return Factor(lu.solve, int(matrix.nnz))
+
+
+def saddle(Ke: csr_array, B: csr_array, C: csr_array, modulus: float) -> Callable[[Array, Array], tuple[Array, Array]]:
+    """Return the solver of Ke D + B' lambda = F, B D - C lambda = g, in moduli near one.
+
+    Parameters
+    ----------
+    modulus : float
+        Size of the entries of Ke, by which forces are scaled.
+    """
+    from scipy.sparse import block_array
+
+    lu = factor(block_array([[Ke / modulus, B.T], [B, -modulus * C]], format="csr"), definite=False)
+    n = Ke.shape[0]
+
+    def solve(F: Array, g: Array) -> tuple[Array, Array]:
+        solution = lu.solve(np.concatenate([F / modulus, g]))
+        return solution[:n], modulus * solution[n:]
+
+    return solve
 
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:

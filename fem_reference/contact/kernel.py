@@ -166,6 +166,7 @@ class Trial(NamedTuple):
     """Forces, gaps and slips of guessed states."""
 
     forces: Array  # N, then T, of the points [N]
+    yielded: Array  # what the forces change of gaps, then slips [m]
     moved: Array  # gaps, then slips beyond the references at the start of the step [m]
     settled: bool  # whether the crossings belong to the forces
     equations: Equations  # of the last states whose points all were closed or stay open, for the next trial
@@ -264,15 +265,16 @@ def advance(
 
     A1 = free_acceleration + block.response @ trial.forces
     D1 = predicted + (alpha * h**2) * A1
-    thrown = np.zeros(1)
     if law.implicit:
         thrown = block.impulse @ trial.forces
         A1 = A1 - thrown / (2 * alpha)
-    V1 = gg * V + h * ((1 - delta) * A + delta * A1 + thrown)
+        V1 = gg * V + h * ((1 - delta) * A + delta * A1 + thrown)
+    else:
+        V1 = gg * V + h * ((1 - delta) * A + delta * A1)
     totals = state.totals.copy()
     if losses:
         add_block_losses(block, law, state, D1, A1, totals)
-    following = moved_points(block, law, state, base, trial, change + law.C @ trial.forces, states, D1, V1, A1, totals)
+    following = moved_points(block, law, state, base, trial, change + trial.yielded, states, D1, V1, A1, totals)
     return following, trial.equations, solves, outcome
 
 
@@ -385,7 +387,8 @@ def solution(law: Law, equations: Equations, free: Array, gap: Array, states: St
         if (equations.states != guess).any():
             equations = equations_of(law, guess, phi)
         forces = equations.inverse @ (equations.constant - equations.weight * free)
-        return Trial(forces, free + law.C @ forces, True, equations)
+        yielded = law.C @ forces
+        return Trial(forces, yielded, free + yielded, True, equations)
 
     part = 1.0
     last = np.inf
@@ -406,7 +409,8 @@ def solution(law: Law, equations: Equations, free: Array, gap: Array, states: St
             part = part / 2
         last = size
         phi = phi + part * change
-    return Trial(forces, free + law.C @ forces, size <= SETTLED, equations)
+    yielded = law.C @ forces
+    return Trial(forces, yielded, free + yielded, size <= SETTLED, equations)
 
 
 def equations_of(law: Law, states: States, phi: Array) -> Equations:

@@ -46,7 +46,7 @@ def pair(solve, monkeypatch):
     """Return the result of compiled code and that of plain Python."""
     fast = solve()
     with monkeypatch.context() as patch:
-        patch.setattr(compiled, "is_worthwhile", lambda loop, seconds: False)
+        patch.setattr(compiled, "is_worthwhile", lambda *given: False)
         plain = solve()
     assert any(compiled.COMPILED in note for note in fast.notes) and any(compiled.PLAIN in note for note in plain.notes)
     return fast, plain
@@ -177,6 +177,22 @@ def test_what_is_kept_is_read_for_shorter_histories_than_are_compiled(fresh, mon
     assert ran(4.0)[0] == compiled.COMPILED
     assert ran(2.0)[0] == compiled.COMPILED
     assert ran(0.5)[0] == compiled.PLAIN
+
+
+class MoreNumbers(kernel.NamedTuple):
+    size: float
+    others: np.ndarray
+
+
+def test_code_for_other_sizes_is_not_at_hand(fresh, monkeypatch):
+    monkeypatch.setattr(compiled, "WORTHWHILE_KEPT", 1.0)
+    monkeypatch.setattr(compiled, "WORTHWHILE", 3.0)
+    assert ran(4.0)[0] == compiled.COMPILED
+    for loops in (compiled.loops, {}):  # in this process, then in the cache alone
+        monkeypatch.setattr(compiled, "loops", dict(loops))
+        records = (MoreNumbers(5.0, np.ones(2)),)
+        assert compiled.run_loop(loop, records, (), (np.zeros(3),), 2.0)[2] == compiled.PLAIN
+        assert ran(2.0)[0] == compiled.COMPILED
 
 
 @pytest.mark.parametrize("name", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME"])

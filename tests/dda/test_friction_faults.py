@@ -109,7 +109,7 @@ def kept_reference(monkeypatch):
     """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
 
     def change(found, law, before, free, flexible, limit, contacts, work):
-        for i in range(contacts.n):
+        for i in range(len(contacts.gap)):
             contacts.stretch[i] += contacts.slipped[i]
         return found
 
@@ -121,10 +121,10 @@ def old_reference(monkeypatch):
     real, kept = step.find_contacts, {}
 
     def faulty(law, before, *given):
-        for i in range(before.n):
+        for i in range(len(before.gap)):
             kept[i] = before.reference[i] if before.state[i] != OPEN else kept.get(i, 0.0)
-        moved = [before.stretch[i] + before.reference[i] - kept[i] for i in range(before.n)]
-        state = [now if now != OPEN else STICK for now in before.state[: before.n]]
+        moved = [before.stretch[i] + before.reference[i] - kept[i] for i in range(len(before.gap))]
+        state = [now if now != OPEN else STICK for now in before.state[: len(before.gap)]]
         return real(law, before._replace(stretch=moved, state=state), *given)
 
     monkeypatch.setattr(step, "find_contacts", faulty)

@@ -16,16 +16,16 @@ from dda.stepping.compiled import as_lists
 def solved(law, C, gap, slide=None, before=None, limit=6):
     """Return outcome, solves and the contacts, as lists."""
     n = len(gap)
-    before = before or kernel.at_rest(np.zeros(n), n)
+    before = before or kernel.at_rest(np.zeros(n))
     slide = np.zeros(n) if slide is None else np.array(slide, dtype=float)
     paired = np.array([slide.sum() / 2, slide[-1] - slide[0]]) if n == 2 else slide
     C_paired = np.array(C, dtype=float)
     if n == 2 and len(C) == 4:
-        kernel.set_paired_flexibility(np.array(C), C_paired)
+        kernel.change_slides(np.array(C), kernel.TO_PAIR, C_paired)
     given = (before, Free(np.array(gap), slide, paired), Flexibility(np.array(C), C_paired))
-    after, work = as_lists(kernel.at_rest(np.zeros(n), n)), as_lists(work_for(n))
+    after, work = as_lists(kernel.at_rest(np.zeros(n))), as_lists(work_for(n))
     outcome, solves = find_contacts(law_of(law), *map(as_lists, given), limit, after, work)
-    return outcome, solves, Contacts(n, *(np.array(part) for part in after[1:]))
+    return outcome, solves, Contacts(*map(np.array, after))
 
 
 @pytest.mark.parametrize("limit", [1, 6])
@@ -64,7 +64,7 @@ def three():
     """Return a law, three contacts that were pressed, and the flexibility of a step."""
     pressed = np.full(3, 1e5)
     nothing = np.zeros(3)
-    before = Contacts(3, np.full(3, STICK), -pressed / 1e9, nothing, pressed, nothing, nothing, nothing)
+    before = Contacts(np.full(3, STICK), -pressed / 1e9, nothing, pressed, nothing, nothing, nothing)
     return Unilateral(1e9, 4e8, friction=0.5), before, 1e-9 * (np.eye(6) + 0.1)
 
 
@@ -119,11 +119,11 @@ def test_two_contacts_in_mean_and_difference_are_those_in_their_own_slides(p_s):
     for _ in range(20):
         A = rng.standard_normal((4, 4))
         C, paired, own = A @ A.T + 0.1 * np.eye(4), np.zeros((4, 4)), np.zeros((4, 4))
-        kernel.set_paired_flexibility(C, paired)
-        kernel.set_own_flexibility(paired, own)
+        kernel.change_slides(C, kernel.TO_PAIR, paired)
+        kernel.change_slides(paired, kernel.TO_OWN, own)
         assert np.allclose(own, C, rtol=1e-13, atol=1e-13)
         gap, slide = -1 - rng.random(2), rng.standard_normal(2)
-        before = Contacts(2, np.full(2, STICK), -np.ones(2), *(np.zeros(2) for _ in range(5)))
+        before = Contacts(np.full(2, STICK), -np.ones(2), *(np.zeros(2) for _ in range(5)))
         outcome, _, after = solved(Unilateral(1e3, p_s), C, gap, slide, before)
         if outcome == FOUND and np.all(after.state == STICK):
             w, s = np.split(np.concatenate([gap, slide]) + C @ [*after.normal, *after.shear], 2)

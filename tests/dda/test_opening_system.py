@@ -9,7 +9,7 @@ from conftest import thinned
 from oracles.unilateral_checks import apart, mirrored, random_model, size, sums
 
 import dda.system.opening as opening
-import dda.system.opening_solution as stepping
+import dda.system.opening as stepping
 from dda import (
     Block,
     Contact,

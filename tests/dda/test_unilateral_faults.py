@@ -108,11 +108,11 @@ def old_reference(monkeypatch):
     real, kept = kernel.trial, {}
 
     def faulty(law, before, free, flexible, friction, contacts, work):
-        for i in range(before.n):
+        for i in range(len(before.gap)):
             if before.state[i] != OPEN:
                 kept[i] = before.stretch[i]
-        stretch = [kept.get(i, 0.0) for i in range(before.n)]
-        closed = before._replace(state=[STICK] * before.n, stretch=stretch)
+        stretch = [kept.get(i, 0.0) for i in range(len(before.gap))]
+        closed = before._replace(state=[STICK] * len(before.gap), stretch=stretch)
         real(law, closed, free, flexible, friction, contacts, work)
 
     monkeypatch.setattr(kernel, "trial", faulty)
@@ -158,7 +158,7 @@ def points_keep_shear(monkeypatch):
 
     def faulty(law, before, free, flexible, friction, contacts, work):
         real(law, before, free, flexible, friction, contacts, work)
-        for i in range(before.n):
+        for i in range(len(before.gap)):
             if contacts.state[i] == OPEN:
                 contacts.shear[i] = before.shear[i] / 2
 

@@ -116,7 +116,7 @@ def test_the_order_in_dt_through_switches(problem, options, order, scatter):
 def after_step(p, gaps, free, C):
     """Return outcome, solves, contacts at the end of the step, and their forces over it."""
     n = len(gaps)
-    before = Contacts(n, [int(w < 0) for w in gaps], list(gaps), *([0.0] * n for _ in range(5)))
+    before = Contacts([int(w < 0) for w in gaps], list(gaps), *([0.0] * n for _ in range(5)))
     after, work = as_lists(before._replace(gap=np.zeros(n))), as_lists(work_for(n))
     outcome, solves = conserving(p, before, Free(free, free, free), Flexibility(C, C), after, work)
     return outcome, solves, after, work.mean

@@ -51,7 +51,7 @@ def kept_shear(monkeypatch):
     """A corner that opens goes on pulling along the base."""
 
     def change(found, law, before, free, flexible, limit, contacts, work):
-        for i in range(contacts.n):
+        for i in range(len(contacts.gap)):
             if contacts.state[i] == 0:
                 contacts.shear[i] = 0.5 * before.shear[i]
         return found
@@ -64,7 +64,7 @@ def gap_of_the_increment(monkeypatch):
     real = step.find_contacts
 
     def faulty(law, before, free, *given):
-        gap = [free.gap[i] - (before.gap[i] if before.state[i] == 0 else 0.0) for i in range(before.n)]
+        gap = [free.gap[i] - (before.gap[i] if before.state[i] == 0 else 0.0) for i in range(len(before.gap))]
         return real(law, before, free._replace(gap=gap), *given)
 
     monkeypatch.setattr(step, "find_contacts", faulty)

@@ -129,7 +129,7 @@ def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
     def faulty(block: Any, before: Any, after: Any) -> None:
         sound(block, before, after)
         contacts = after.contacts
-        for i in range(contacts.n):
+        for i in range(len(contacts.gap)):
             if contacts.slipped[i] == 0:
                 contacts.reference[i] = before.reference[i]
 

@@ -9,8 +9,7 @@ import numpy as np
 
 import dda
 from dda.column.column import Column, Layer, Spring
-from dda.column.frequency import highest_frequency
-from dda.column.response import column_response
+from dda.column.response import column_response, highest_frequency
 from dda.column.stepping import Drive, solve_column
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
