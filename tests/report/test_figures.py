@@ -164,9 +164,3 @@ def test_ledger_figure_shows_each_number_once():
     figure = ledger.ledger_figure(lines)
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]
-
-
-def test_line_figure_names_lines_and_levels():
-    n = np.array([4.0, 8.0, 16.0])
-    figure = figures.line_figure([figures.Line("fem", n, -n, ": steep")], "n", "v [mm]", {"dda": -1.0}, log2_x=True)
-    assert {t.get_text() for t in figure.axes[0].texts} == {"fem: steep", "dda"}

@@ -23,7 +23,7 @@ from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
-from validation.report.chapters.scene import conclusion, gate_count, history_block
+from validation.report.chapters.scene import conclusion, drift_panel, gate_count, history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import Panel, style_of
 from validation.runs.results import Results
@@ -212,9 +212,9 @@ def test_mesh_point_springs_and_lateral_strain_have_their_numbers() -> None:
     n, error = core.mesh_errors({"mesh-convergence": group})  # type: ignore[misc]
     assert list(n) == [4, 8, 16] and error == pytest.approx([16 / 4**4, 16 / 8**4, 16 / 16**4])
     assert core.mesh_errors({}) is None
-    chart, said = core.drift_chart(made_group(made_case(PAPER, {"dda": {"displacement.static": -0.01}})),
-                                   [(4, -0.02), (8, -0.025), (16, -0.03)])  # fmt: skip
-    fem, dda = chart.strokes
+    group = made_group(made_case(PAPER, {"dda": {"displacement.static": -0.01}}))
+    panel, said = drift_panel(group, [(4, -0.02), (8, -0.025), (16, -0.03)])
+    fem, dda = panel.lines
     assert list(fem.y) == pytest.approx([-20, -25, -30]) and set(dda.y) == {-10.0}
     assert "changes by −5.00 mm with every halving" in said
     lateral = PAPER.with_values({"block.poisson": 0.3})

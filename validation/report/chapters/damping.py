@@ -11,7 +11,7 @@ from validation.report.blocks import Block, Column, Table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import DASH, cell, load_size, word_notes
 from validation.report.figures import histories
-from validation.report.figures.paper import BudgetPanel, budget_figure
+from validation.report.figures.budget import BudgetPanel, budget_figure
 from validation.runs.records import BudgetRecord
 from validation.runs.row import Value
 from validation.scenes.scene import Scene

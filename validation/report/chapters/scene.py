@@ -26,6 +26,7 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import COLUMNS, Panel, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest, VerdictRecord
@@ -340,20 +341,29 @@ def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
     return sorted((n, v) for n, v in displacements.items() if v is not None)
 
 
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[ChartPanel, str]:
+    """Return the drift of fem on corner point springs as a panel, and the sentence that it carries."""
     n, v = np.array(drift, dtype=float).T
+    v = 1e3 * v  # mm
     slope = float(np.polyfit(np.log2(n), v, 1)[0])
+    lines = [ChartLine("fem", n, v, dots=DOTS)]
     dda = group.cases[0].number("dda", "displacement.static")
-    levels = {} if dda is None else {"dda": 1e3 * dda}
-    line = histories.Line("fem", n, 1e3 * v, f": {plain(1e3 * slope, 3)} mm per doubling of n")
-    figure = histories.line_figure([line], "Elements a side n", "Static displacement [mm]", levels, log2_x=True)
-    caption = "Static displacement on corner point springs over the mesh, with the fitted slope."
+    if dda is not None:
+        lines.append(ChartLine("dda", n, np.full(n.size, 1e3 * dda)))
+    low = 1.1 * min(float(v.min()), 1e3 * (dda or 0.0))
+    title = "v at rest on corner point springs [mm]"
+    x_range = (n[0] / 1.3, n[-1] * 1.3)
+    panel = ChartPanel(title, "elements a side n", "", lines, x_range, (low, 0.0), (True, False))
+    return panel, (
+        f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
+        "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
+    )
+
+
+def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+    panel, sentence = drift_panel(group, drift)
+    caption = "Displacement at rest on corner point springs over the mesh."
     return [
-        histories.saved(figure, directory, f"{group.slug}-drift.svg", caption),
-        Callout(
-            f"On corner point springs the static displacement changes by {plain(1e3 * slope, 3)} mm with every "
-            "halving of the mesh and has no limit: a point force moves its own point of an elastic body "
-            'infinitely. The cure is foundation = "distributed" or "patch".',
-            "warn",
-        ),
+        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption),
+        Callout(f'{sentence} The cure is foundation = "distributed" or "patch".', "warn"),
     ]

@@ -12,8 +12,8 @@ from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_na
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
-from validation.report.figures.histories import Line
-from validation.report.figures.work import work_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.histories import Margins
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -70,7 +70,7 @@ def _count(case: CaseResults) -> int:
     return (case.scene.block.subdivide or (1, 1))[1]
 
 
-def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str, metric: str) -> Line | None:
+def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str, metric: str) -> ChartLine | None:
     """Return one method of refinement as a line: seconds and error, each point with its count."""
     points = []
     for case in cases:
@@ -81,7 +81,7 @@ def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str,
     if not points:
         return None
     x, y, notes = zip(*points, strict=True)
-    return Line(name, np.array(x), np.array(y), " ".join(notes))
+    return ChartLine(name, np.array(x), np.array(y), dots=3.0, notes=notes)
 
 
 def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
@@ -102,7 +102,10 @@ def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
         lines_with_points = [line for line in lines if line is not None]
         if lines_with_points:
             caption = f"{title}: error against run time. A number at a point counts the sub-blocks along a side."
-            figure = work_figure(lines_with_points, "Seconds of the run", "Relative L2 error")
+            panel = ChartPanel(
+                "", "Seconds of the run", "Relative L2 error", lines_with_points, logarithmic=(True, True)
+            )
+            figure = chart_figure([panel], 46.0, Margins(16.0, 34.0, 3.0, 9.5))
             blocks.append(histories.saved(figure, directory, f"subblocks-time-{kind}.svg", caption))
     return blocks
 

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HAIR, style_of
-from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, one_axes
+from validation.report.figures.histories import Margins, axes_grid, house_style
 from validation.studies.work.points import COSTS, ROUNDING, Point, floor, front
 
 QUANTITIES = ("displacement", "contact pressure")
@@ -98,13 +99,9 @@ def _legend(figure: Figure, points: Sequence[Point]) -> None:
 
 def columns_figure(names: tuple[str, str], series: dict[str, list[tuple[float, float]]]) -> Figure:
     """Draw one column of a study's table against another, a line for each solver, both logarithmic."""
-    with house_style():
-        figure, axes = one_axes(70.0, Margins(16.0, 62.0, 3.0, 9.5), names, logarithmic=True)
-        ends = {}
-        for name, pairs in series.items():
-            x, y = np.array(sorted(pairs)).T
-            axes.plot(x, y, "o-", ms=2.6, lw=0.8, color=style_of(name).color)
-            ends[name] = float(y[-1])
-        axes.autoscale_view()
-        label_ends(axes, ends)
-    return figure
+    lines = []
+    for name, pairs in series.items():
+        x, y = np.array(sorted(pairs)).T
+        lines.append(ChartLine(name, x, y, style_of(name).color, width=0.8, dots=2.6))
+    panel = ChartPanel("", *names, lines, logarithmic=(True, True))
+    return chart_figure([panel], 70.0, Margins(16.0, 62.0, 3.0, 9.5))

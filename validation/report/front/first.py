@@ -6,6 +6,7 @@ import cmath
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,9 +14,9 @@ from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph,
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
+from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
-from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
-from validation.report.figures.front.model import model_figure
+from validation.report.figures.model import model_figure
 from validation.report.front import closed
 from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
@@ -36,7 +37,7 @@ def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], 
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
     answers = (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups))
-    charts = charts_figure(damping_and_error(groups, paper), 37.0)
+    charts = chart_figure(damping_and_error(groups, paper), 37.0)
     return [
         Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
         Heading("The answer in five sentences", 3),
@@ -251,7 +252,7 @@ def stepped_frequency(scene: Scene) -> float:
 # ---- the figure ---------------------------------------------------------------------------------------------------
 
 
-def damping_and_error(groups: Groups, paper: Scene) -> list[Chart]:
+def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
     """Return damping and error over the time step, the paper's steps marked."""
     orange = style_of("dda").color
     black = style_of("bar").color
@@ -260,32 +261,32 @@ def damping_and_error(groups: Groups, paper: Scene) -> list[Chart]:
     marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in cases}
     measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in cases]
     dots = np.array([(x, 100 * y) for x, y in measured if y is not None]).reshape(-1, 2).T
-    labels = ("time step dt [ms]", "")
-    limits = (0.05, 20.0)  # ms
-    damping = Chart(
+    axes: dict[str, Any] = {"x_range": (0.05, 20.0), "logarithmic": (True, True), "marks": marks}
+    damping = ChartPanel(
         "Damping ratio of the first mode [%]",
-        labels,
+        "time step dt [ms]",
+        "",
         (
-            Stroke("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
-            Stroke("as run", dots[0], dots[1], orange, dots=True, line=False, has_label=False),
+            ChartLine("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
+            ChartLine("", dots[0], dots[1], orange, width=0, dots=DOTS),
         ),
-        limits,
-        (0.2, 100.0),
-        marks,
-        {"5 %": 100 * TARGET_DAMPING},
+        y_range=(0.2, 100.0),
+        levels={"5 %": 100 * TARGET_DAMPING},
+        **axes,
     )
     errors = []
     for name, pair, color, dash in (
         ("DDA − bar", ("dda", "bar"), orange, ()),
         ("bar − continuum", ("bar", "continuum"), black, ()),
-        ("DDA − continuum", ("dda", "continuum"), CHOICES[0], DASHED),
+        ("DDA − continuum", ("dda", "continuum"), SETTINGS[0], DASHED),
     ):
         x, y = _errors(groups.get("model-form"), pair)
         if x.size:
-            errors.append(Stroke(name, x, 100 * y, color, dash, dots=True))
+            errors.append(ChartLine(name, x, 100 * y, color, dash, dots=DOTS))
     if not errors:
         return [damping]
-    return [damping, Chart("Error of the displacement over 0.2 s [%]", labels, errors, limits, (0.2, 200.0), marks)]
+    title = "Error of the displacement over 0.2 s [%]"
+    return [damping, ChartPanel(title, "time step dt [ms]", "", errors, y_range=(0.2, 200.0), **axes)]
 
 
 def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Array]:
