@@ -20,7 +20,8 @@ from validation.gallery.histories import Sampling
 from validation.gallery.pages import Pages, environment
 from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
-from validation.report.blocks import Column, Table
+from validation.report.blocks import Table, TableColumn
+from validation.report.names import escaped
 from validation.runs import files
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -108,12 +109,12 @@ def scene_named(name: str) -> GalleryScene:
     return GalleryScene(name, name, f"{name}.html", (), (), ())
 
 
-def test_a_figure_is_that_of_the_scene_with_the_longest_name_that_fits() -> None:
-    scenes = [scene_named(name) for name in ("rocking", "rocking-pulse", "slope")]
-    for file, name in (("rocking-pulse-history.svg", "rocking-pulse"), ("rocking-history.svg", "rocking")):
-        found = chapters.scene_of_figure(file, scenes)
+def test_a_figure_leads_to_the_scene_that_it_shows() -> None:
+    scenes = [scene_named(name) for name in ("rocking", "rocking-pulse", "$lope")]
+    for shown, name in (("rocking-pulse", "rocking-pulse"), ("rocking", "rocking"), (escaped("$lope"), "$lope")):
+        found = chapters.scene_of_figure(chapters.Drawing("history.svg", "", "", shown), scenes)
         assert found is not None and found.name == name
-    assert chapters.scene_of_figure("first.svg", scenes) is None
+    assert chapters.scene_of_figure(chapters.Drawing("rocking-first.svg", "", "", ""), scenes) is None
 
 
 def test_a_chapter_that_cannot_be_drawn_says_why(tmp_path: Any) -> None:
@@ -160,7 +161,7 @@ def test_the_page_of_a_scene_names_its_own_studies_and_the_cases_drawn(monkeypat
 
 
 def test_a_table_of_a_chapter_keeps_its_notes() -> None:
-    table = Table((Column("a"),), (("1",),), "The caption", ("what it means",))
+    table = Table((TableColumn("a"),), (("1",),), "The caption", ("what it means",))
     made = environment().from_string('{% import "parts.html.j2" as parts %}{{ parts.block(b) }}')
     text = made.render(b=chapters.placed(table, Path(), Sheet()))
     assert "<caption>The caption</caption>" in text and '<p class="small">what it means</p>' in text

@@ -41,7 +41,7 @@ def towards_ends(names: Any = ENDS, count: int = 50) -> dict[str, Any]:
 def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> None:
     histories = towards_ends()
     figure = motion.history_figure(
-        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
     )
     top, below = figure.axes
     found = names_at(top)
@@ -62,7 +62,7 @@ def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> Non
 def test_crowded_names_keep_the_order_of_the_lines() -> None:
     ends = {"bar": 1.000, "dda": 1.012, "fem": 0.988, "continuum": 1.006}
     lines = {name: made_history(0.1, np.linspace(0, last, 5)) for name, last in ends.items()}
-    figure = motion.history_figure([curves.Panel("", lines, {"displacement": 1.0}, "bar")], "displacement")
+    figure = motion.history_figure([curves.HistoryPanel("", lines, {"displacement": 1.0}, "bar")], "displacement")
     placed = places_of(figure.axes[0])
     assert sorted(placed, key=placed.__getitem__) == sorted(ends, key=ends.__getitem__)
     assert min(np.diff(sorted(placed.values()))) > 0.1  # of 24 mm: letters are 2.5 mm high
@@ -71,12 +71,12 @@ def test_crowded_names_keep_the_order_of_the_lines() -> None:
 def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
     histories = {"bar": made_history(0.1, np.full(40, -0.02)), "dda": made_history(0.1, np.full(40, -0.021))}
     figure = motion.history_figure(
-        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
     )
     _, y = line_in(figure.axes[1], color("dda"))
     assert np.allclose(y, 0.1)
     assert len(lines_of(figure.axes[1])) == 1 and figure.axes[1].get_ylabel() == "|Δ| / static"
-    panel = curves.Panel("", histories, {}, "bar")
+    panel = curves.HistoryPanel("", histories, {}, "bar")
     assert motion.history_figure([panel], "displacement", apart=True).axes[1].get_ylabel() == "|Δ| / largest"
     assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
 

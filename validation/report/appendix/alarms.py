@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
-from validation.report.blocks import Block, Column, Heading, Table, columns
+from validation.report.blocks import Block, Heading, Table, TableColumn, columns
 from validation.report.chapters.data import CaseGroup
 from validation.report.chapters.text import percent, plain, short
 from validation.runs.records import AlarmRecord
@@ -36,7 +36,7 @@ def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
             others = dict(itertools.islice(scenes.items(), most, None))
             count = sum(map(len, others.values()))
             rows.append((kind, f"{len(others)} more", str(count), f"{', '.join(others)}."))
-    titles = (*columns("text", "Alarm", "Scene", "Cases"), Column("The worst of them", "fill"))
+    titles = (*columns("text", "Alarm", "Scene", "Cases"), TableColumn("The worst of them", "fill"))
     caption = "Results that look better than they are, as the runs raised them."
     return [Heading("Alarms", 2), Table(titles, tuple(rows), caption)] if rows else []
 

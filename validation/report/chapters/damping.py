@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.report.blocks import Block, Column, Table
+from validation.report.blocks import Block, Table, TableColumn
 from validation.report.chapters.data import CaseGroup, CaseResults
-from validation.report.chapters.text import DASH, cell, load_size, word_notes
+from validation.report.chapters.text import DASH, case_label, cell, load_size, word_notes
 from validation.report.figures import histories
 from validation.report.figures.budget import BudgetPanel, budget_figure
 from validation.runs.records import BudgetRecord
@@ -18,6 +18,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import is_solver, role
 
+OVER = ("time.step", "time.steps", "fem.elements")  # what a budget is drawn over or does not depend on
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 
 
@@ -25,17 +26,16 @@ def budget_blocks(group: CaseGroup, directory: Path) -> list[Block]:
     """Return the damping budget chart of a scene, or nothing where its results hold none."""
     if not group.budgets:
         return []
-    labels = {case.name: case.label for case in group.cases}
-    panels = [BudgetPanel(_label(labels.get(budget["scene"], "")), budget) for budget in group.budgets]
+    scenes = {case.name: case.scene for case in group.cases}
+    panels = []
+    for budget in group.budgets:
+        name = budget["scene"]
+        title = case_label(name, scenes[name], OVER) if name in scenes else ""
+        panels.append(BudgetPanel(title, budget))
     if len(panels) == 1:
         panels = [BudgetPanel("", group.budgets[0])]
     file = f"{group.slug}-damping-budget.svg"
-    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets))]
-
-
-def _label(text: str) -> str:
-    """Return a case's label without its time step, over which the chart is drawn."""
-    return ", ".join(part for part in text.split(", ") if not part.startswith(("dt =", "steps =", "n =")))
+    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets), group.name)]
 
 
 def _caption(budgets: Sequence[BudgetRecord]) -> str:
@@ -109,9 +109,9 @@ def damping_table(group: CaseGroup) -> Table:
         else:
             labels = itertools.chain([case.label], itertools.repeat(""))
             rows += [(label, *line) for label, line in zip(labels, lines, strict=False)]
-    titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
+    titles = (TableColumn("Solver"), *(TableColumn(m.title, "decimal", m.over) for m in _MEASURES))
     if not has_long_labels:
-        titles = (Column("Case"), *titles)
+        titles = (TableColumn("Case"), *titles)
     return Table(titles, tuple(rows), notes=word_notes(measured), ruled=not has_long_labels)
 
 

@@ -27,7 +27,7 @@ from validation.report.chapters.text import (
 )
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
-from validation.report.figures.curves import COLUMNS, Panel, differences
+from validation.report.figures.curves import COLUMNS, HistoryPanel, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
@@ -238,7 +238,7 @@ def history_block(
     panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
-    return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences))
+    return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
 
 
 def _ends(cases: Sequence[CaseResults]) -> list[float]:
@@ -262,7 +262,7 @@ def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without
     return CALM * latest
 
 
-def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> list[str]:
+def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]:
     """Name the lines that lie on one another, and how far off they are at most."""
     parts = []
     for name, others in motion.twins(panels, columns).items():
@@ -270,7 +270,7 @@ def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> list[str]:
     return [f"{', '.join(parts)}."] if parts else []
 
 
-def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> list[str]:
+def _reading(panels: Sequence[HistoryPanel], columns: Sequence[str], apart: bool) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
     sentences = []
     if start := motion.start_of(panels, columns[0]):
@@ -316,7 +316,7 @@ def _motion_of(case: CaseResults) -> dict[str, Any]:
 
 def _panel(
     case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
-) -> Panel:
+) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
         if solver not in without and set(columns) & set(history.columns):
@@ -331,7 +331,7 @@ def _panel(
             static[column] = numbers[0]
     finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
-    return Panel(title, drawn, static, reference, finer=finer_drawn)
+    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn)
 
 
 def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
@@ -364,6 +364,6 @@ def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], director
     panel, sentence = drift_panel(group, drift)
     caption = "Displacement at rest on corner point springs over the mesh."
     return [
-        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption),
+        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption, group.name),
         Callout(f'{sentence} The cure is foundation = "distributed" or "patch".', "warn"),
     ]

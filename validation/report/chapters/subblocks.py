@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
@@ -135,7 +135,7 @@ def _patterns(group: CaseGroup) -> Table:
         errors = (_percent(_frequency_error(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
         cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
         rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
-    titles = (Column("Pattern"), Column("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
+    titles = (TableColumn("Pattern"), TableColumn("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
     titles += columns("decimal", "Unknowns", "ms")
     return Table(titles, tuple(rows), f"{group.title}, against quadratic elements")
 
@@ -163,7 +163,7 @@ def _glue(group: CaseGroup) -> Table:
         errors_by_motion = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
         errors_by_motion[bool(case.scene.load.traction)] = _percent(_frequency_error(case))
     rows = tuple((short(ratio), *errors_by_motion.values()) for ratio, errors_by_motion in errors.items())
-    titles = (Column("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
+    titles = (TableColumn("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
     return Table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
 
 
@@ -181,4 +181,4 @@ def _rocking(group: CaseGroup) -> Table:
     for group_title in ("ω₁ [rad/s]", "ξ₁ [1]"):
         titles += columns("decimal", "dda", "fem", group=group_title)
     caption = "First rocking mode on springs of equal total stiffness"
-    return Table((*titles, Column("Block above elements")), tuple(rows), caption)
+    return Table((*titles, TableColumn("Block above elements")), tuple(rows), caption)

@@ -29,6 +29,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
+from validation.studies.waves.rows import COUNTS, row_name
 
 SCHEMES = {1.0: "(1/2, 1)", 0.5: "(1/4, 1/2)"}  # by delta
 COLORS = {"(1/2, 1)": "#d55e00", "(1/4, 1/2)": "#0072b2"}
@@ -86,11 +87,11 @@ def _courant(scene: Scene) -> float:
 def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
     """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
     waves = []
-    for (scene, name), metrics in rows.items():
-        words = name.split()
-        if scene == case.name and words[0] == "dda" and isinstance(metrics.get(metric), float):
-            waves.append((int(words[2]), metrics))
-    return sorted(waves, key=lambda wave: wave[0])
+    for blocks in COUNTS:
+        metrics = rows.get((case.name, row_name("dda", blocks)), {})
+        if isinstance(metrics.get(metric), float):
+            waves.append((blocks, metrics))
+    return waves
 
 
 def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[TravelledWaves]:

@@ -49,10 +49,10 @@ def save(figure: Figure, path: Path) -> Path:
     return path
 
 
-def saved(figure: Figure, directory: Path, file: str, caption: str) -> FigureBlock:
-    """Write a figure into a directory and return its block."""
+def saved(figure: Figure, directory: Path, file: str, caption: str, scene: str = "") -> FigureBlock:
+    """Write a figure, of one scene or of none, into a directory and return its block."""
     save(figure, directory / file)
-    return FigureBlock(file, caption)
+    return FigureBlock(file, caption, scene)
 
 
 @dataclass(frozen=True)
@@ -81,17 +81,6 @@ def axes_grid(
         grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in left_edges])
         y -= gap
     return figure, grid
-
-
-def one_axes(
-    height: float, margins: Margins, labels: tuple[str, str], logarithmic: bool = False
-) -> tuple[Figure, Axes]:
-    """Return a figure with one pair of axes of a height [mm], labelled in x and y."""
-    figure, ((axes,),) = axes_grid([(height, 0.0)], 1, margins)
-    if logarithmic:
-        axes.set(xscale="log", yscale="log")
-    axes.set(xlabel=labels[0], ylabel=labels[1])
-    return figure, axes
 
 
 def size_of(axes: Axes) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, Column, Heading, PageBreak, Paragraph, Table, columns
+from validation.report.blocks import Block, Callout, Heading, PageBreak, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.data import CaseResults
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
@@ -95,7 +95,7 @@ def step_table(scenes: Sequence[Scene]) -> Table:
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
     titles = (
-        Column("Wanted ξ"),
+        TableColumn("Wanted ξ"),
         *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
     )
     return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
@@ -229,7 +229,7 @@ def spring_table(groups: Groups, base: Scene) -> Table:
         )
         rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
     titles = (
-        Column("p"),
+        TableColumn("p"),
         *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
         *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
         *columns("decimal", "displ.", "press.", group="steps to 1 %"),

@@ -12,13 +12,14 @@ import numpy as np
 
 from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
 from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed
-from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
@@ -130,26 +131,21 @@ def _windows(groups: Groups, shortest: tuple[CaseResults, float, float]) -> str:
         subject = (verdict["scene"], tuple(verdict["pair"]), verdict["metric"])
         value = verdict["value"]
         if subject == (case.name, ("dda", "bar"), "pressure.l2") and isinstance(value, int | float):
-            errors.append((_window_of(verdict["id"]) or case.scene.time.duration, float(value)))
+            until = window(verdict)
+            errors.append((float(until.removesuffix("s")) if until else case.scene.time.duration, float(value)))
     if len(errors) < 2:
         errors = [(case.scene.time.duration, pressure_error)]
-    texts = [f"{percent(value)} over {short(window)} s" for window, value in sorted(errors)]
+    texts = [f"{percent(value)} over {short(time)} s" for time, value in sorted(errors)]
     return (
         f" A relative L2 difference is mostly phase and grows with its window: at "
         f"{milliseconds(case.scene.time.step)} {', '.join(texts)}."
     )
 
 
-def _window_of(gate: str) -> float | None:
-    """Return the time up to which a gate compares [s], which its id ends with; None where it takes the whole run."""
-    seconds = gate.rpartition("@")[2]
-    return float(seconds.removesuffix("s")) if "@" in gate else None
-
-
 def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
     """Say that the time step is the damping, and which one gives 5 %."""
     measured = []
-    for case in by_step(groups.get(paper.name.partition("[")[0])):
+    for case in by_step(groups.get(PAPER)):
         if (xi := case.number("dda", "mode1.damping")) is not None:
             measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
     step = closed.step_for(paper, TARGET_DAMPING)
@@ -257,7 +253,7 @@ def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
     orange = style_of("dda").color
     black = style_of("bar").color
     grid = np.geomspace(5e-5, 2e-2, 200)
-    cases = by_step(groups.get(paper.name.partition("[")[0]))
+    cases = by_step(groups.get(PAPER))
     marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in cases}
     measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in cases]
     dots = np.array([(x, 100 * y) for x, y in measured if y is not None]).reshape(-1, 2).T

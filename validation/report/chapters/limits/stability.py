@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Block, Column, Heading, Table, columns
+from validation.report.blocks import Block, Heading, Table, TableColumn, columns
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.report.figures import histories
@@ -129,7 +129,7 @@ def outcome_table(runs: Sequence[ExtremeRun]) -> Table:
             count[str(kind) if has_kind else str(run.row.outcome)] += 1
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
-    titles = (Column("Solver"), *columns("decimal", *kinds), Column("otherwise", "fill"))
+    titles = (TableColumn("Solver"), *columns("decimal", *kinds), TableColumn("otherwise", "fill"))
     notes = tuple(f"{kind}: {kind.sentence}" for kind in Stability)
     caption = "Outcomes by name; the bar has no matrix and completes or does not apply."
     return Table(titles, tuple(rows), caption, notes)
@@ -177,7 +177,7 @@ def factor_tables(runs: Sequence[ExtremeRun]) -> list[Block]:
         rows = [row for row in rows if row in fewest]
         caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
     titles = (
-        Column("Scene", "id"),
+        TableColumn("Scene", "id"),
         *columns("decimal", "|λ|", "condition", "residual", group="dda"),
         *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
     )

@@ -47,7 +47,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
     return [
         *opening(manifest, lead=conclusion(table)),
         settling_table(table),
-        histories.saved(figure, directory, f"{group.slug}-settling.svg", caption),
+        histories.saved(figure, directory, f"{group.slug}-settling.svg", caption, group.name),
         Paragraph(f"{ring} {gate_count(group.verdicts).capitalize()}."),
     ]
 
