@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Block, Callout, Heading, PageBreak, Paragraph, Table, TableColumn, columns
-from validation.report.chapters.data import CaseResults
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
@@ -25,6 +25,14 @@ DISCOUNTS = (1.0, 0.98, 0.95, 0.9)  # of the paper's Figure 9
 STEPS = (1e-2, 2e-3, 1e-3, 1e-4)  # s
 STEP = 2e-3  # s, of the page on springs
 RATE_STEPS = (1e-3, 2e-3, 1e-2, 2e-2)  # s, at which the damping of a discount that is held as a rate is given
+SETTLING = (
+    MetricColumn("displacement.settling_step", 1.0, "displ.", "steps to 1 %", decimals=0),
+    MetricColumn("pressure.settling_step", 1.0, "press.", "steps to 1 %", decimals=0),
+)
+FINE_SETTLING = (
+    MetricColumn("displacement.fine_settling_step", 1.0, "displ.", "steps to 0.01 %", decimals=0),
+    MetricColumn("pressure.fine_settling_step", 1.0, "press.", "steps to 0.01 %", decimals=0),
+)
 SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
@@ -188,8 +196,7 @@ def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
     usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
     case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
-    pressure = _steps(case, "pressure.fine_settling_step")
-    displacement = _steps(case, "displacement.fine_settling_step")
+    displacement, pressure = cells(FINE_SETTLING, case)
     as_run = ""
     if DASH not in (pressure, displacement):
         as_run = (
@@ -221,28 +228,17 @@ def spring_table(groups: Groups, base: Scene) -> Table:
             f"{closed.contact_radius(scene):.4f}",
             f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
         )
-        settling_cells = (
-            _steps(case, "displacement.settling_step"),
-            _steps(case, "pressure.settling_step"),
-            _steps(fine or case, "displacement.fine_settling_step"),
-            _steps(fine or case, "pressure.fine_settling_step"),
-        )
+        settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
         rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
     titles = (
         TableColumn("p"),
         *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
         *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
-        *columns("decimal", "displ.", "press.", group="steps to 1 %"),
-        *columns("decimal", "displ.", "press.", group="steps to 0.01 %"),
+        *heads(SETTLING + FINE_SETTLING),
     )  # fmt: skip
     return Table(
         titles, tuple(rows), f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run."
     )
-
-
-def _steps(case: CaseResults | None, metric: str) -> str:
-    value = None if case is None else case.number("dda", metric)
-    return DASH if value is None else f"{value:.0f}"
 
 
 # ---- which discount -----------------------------------------------------------------------------------------------

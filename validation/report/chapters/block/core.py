@@ -10,6 +10,7 @@ import numpy as np
 from validation.report.blocks import Block, Heading, Table, columns
 from validation.report.chapters.data import CaseGroup, groups_by_name
 from validation.report.chapters.ledger import ledger_blocks
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import drift_panel, drift_values, opening, scene_section
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
@@ -29,6 +30,9 @@ DRAWN_COLUMNS = {  # scene -> columns that its figure holds
     "model-form": (DISPLACEMENT, PRESSURE),
 }
 UNDER_THE_STEP = ("figures-3-4", "figures-5-6", "model-form")  # where the undamped continuum would hide the rest
+AT_REST = tuple(
+    MetricColumn("displacement.static", 1e3, solver, decimals=3, solver=solver) for solver in ("dda", "fem")
+)
 IN_WORDS = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
 
 
@@ -100,9 +104,8 @@ def lateral_table(groups: Mapping[str, CaseGroup]) -> Table:
     group = groups.get("poisson-statics")
     for case in group.cases if group else ():
         dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
-        cells = [DASH if value is None else f"{1e3 * value:.3f}".replace("-", "−") for value in (dda, fem)]
         ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
-        rows.append((case.label, short(case.scene.block.poisson), *cells, ratio))
-    titles = (*columns("text", "Case"), *columns("decimal", "μ", "dda", "fem"), *columns("text", "apart"))
+        rows.append((case.label, short(case.scene.block.poisson), *cells(AT_REST, case), ratio))
+    titles = (*columns("text", "Case"), *columns("decimal", "μ"), *heads(AT_REST), *columns("text", "apart"))
     caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
     return Table(titles, tuple(rows), caption)

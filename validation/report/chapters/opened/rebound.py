@@ -12,8 +12,9 @@ import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, plain, short
+from validation.report.chapters.text import DASH, cell, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
@@ -40,6 +41,14 @@ TITLES = {  # of the panels
     "implicit": "implicit contact",
     "conserving": "energy-conserving contact",
 }
+LOST = "Lost by, over the energy given"
+BUDGET = (
+    MetricColumn("energy.switching_gain", -1.0, "switching", LOST, digits=3),
+    MetricColumn("contact.peak_force", 1e-6, "Peak force [MN]", digits=3),
+    MetricColumn("contact.penetration", 1e3, "Penetration [mm]", digits=3),
+    MetricColumn("contact.open_share", 100.0, "Open [%]", digits=3),
+    MetricColumn("horizon.time", 1.0, "Repeatable up to [s]", digits=3),
+)
 BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
@@ -201,8 +210,8 @@ def number_maps_of(
     group: CaseGroup, ratios: Sequence[float], steps: Sequence[float], exact: dict[float, float]
 ) -> list[NumberMap]:
     """Return the three maps of a scheme."""
-    cells = {(ratio(case), case.scene.time.step): case for case in group.cases}
-    grid = [[cells.get((r, step)) for step in steps] for r in ratios]
+    case_at = {(ratio(case), case.scene.time.step): case for case in group.cases}
+    grid = [[case_at.get((r, step)) for step in steps] for r in ratios]
     solves = [[None if c is None else c.number("dda", "contact.mean_solves") for c in row] for row in grid]
     rises = [[None if c is None else c.number("dda", "energy.rise") for c in row] for row in grid]
     switches = [[_switches_over_exact(c, exact) for c in row] for row in grid]
@@ -238,9 +247,7 @@ def _number(value: float) -> str:
 
 def budget_table(maps: Sequence[CaseGroup]) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
-    titles = columns("text", "Scheme", "p", "dt [ms]")
-    titles += columns("decimal", "scheme", "switching", group="Lost by, over the energy given")
-    titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Repeatable up to [s]")
+    titles = columns("text", "Scheme", "p", "dt [ms]") + columns("decimal", "scheme", group=LOST) + heads(BUDGET)
     rows = []
     for group in maps:
         name = kind(group)
@@ -255,13 +262,5 @@ def budget_cells(case: CaseResults) -> tuple[str, ...]:
     """Return losses, peak force, penetration, share open and horizon of a case."""
     input_energy = case.number("dda", "energy.given")
     lost = case.number("dda", "energy.lost_algorithmic")
-    numbers = (
-        (None if lost is None or not input_energy else lost / input_energy, 1.0),
-        (case.number("dda", "energy.switching_gain"), -1.0),
-        (case.number("dda", "contact.peak_force"), 1e-6),
-        (case.number("dda", "contact.penetration"), 1e3),
-        (case.number("dda", "contact.open_share"), 100.0),
-        (case.number("dda", "horizon.time"), 1.0),
-    )
-    # Adding zero takes the sign off a negative zero.
-    return tuple(DASH if value is None else plain(factor * value + 0.0, 3) for value, factor in numbers)
+    share = None if lost is None or not input_energy else lost / input_energy
+    return (cell(share, digits=3), *cells(BUDGET, case))
