@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from validation.report.blocks import GateLine, GateLines, Heading, Paragraph, Part
-from validation.report.chapters.data import CaseGroup
+from validation.report.chapters.data import CaseGroup, labels_of
 from validation.report.chapters.gates import band, measured, reason, value_cell
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
@@ -19,9 +19,7 @@ def gate_pages(verdicts: Verdicts, groups: Mapping[str, CaseGroup]) -> list[Part
     passed = [v for v in verdicts if v["verdict"] == "PASS"]
     if not passed:
         return []
-    labels: dict[str, str] = {}
-    for group in groups.values():
-        labels |= {case.name: case.label for case in group.cases}
+    labels = labels_of(groups.values())
     joined = len(passed) > MOST_LINES
     sections: list[tuple[str, str, tuple[GateLine, ...]]] = []
     for study in dict.fromkeys(v["study"] for v in passed):

@@ -36,7 +36,7 @@ def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Pat
         return [Heading(title, 2), Paragraph("No run completed.")]
     caption = (
         "Error against cost, step and mesh refined together. Left of each pair against the bar under the same scheme, "
-        "right against the continuum; relative L2. Grey: what no run beats in both; dotted: the model form of DDA; "
+        "right against the continuum; relative L2. Grey: what no run beats in both; hairline: the model form of DDA; "
         "hollow: below the reference's own uncertainty."
     )
     return [

@@ -18,7 +18,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from validation.report.figures.curves import GREY, HAIR, dash_style, style_of, thin
-from validation.report.figures.histories import Margins, axes_grid, house_style, label_ends, outer_ticks, size_of
+from validation.report.figures.histories import (
+    Margins,
+    axes_grid,
+    house_style,
+    label_ends,
+    outer_ticks,
+    share_left,
+    size_of,
+)
 from validation.runs.history import Array
 
 SETTINGS = ("#0072b2", "#009e73", "#cc79a7", "#8c6d1f")  # colours of settings, which are no solvers
@@ -98,23 +106,29 @@ def chart_figure(
         Whether the panels have one y axis, labelled at the left.
     """
     rows = [(height, 0.0)] if isinstance(height, float | int) else list(height)
+    is_marked = margins is None or any(panel.marks for panel in panels)
     if margins is None:
         margins = _margins_for(panels)
     across = len(panels) // len(rows)
-    has_marked_top = margins.top >= MARKED
+    has_marked_top = is_marked and margins.top >= MARKED
     with house_style():
         figure, grid = axes_grid(rows, across, margins)
-        for number, panel in enumerate(panels):
-            line, place = divmod(number, across)
-            axes = grid[line][place]
-            _draw_panel(axes, panel, has_marked_top)
-            if shared and place:
-                axes.tick_params(labelleft=False)
-                axes.set_ylabel("")
-            if not shared or place == across - 1:
-                _write_names(axes, panel)
-            if axes not in grid[-1] and rows[line][1] < MARKED:  # the axis below has the same numbers
-                axes.tick_params(labelbottom=False)
+        for line, (row, (_, gap)) in enumerate(zip(grid, rows, strict=True)):
+            row_panels = panels[line * across : (line + 1) * across]
+            for axes, panel in zip(row, row_panels, strict=True):
+                _draw_lines(axes, panel)
+            if shared:
+                _share_y(row)
+            for axes, panel in zip(row, row_panels, strict=True):
+                _draw_frame(axes, panel, has_marked_top)
+                if not shared or axes is row[-1]:
+                    _write_names(axes, panel)
+                if row is not grid[-1] and gap < MARKED:  # the axis below has the same numbers
+                    axes.tick_params(labelbottom=False)
+            if shared:
+                share_left(row, across, row_panels[0].y_label)
+                for axes in row[1:]:
+                    axes.set_ylabel("")
     return figure
 
 
@@ -126,21 +140,34 @@ def _margins_for(panels: Sequence[ChartPanel]) -> Margins:
     return Margins(10.0, room, 10.0, 9.5, room + 9.0)
 
 
-def _draw_panel(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
+def _draw_lines(axes: Axes, panel: ChartPanel) -> None:
+    """Draw the lines of a panel and set its scales and ranges."""
     for line in panel.lines:
         draw_chart_line(axes, line)
     scales = ["log" if logarithmic else "linear" for logarithmic in panel.logarithmic]
-    axes.set(xscale=scales[0], yscale=scales[1], xlabel=panel.x_label, ylabel=panel.y_label)
+    axes.set(xscale=scales[0], yscale=scales[1])
     if panel.x_range is not None:
         axes.set_xlim(panel.x_range)
     elif not panel.logarithmic[0] and panel.lines:
         axes.set_xlim(0.0, max(float(np.max(line.x)) for line in panel.lines))
     if panel.y_range is not None:
-        axes.set_ylim(panel.y_range)
+        axes.set_ylim(*panel.y_range)
     axes.autoscale_view()
+
+
+def _share_y(row: Sequence[Axes]) -> None:
+    """Give the axes of a row one range of y."""
+    limits = [axes.get_ylim() for axes in row]
+    for axes in row:
+        axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+
+
+def _draw_frame(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
+    """Write the title, label and number the axes, draw hairlines."""
+    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
     axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
-    _number_axis(axes.xaxis, panel.logarithmic[0], panel.x_ticks)
-    _number_axis(axes.yaxis, panel.logarithmic[1], panel.y_ticks)
+    _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
+    _number_axis(axes, axes.yaxis, panel.logarithmic[1], panel.y_ticks)
     _draw_hairlines(axes, panel, has_marked_top)
 
 
@@ -164,7 +191,7 @@ def draw_chart_line(axes: Axes, line: ChartLine) -> None:
         axes.annotate(note, (point_x, point_y), (2.0, 2.5), textcoords="offset points", fontsize=5.5)
 
 
-def _number_axis(axis: Axis, logarithmic: bool, ticks: Mapping[float, str] | int) -> None:
+def _number_axis(axes: Axes, axis: Axis, logarithmic: bool, ticks: Mapping[float, str] | int) -> None:
     low, high = axis.get_view_interval()
     if isinstance(ticks, Mapping):
         axis.set_ticks(list(ticks), labels=list(ticks.values()))
@@ -173,13 +200,13 @@ def _number_axis(axis: Axis, logarithmic: bool, ticks: Mapping[float, str] | int
         is_short = math.log10(high / low) < DECADES
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)) if is_short else LogLocator(numticks=7))
         axis.set_major_formatter(lambda value, _: _tick_text(value))
-        minor = LogLocator(subs=tuple(range(2, 10)), numticks=12) if axis.axis_name == "x" else NullLocator()
+        minor = LogLocator(subs=tuple(range(2, 10)), numticks=12) if axis is axes.xaxis else NullLocator()
         axis.set_minor_locator(minor)
         axis.set_minor_formatter(NullFormatter())
-    elif ticks and axis.axis_name == "x":
+    elif ticks and axis is axes.xaxis:
         places = MaxNLocator(ticks, steps=[1, 2, 5, 10]).tick_values(0, high)
         texts = {float(x): f"{x:,g}".replace(",", "\u202f") for x in places if 0 <= x <= high * (1 + 1e-9)}
-        outer_ticks(axis.axes, high, texts)
+        outer_ticks(axes, high, texts)
     elif ticks:
         axis.set_major_locator(MaxNLocator(ticks))
 

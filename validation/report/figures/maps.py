@@ -67,10 +67,11 @@ def map_figure(
 
 def _draw(axes: Axes, number_map: NumberMap, scale: MapScale) -> None:
     image = axes.imshow(number_map.values, cmap=scale.colors, vmin=0, vmax=scale.greatest, aspect="auto")
+    colors = mpl.colormaps[scale.colors](np.asarray(image.norm(number_map.values)))
     for (r, c), value in np.ndenumerate(number_map.values):
         if not number_map.texts[r][c]:
             continue
-        red, green, blue, _ = mpl.colormaps[scale.colors](image.norm(value))
+        red, green, blue, _ = colors[r, c]
         luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue
         is_dark = np.isfinite(value) and luminance < MIDDLE
         axes.text(c, r, number_map.texts[r][c], ha="center", va="center", color="white" if is_dark else "black")

@@ -63,7 +63,7 @@ def _line(curve: ResponseCurve, values: Array) -> ChartLine:
 
 def ratio_figure(frequency: Array, values_by_name: Mapping[str, Array]) -> Figure:
     """Draw damping ratios over frequency, the first line solid and the others dashed."""
-    lines = []
+    lines: list[ChartLine] = []
     for (name, values), color in zip(values_by_name.items(), itertools.cycle(COLORS), strict=False):
         lines.append(ChartLine(name, frequency, 100 * values, color, DASHED if lines else (), 1.0))
     limits = (frequency[0], frequency[-1])

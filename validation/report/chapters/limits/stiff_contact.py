@@ -71,7 +71,7 @@ def _steps(case: CaseResults | None, quantity: str) -> float | None:
 def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
     """Return steps to settle over p/E; a hollow dot at the longest run has not settled within it."""
     ratios = np.array(list(table))
-    lines = []
+    lines: list[ChartLine] = []
     for (alpha, scheme), quantity in itertools.product(SCHEMES.items(), QUANTITIES):
         color = COLORS[len(lines) // 3]
         settling = np.array([_steps(row.get(alpha), quantity) for row in table.values()], dtype=float)
