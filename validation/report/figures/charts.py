@@ -176,9 +176,7 @@ def draw_chart_line(axes: Axes, line: ChartLine) -> None:
     look = line.look()
     if line.shaded is not None:
         axes.fill_between(line.x, *line.shaded, color=line.shade, alpha=0.2, lw=0)
-    x, y = line.x, line.y
-    if not line.dots:
-        x, y = thin(x, y)
+    x, y = (line.x, line.y) if line.dots else thin(line.x, line.y)
     marker: dict[str, Any] = {}
     if line.dots:
         face = "white" if line.hollow else line.shade
