@@ -16,7 +16,7 @@ from oracles.made_cases import line_in, lines_of, made_case, made_group, names_a
 from validation.report.chapters import waves
 from validation.report.chapters.opened import rebound, turning
 from validation.report.figures import response
-from validation.report.figures.charts import BESIDE, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import BESIDE, ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.maps import NumberMap, map_figure
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -165,6 +165,13 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
     assert [(line.get_linestyle(), line.get_marker()) for line in axes.lines] == [("-", "None"), ("None", "o")]
     assert np.allclose(line_in(axes, "#d55e00")[1], 2 * x) and np.allclose(line_in(axes, "#000000")[1], 3 * x)
     assert axes.get_xlim() == (0.0, 3.0)
+
+
+@pytest.mark.parametrize("names", ["ends", "beside", "upper left"])
+@pytest.mark.parametrize("logarithmic", [(False, False), (True, True)])
+def test_a_panel_without_lines_is_empty_axes(names: Names, logarithmic: tuple[bool, bool]) -> None:
+    (axes,) = chart_figure([ChartPanel("Slide", "t [s]", "", (), logarithmic=logarithmic, names=names)]).axes
+    assert (len(axes.lines), axes.get_legend(), axes.get_xlabel()) == (0, None, "t [s]")
 
 
 def test_a_block_that_turns_is_named_at_its_last_value_beside_level_and_instant(

@@ -239,7 +239,7 @@ def _write_names(axes: Axes, panel: ChartPanel) -> None:
         name_at_ends(axes, panel.lines)
     elif panel.names == "beside":
         _name_beside(axes, panel)
-    elif panel.names != "none":
+    elif panel.names != "none" and any(line.name for line in panel.lines):
         axes.legend(loc=panel.names, frameon=False, fontsize=6, handlelength=1.6)
 
 
