@@ -15,6 +15,7 @@ from validation.advice import budget
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
 from validation.report.appendix import alarms as appendix_alarms
 from validation.report.chapters import damping as chapters_damping
+from validation.report.chapters.text import case_label
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 from validation.theory import spectra
@@ -261,7 +262,10 @@ def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
     assert "The discount is held as a rate." in chapters_damping._caption([told(gg=0.9, gg_rate=30.0)])
     per_step = chapters_damping._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
     assert "gg acts per step" in per_step and "Grey: overdamped." in per_step
-    assert chapters_damping._label("dt = 0.01 s, p = 10E, n = 8") == "p = 10E"
+    values = {"time.step": 0.01, "contact.stiffness": 1e10, "fem.elements": 8}
+    scene = load_scene("figures-3-4").with_values(values, label=True)
+    assert case_label(scene.name, scene) == "dt = 0.01 s, p = 10E, n = 8"
+    assert case_label(scene.name, scene, chapters_damping.OVER) == "p = 10E"
 
 
 def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:

@@ -7,10 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from validation.gallery.cases import GalleryCase, GalleryScene
+from validation.gallery.cases import GalleryScene
 from validation.gallery.histories import LEAST, MOST, STEPS, Sampling, lines_of, packed, samples_for, unpacked
 from validation.gallery.scene_data import FEWEST, MOST_LINES, all_lines, drawn, most_lines
 from validation.gallery.svg import Sheet, slim
+from validation.report.chapters.data import CaseResults
 from validation.runs.history import History
 from validation.runs.run import Outcome
 
@@ -93,7 +94,7 @@ def scene_of(name: str, cases: int, solvers: int) -> GalleryScene:
     """Return a scene of so many cases, each finished by so many solvers, of two columns."""
     row = SimpleNamespace(outcome=Outcome.COMPLETED)
     scene = SimpleNamespace(run=SimpleNamespace(columns=("displacement", "contact_pressure")))
-    listed = [GalleryCase(str(i), str(i), scene, dict.fromkeys(range(solvers), row)) for i in range(cases)]  # type: ignore[arg-type]
+    listed = [CaseResults(str(i), str(i), scene, dict.fromkeys(range(solvers), row)) for i in range(cases)]  # type: ignore[arg-type]
     return GalleryScene(name, name, f"{name}.html", tuple(listed), (), ())
 
 

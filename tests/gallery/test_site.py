@@ -16,7 +16,7 @@ from validation.engine import run_study
 from validation.errors import InputError
 from validation.gallery import site
 from validation.gallery.cases import readable
-from validation.gallery.chapters import Chapter
+from validation.gallery.chapters import DrawnChapter
 from validation.gallery.pages import Pages
 from validation.report.blocks import Block, PageBreak
 from validation.results import Results
@@ -134,7 +134,7 @@ def test_the_same_results_give_the_same_bytes(gallery: dict[str, str], results: 
 def test_an_earlier_gallery_is_replaced_as_a_whole(
     results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(site, "chapter_for", lambda *_: Chapter((), {}))
+    monkeypatch.setattr(site, "chapter_for", lambda *_: DrawnChapter((), {}))
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / site.NOTICE).write_text("an earlier gallery")
     (tmp_path / "out" / "scene-old.html").write_text("gone")
@@ -172,7 +172,7 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
 
 
 def test_progress_is_told_page_by_page(results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(site, "chapter_for", lambda *_: Chapter((), {}))
+    monkeypatch.setattr(site, "chapter_for", lambda *_: DrawnChapter((), {}))
     told: list[tuple[int, int]] = []
     site.build(results, tmp_path / "out", lambda done, total, label: told.append((done, total)))
     assert told == [(0, 4), (1, 4), (2, 4), (3, 4)]

@@ -16,12 +16,14 @@ from validation.errors import InputError
 from validation.gallery import cases as cases_of_gallery
 from validation.gallery import chapters, judged, pages, scene_data, verdicts, work
 from validation.gallery.calculators import BLOCK, CALCULATORS, Control
-from validation.gallery.cases import GalleryCase, GalleryScene, GalleryStudy, studies_and_scenes
+from validation.gallery.cases import GalleryScene, GalleryStudy, studies_and_scenes
 from validation.gallery.histories import Sampling
 from validation.gallery.pages import Pages, environment
 from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
-from validation.report.blocks import Column, Table
+from validation.report.blocks import Table, TableColumn
+from validation.report.chapters.data import CaseResults
+from validation.report.names import escaped
 from validation.runs import files
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -99,12 +101,12 @@ def test_a_case_tells_its_limit_how_its_runs_ended_and_its_numbers(tmp_path: Any
     own = made_row("dda", metrics, CASE.name, work={"steps": 4})
     late = made_row("fem", {}, CASE.name, outcome=Outcome.TIMEOUT, notes=("after 5 s",))
     results.append(own, made_history(0.002, [-0.01] * 4, [5e6] * 4))
-    case = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "fem": late})
+    case = CaseResults(CASE.name, "dt = 2 ms", CASE, {"dda": own, "fem": late})
     found = scene_data._case(results, case, 100)
     assert found["dots"] == {}  # dda is stepped
     turning = made_row("continuum", {}, CASE.name)
     results.append(turning, made_history(0.002, [0.0, -0.02, 0.001, -0.019], [5e6] * 4))
-    exact = GalleryCase(CASE.name, "dt = 2 ms", CASE, {"dda": own, "continuum": turning})
+    exact = CaseResults(CASE.name, "dt = 2 ms", CASE, {"dda": own, "continuum": turning})
     assert scene_data._case(results, exact, 100)["dots"] == {"displacement": ["continuum"]}
     assert (found["label"], found["limit"]) == ("dt = 2 ms", pytest.approx(0.06))
     assert found["told"] == [f"fem: timeout. {Outcome.TIMEOUT.sentence} after 5 s"]
@@ -121,12 +123,12 @@ def scene_named(name: str) -> GalleryScene:
     return GalleryScene(name, name, f"{name}.html", (), (), ())
 
 
-def test_a_figure_is_that_of_the_scene_with_the_longest_name_that_fits() -> None:
-    scenes = [scene_named(name) for name in ("rocking", "rocking-pulse", "slope")]
-    for file, name in (("rocking-pulse-history.svg", "rocking-pulse"), ("rocking-history.svg", "rocking")):
-        found = chapters.scene_of_figure(file, scenes)
+def test_a_figure_leads_to_the_scene_that_it_shows() -> None:
+    scenes = [scene_named(name) for name in ("rocking", "rocking-pulse", "$lope")]
+    for shown, name in (("rocking-pulse", "rocking-pulse"), ("rocking", "rocking"), (escaped("$lope"), "$lope")):
+        found = chapters.scene_of_figure(chapters.Drawing("history.svg", "", "", shown), scenes)
         assert found is not None and found.name == name
-    assert chapters.scene_of_figure("first.svg", scenes) is None
+    assert chapters.scene_of_figure(chapters.Drawing("rocking-first.svg", "", "", ""), scenes) is None
 
 
 def test_a_chapter_that_cannot_be_drawn_says_why(tmp_path: Any) -> None:
@@ -149,7 +151,7 @@ def test_the_foot_names_the_newest_study_s_commit_and_version() -> None:
 def page_of(*words: tuple[str, int]) -> Pages:
     """Return the pages of two studies with two scenes; the first study's verdicts are those given, so many of each."""
     verdicts_of = [verdict(word, "s:a:m", f"because {word}", 2.0) for word, n in words for _ in range(n)]
-    cases = tuple(GalleryCase(f"c{i}", f"c{i}", CASE, {}) for i in range(3))
+    cases = tuple(CaseResults(f"c{i}", f"c{i}", CASE, {}) for i in range(3))
     scenes = [GalleryScene(name, f"The scene {name}", f"{name}.html", cases, (of,), ())
               for name, of in (("one", "a"), ("two", "b"))]  # fmt: skip
     studies = [GalleryStudy(name, f"study-{name}.html", {"study": name, "title": f"Of {name}"}, (), own)
@@ -173,7 +175,7 @@ def test_the_page_of_a_scene_names_its_own_studies_and_the_cases_drawn(monkeypat
 
 
 def test_a_table_of_a_chapter_keeps_its_notes() -> None:
-    table = Table((Column("a"),), (("1",),), "The caption", ("what it means",))
+    table = Table((TableColumn("a"),), (("1",),), "The caption", ("what it means",))
     made = environment().from_string('{% import "parts.html.j2" as parts %}{{ parts.block(b) }}')
     text = made.render(b=chapters.placed(table, Path(), Sheet()))
     assert "<caption>The caption</caption>" in text and '<p class="small">what it means</p>' in text
@@ -183,7 +185,7 @@ def test_metrics_have_their_unit_before_their_meaning(tmp_path: Path) -> None:
     row = made_row("dda", {"displacement.peak": -0.02}, CASE.name)
     results = Results(tmp_path)
     results.append(row, made_history(0.002, [-0.01] * 4))
-    scene = replace(scene_named("s"), cases=(GalleryCase(CASE.name, "", CASE, {"dda": row}),))
+    scene = replace(scene_named("s"), cases=(CaseResults(CASE.name, "", CASE, {"dda": row}),))
     (metric,) = scene_data.data(results, scene, 100, 100)["metrics"]
     assert metric[:2] == ["displacement.peak", "m"] and "largest value" in metric[2].lower()
 
@@ -191,7 +193,7 @@ def test_metrics_have_their_unit_before_their_meaning(tmp_path: Path) -> None:
 @pytest.mark.parametrize("outcome", [Outcome.UNSTABLE, Outcome.NOT_APPLICABLE, Outcome.RAISED])
 def test_each_run_that_did_not_complete_is_told(outcome: Outcome, tmp_path: Path) -> None:
     row = made_row("fem", {}, CASE.name, outcome=outcome, notes=("so it was",))
-    told = scene_data._case(Results(tmp_path), GalleryCase("c", "", CASE, {"fem": row}), 100)["told"]
+    told = scene_data._case(Results(tmp_path), CaseResults("c", "", CASE, {"fem": row}), 100)["told"]
     assert told == [f"fem: {outcome}. {outcome.sentence} so it was"]
 
 

@@ -84,7 +84,7 @@ def short_pack(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def write_readme(place: Path) -> studies_pack.Written:
-    (place / "README.md").write_text(studies_pack.README)
+    (place / "README.md").write_text(studies_pack.readme_of(studies_pack.__file__))
     return studies_pack.Written(1, 1, 1)
 
 

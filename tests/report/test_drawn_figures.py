@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from oracles.made_cases import line_in, lines_of, made_history, names_at, places_of, rules_of
+from matplotlib.figure import Figure
+from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, places_of, rules_of
 
-from validation.report.figures import cost, curves, ledger, motion, paper, stability, work
-from validation.report.figures.histories import Line, line_figure
+from validation.report.chapters import paper
+from validation.report.chapters.limits import stability
+from validation.report.chapters.paper import PaperFigure, figure_block
+from validation.report.figures import budget as budgets
+from validation.report.figures import cost, curves, ledger, motion
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.maps import map_figure
 from validation.runs.results import Row
 from validation.scenes.scene import load_scene
 from validation.studies.work.points import Point
@@ -34,7 +41,7 @@ def towards_ends(names: Any = ENDS, count: int = 50) -> dict[str, Any]:
 def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> None:
     histories = towards_ends()
     figure = motion.history_figure(
-        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
     )
     top, below = figure.axes
     found = names_at(top)
@@ -55,7 +62,7 @@ def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> Non
 def test_crowded_names_keep_the_order_of_the_lines() -> None:
     ends = {"bar": 1.000, "dda": 1.012, "fem": 0.988, "continuum": 1.006}
     lines = {name: made_history(0.1, np.linspace(0, last, 5)) for name, last in ends.items()}
-    figure = motion.history_figure([curves.Panel("", lines, {"displacement": 1.0}, "bar")], "displacement")
+    figure = motion.history_figure([curves.HistoryPanel("", lines, {"displacement": 1.0}, "bar")], "displacement")
     placed = places_of(figure.axes[0])
     assert sorted(placed, key=placed.__getitem__) == sorted(ends, key=ends.__getitem__)
     assert min(np.diff(sorted(placed.values()))) > 0.1  # of 24 mm: letters are 2.5 mm high
@@ -64,26 +71,25 @@ def test_crowded_names_keep_the_order_of_the_lines() -> None:
 def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
     histories = {"bar": made_history(0.1, np.full(40, -0.02)), "dda": made_history(0.1, np.full(40, -0.021))}
     figure = motion.history_figure(
-        [curves.Panel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
+        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
     )
     _, y = line_in(figure.axes[1], color("dda"))
     assert np.allclose(y, 0.1)
     assert len(lines_of(figure.axes[1])) == 1 and figure.axes[1].get_ylabel() == "|Δ| / static"
-    panel = curves.Panel("", histories, {}, "bar")
+    panel = curves.HistoryPanel("", histories, {}, "bar")
     assert motion.history_figure([panel], "displacement", apart=True).axes[1].get_ylabel() == "|Δ| / largest"
     assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
 
 
-def test_names_of_a_line_figure_stand_at_last_values_and_levels() -> None:
+def test_names_of_a_chart_stand_at_last_values_with_their_notes() -> None:
     n = np.array([4.0, 8.0, 16.0])
-    lines = [Line("fem", n, np.array([3.0, 2.0, 1.0]), ": falls"), Line("bar", n, 1 + n / 8)]
-    (axes,) = line_figure(lines, "n", "v", {"dda": 2.0}).axes
+    lines = [ChartLine("fem", n, np.array([3.0, 2.0, 1.0]), note=": falls"), ChartLine("bar", n, 1 + n / 8)]
+    (axes,) = chart_figure([ChartPanel("", "n", "v", lines, levels={"": 2.0})]).axes
     assert names_at(axes) == {
         "fem: falls": (pytest.approx(1.0), color("fem")),
         "bar": (pytest.approx(3.0), color("bar")),
-        "dda": (pytest.approx(2.0), color("dda")),
     }
-    assert rules_of(axes, color("dda")) == ([2.0], [])
+    assert rules_of(axes, to_hex(curves.GREY)) == ([2.0], [])
 
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
@@ -104,17 +110,22 @@ def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_co
 # ---- the paper's figures ------------------------------------------------------------------------------------------
 
 
-def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last() -> None:
-    steps = np.arange(1, 101)
-    lines = {"dda": steps / 50.0, "bar": 2.0 - steps / 25.0}  # at step 50: 1 and 0; at 100: 2 and -2
-    (axes,) = paper.steps_figure([paper.StepPanel("", lines, 0.5, 30.0)], "v", 50).axes
+def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last(
+    drawn: dict[str, Figure], tmp_path: Path
+) -> None:
+    steps = np.arange(1, 101)  # at step 50: 1 and 0 mm; at 100: 2 and -2 mm
+    histories = {"dda": made_history(1e-3, steps / 5e4), "bar": made_history(1e-3, 2e-3 - steps / 2.5e4)}
+    rows = {"dda": {"displacement.static": 5e-4, "displacement.settling_step": 30.0}}
+    group = made_group(made_case(load_scene("figures-3-4").expand()[0], rows, histories))
+    figure_block(PaperFigure(3, "s", "displacement", 50, "Caption"), group, tmp_path)
+    (axes,) = drawn["figure-3.svg"].axes
     assert names_at(axes) == {"dda": (pytest.approx(1.0), color("dda")), "bar": (pytest.approx(0.0), color("bar"))}
     ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
     assert all(float(label.get_text()) == tick for tick, label in ticks)
-    for name, values in lines.items():
-        drawn = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
-        assert np.array_equal(drawn[0][0], steps[:50]) and np.array_equal(drawn[0][1], values[:50])
-    assert rules_of(axes, GREY) == ([0.5], []) and rules_of(axes, color("dda")) == ([], [30.0])
+    for name, history in histories.items():
+        (line,) = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
+        assert np.array_equal(line[0], steps[:50]) and np.allclose(line[1], 1e3 * history.displacement[:50])
+    assert rules_of(axes, to_hex(curves.GREY)) == ([pytest.approx(0.5)], [30.0])
     low, high = axes.get_ylim()  # of what is drawn: later steps do not count
     assert -0.2 < low < 0 and 1.96 < high < 2.2
     assert "30 steps" in [text.get_text() for text in axes.texts]
@@ -125,7 +136,7 @@ def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
     true, printed = np.linspace(1.0, 0.9, 30), np.where(omega > 4, 0.2, np.linspace(1.0, 0.9, 30))
     data = {"omega": omega, "schemes": {name: {"radius": true - k / 10, "printed": printed - k / 10}
             for k, name in enumerate(("constant (1/2, 1)", "b", "c", "d"))}}  # fmt: skip
-    (axes,) = paper.radius_figure(data, [(2.0, 0.5), (20.0, 0.7)]).axes
+    (axes,) = chart_figure([paper.radius_panel(data, [(2.0, 0.5), (20.0, 0.7)])]).axes
     ends = names_at(axes)
     assert [ends[name][1] for name in "bcd"] == list(paper.SCHEME_COLORS[1:])
     assert ends["constant (1/2, 1)"][0] == pytest.approx(0.9, abs=0.05)
@@ -161,9 +172,9 @@ def budget_of(**parts: float) -> dict[str, Any]:
 
 def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() -> None:
     budget = budget_of(total=0.05, algorithmic=0.012, kinetic=0.0015)
-    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
+    (axes,) = budgets.budget_figure([budgets.BudgetPanel("", budget)]).axes
     wanted = {"first axial": 5.0, "contact": 20.0, "algorithmic part": 1.2, "kinetic part": 0.15}
-    orange, violet = color("dda"), to_hex(paper.CONTACT_COLOR)
+    orange, violet = color("dda"), to_hex(budgets.CONTACT_COLOR)
     colors = dict.fromkeys(wanted, orange) | {"contact": violet}
     assert names_at(axes) == {name: (pytest.approx(value, rel=1e-6), colors[name]) for name, value in wanted.items()}
     drawn = {(own, round(float(y[0]), 9)) for own, x, y in lines_of(axes) if x.size == 20}
@@ -173,13 +184,13 @@ def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() ->
 def test_the_damping_budget_names_a_part_where_it_ends() -> None:
     budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
     budget["modes"]["contact"]["total"] = [*np.linspace(0.9, 0.3, 15), *[None] * 5]
-    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
+    (axes,) = budgets.budget_figure([budgets.BudgetPanel("", budget)]).axes
     assert names_at(axes)["contact"][0] == pytest.approx(30)
 
 
 def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
     budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    (axes,) = paper.budget_figure([paper.BudgetPanel("", budget)]).axes
+    (axes,) = budgets.budget_figure([budgets.BudgetPanel("", budget)]).axes
     assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
     triangles = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "^"]
     assert triangles == [1e-3, 2e-3]
@@ -194,10 +205,10 @@ def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
 
 def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_note() -> None:
     lines = [
-        Line("squares", np.array([1.0, 10.0]), np.array([0.5, 0.1]), "1 2"),
-        Line("triangles", np.array([20.0, 2.0]), np.array([0.01, 0.4]), "8 3"),
+        ChartLine("squares", np.array([1.0, 10.0]), np.array([0.5, 0.1]), dots=3.0, notes=("1", "2")),
+        ChartLine("triangles", np.array([20.0, 2.0]), np.array([0.01, 0.4]), dots=3.0, notes=("8", "3")),
     ]
-    (axes,) = work.work_figure(lines, "s", "error").axes
+    (axes,) = chart_figure([ChartPanel("", "s", "error", lines, logarithmic=(True, True))]).axes
     found = names_at(axes)
     assert found["squares"] == (pytest.approx(0.1), color("squares"))
     assert found["triangles"] == (pytest.approx(0.01), color("triangles"))
@@ -236,17 +247,19 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
     labels = [axes.get_xlabel() for axes in figure.axes]
     assert titles == ["bar", "continuum"] * 2 and labels == ["Seconds"] * 2 + ["Unknowns × steps"] * 2
     assert "everything" in figure.axes[1].get_title(loc="left")
-    shown = [{(line.get_xdata()[0], line.get_ydata()[0]): to_hex(line.get_markerfacecolor())
-              for line in axes.lines if line.get_marker() == "o"} for axes in figure.axes]  # fmt: skip
+    shown = []
+    for axes in figure.axes:
+        dots = [line for line in axes.lines if line.get_marker() == "o"]
+        shown.append({(x, y): to_hex(line.get_markerfacecolor()) for line in dots for x, y in line.get_xydata()})
     orange, black = color("dda"), color("bar")
     assert shown[0] == {(0.2, 0.03): orange, (0.1, 0.04): orange, (0.05, 1e-11): "#ffffff"}  # hollow: below rounding
     assert shown[1] == {(0.2, 0.3): orange, (0.1, 0.5): orange, (0.05, 0.2): black}
     assert shown[3] == {(600.0, 0.3): orange, (60.0, 0.5): orange, (600.0, 0.2): black}
-    dotted = [[line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == ":"] for axes in figure.axes[:2]]
-    assert dotted == [[0.03], [0.3]]  # DDA at its finest step
+    levels = [rules_of(axes, to_hex(curves.GREY))[0] for axes in figure.axes[:2]]
+    assert levels == [[0.03], [0.3]]  # DDA at its finest step
     assert {text.get_text(): to_hex(text.get_color()) for text in figure.texts} == {"dda": orange, "bar": black}
     grey = [line for line in figure.axes[0].lines if to_hex(line.get_color()) == GREY]
-    assert [(list(line.get_xdata()), line.get_drawstyle()) for line in grey] == [([0.05], "steps-post")]
+    assert [list(line.get_xdata()) for line in grey] == [[0.05]]
 
 
 # ---- stiff contacts and extremes ----------------------------------------------------------------------------------
@@ -254,22 +267,8 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
 
 def test_a_map_shows_whole_correct_digits_and_leaves_blank_what_no_run_answers() -> None:
     error = np.array([[1e-16, 0.9e-5], [np.nan, 2.0]])
-    figure = stability.digit_maps([stability.DigitMap("v", error)], ["a", "b"], ["c", "d"], "x", "y")
+    figure = map_figure([[stability.digit_map("v", error)]], ["a", "b"], ["c", "d"], ("x", "y"), stability.SHADES)
     (axes,) = figure.axes
     assert {text.get_position(): text.get_text() for text in axes.texts} == {(0, 0): "16", (1, 0): "5", (1, 1): "0"}
     assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
     assert [label.get_text() for label in axes.get_xticklabels()] == ["c", "d"]
-
-
-def test_a_hollow_mark_at_the_top_has_not_settled() -> None:
-    ratios = np.array([1.0, 10.0, 100.0])
-    lines = [
-        stability.Settling("one", ratios, np.array([20.0, np.nan, 40.0])),
-        stability.Settling("two", ratios, np.array([300.0, 200.0, 100.0])),
-    ]
-    (axes,) = stability.settling_figure(lines, 1000.0).axes
-    first, second, *_ = stability.COLORS
-    assert names_at(axes) == {"one": (pytest.approx(40.0), first), "two": (pytest.approx(100.0), second)}
-    hollow = [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines
-              if to_hex(line.get_markerfacecolor()) == "#ffffff" and len(line.get_xdata())]  # fmt: skip
-    assert hollow == [([10.0], [1000.0])]

@@ -29,7 +29,7 @@ def histories(solvers=SOLVERS, steps=300, static=-0.01, blown=None):
 
 
 def panel(title="dt = 0.001 s", reference="bar", **kwargs):
-    return curves.Panel(title, histories(**kwargs), {"displacement": -0.01}, reference)
+    return curves.HistoryPanel(title, histories(**kwargs), {"displacement": -0.01}, reference)
 
 
 def texts(axes, renderer):
@@ -90,7 +90,7 @@ def test_differences_are_scaled_by_the_static_value():
     first = History(time, {"displacement": np.array([0.0, -0.5, -1.0, -2.0])})
     second = History(time, {"displacement": np.array([0.0, -0.5, -1.5, -2.5])})
     found = curves.differences(
-        curves.Panel("", {"dda": first, "bar": second}, {"displacement": -2.0}, "bar"), "displacement"
+        curves.HistoryPanel("", {"dda": first, "bar": second}, {"displacement": -2.0}, "bar"), "displacement"
     )
     assert list(found) == ["dda"]
     assert found["dda"][1].tolist() == [0.0, 0.0, 0.25, 0.25]
@@ -164,9 +164,3 @@ def test_ledger_figure_shows_each_number_once():
     figure = ledger.ledger_figure(lines)
     assert [len(axes.lines) for axes in figure.axes] == [3, 2]
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]
-
-
-def test_line_figure_names_lines_and_levels():
-    n = np.array([4.0, 8.0, 16.0])
-    figure = figures.line_figure([figures.Line("fem", n, -n, ": steep")], "n", "v [mm]", {"dda": -1.0}, log2_x=True)
-    assert {t.get_text() for t in figure.axes[0].texts} == {"fem: steep", "dda"}

@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.text import Annotation
 from oracles.made_cases import between, lines_of, made_case, made_group, made_row, names_at, rules_of
 
 from dda.scheme import spectral
 from validation.engine.measure import completed
 from validation.report.blocks import Callout
+from validation.report.figures import charts
 from validation.report.figures.curves import style_of
-from validation.report.figures.front import charts
-from validation.report.figures.front.model import model_figure
+from validation.report.figures.model import model_figure
 from validation.report.front import closed, decisions, first
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
@@ -205,11 +206,11 @@ def test_one_line_of_verdicts(words: list[str], said: str, tone: str) -> None:
 
 def test_the_figure_of_the_first_page_holds_closed_form_and_runs() -> None:
     damping, error = first.damping_and_error(FOUND, PAPER)
-    line, dots = damping.strokes
+    line, dots = damping.lines
     assert np.interp(2.0, line.x, line.y) == pytest.approx(16.02, abs=0.02)
     assert sorted(zip(dots.x, dots.y, strict=True)) == [(1.0, pytest.approx(8.45)), (10.0, pytest.approx(37.2))]
     assert damping.marks == {"1": 1.0, "10": 10.0}
-    model, time = error.strokes
+    model, time = error.lines
     assert (list(model.x), list(model.y)) == (pytest.approx([0.1, 2, 10]), pytest.approx([64, 3.6, 0.8]))
     assert list(time.y) == pytest.approx([70, 50, 60])
     assert "64\u00a0% at 0.1\u00a0ms, 0.8\u00a0% at 10\u00a0ms" in first.damping_and_error_caption(FOUND, PAPER)
@@ -357,23 +358,25 @@ def test_the_peak_of_a_landing_grows_as_the_root_of_the_springs_where_these_are_
 
 def test_a_chart_names_curves_at_their_ends_and_marks_limits() -> None:
     x = np.array([1.0, 10.0, 100.0])
-    chart = charts.Chart(
-        "A title [%]", ("dt [ms]", ""),
-        (charts.Stroke("up", x, x, "#0072b2"), charts.Stroke("gone", x, np.array([2.0, 1.0, np.nan]), "#009e73"),
-         charts.Stroke("as run", x, 2 * x, "#cc79a7", dots=True, line=False, has_label=False)),
-        (1.0, 100.0), (0.5, 200.0), {"limit": 20.0}, {"5 %": 5.0},
-    )  # fmt: skip
-    (axes,) = charts.charts_figure([chart]).axes
+    lines = (
+        charts.ChartLine("up", x, x, "#0072b2"),
+        charts.ChartLine("gone", x, np.array([2.0, 1.0, np.nan]), "#009e73"),
+        charts.ChartLine("", x, 2 * x, "#cc79a7", width=0, dots=3.2),
+    )
+    panel = charts.ChartPanel(
+        "A title [%]", "dt [ms]", "", lines, (1.0, 100.0), (0.5, 200.0), (True, True), {"limit": 20.0}, {"5 %": 5.0}
+    )
+    (axes,) = charts.chart_figure([panel]).axes
     assert names_at(axes) == {"up": (pytest.approx(100), "#0072b2"), "gone": (pytest.approx(1.0), "#009e73")}
     assert [list(y) for own, _, y in lines_of(axes) if own == "#cc79a7"] == [[2, 20, 200]]  # dots, no line
     assert rules_of(axes, to_hex("#6b6b6b")) == ([5.0], [20.0])
-    words = {text.get_text(): text.get_position() for text in axes.texts}
-    assert words["limit"][0] == 20.0 and words["5 %"][1] == 5.0
+    places = {text.get_text(): text.xy if isinstance(text, Annotation) else text.get_position() for text in axes.texts}
+    assert places["limit"][0] == 20.0 and places["5 %"][1] == 5.0
     assert (axes.get_title(loc="left"), axes.get_xlabel()) == ("A title [%]", "dt [ms]")
 
 
 def test_ticks_are_numbers_or_powers_of_ten() -> None:
-    assert [charts._power(value) for value in (0.1, 1.0, 1000.0, 1e5, 1e-4)] == [
+    assert [charts._tick_text(value) for value in (0.1, 1.0, 1000.0, 1e5, 1e-4)] == [
         "0.1",
         "1",
         "1000",

@@ -23,7 +23,7 @@ EXACT = made_history(0.1, [-1e-3, -2e-3, -3e-3], [1e6, 2e6, 3e6])
 ANSWER = made_history(0.1, [-1e-3, -1e-3, -2e-3, 9.0], [1e6, 1e6, 1e6, 9.0])  # one row longer
 
 
-def judged() -> chapter.Judged:
+def judged() -> chapter.JudgedAnswer:
     columns = (
         Column("displacement", Word.FAIL, 0.125, 0.05, 0.3, "", 0.1),
         Column("contact_pressure", Word.PASS, 0.0125, 0.025, 0.2, "", 0.2),
@@ -33,7 +33,7 @@ def judged() -> chapter.Judged:
     bands: Any = {name: Band(0.05, datum, 3, 0.3) for name, datum in
                   (("displacement", "block.young"), ("contact_pressure", "load.pressure"))}  # fmt: skip
     held = Standard(EXACT, {}, bands)
-    return chapter.Judged(problem("locked"), ANSWER, held, found, None, (("program", "mine"),))
+    return chapter.JudgedAnswer(problem("locked"), ANSWER, held, found, None, (("program", "mine"),))
 
 
 def test_each_column_has_its_error_and_what_is_allowed_in_per_cent(drawn: dict[str, Figure], tmp_path: Path) -> None:

@@ -18,14 +18,14 @@ from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
-from validation.report.blocks import Lines
+from validation.report.blocks import GateLines
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
-from validation.report.chapters.scene import conclusion, gate_count, history_block
+from validation.report.chapters.scene import conclusion, drift_panel, gate_count, history_block
 from validation.report.figures import motion
-from validation.report.figures.curves import Panel, style_of
+from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
@@ -39,7 +39,7 @@ def verdict(scene: str, value: float, band: tuple[float, float] = (0.0, 1.0), **
 
 
 def lines_of(verdicts: list[Any], found: Any = None) -> Any:
-    (block,) = [part for part in gate_pages(verdicts, found or {}) if isinstance(part, Lines)]
+    (block,) = [part for part in gate_pages(verdicts, found or {}) if isinstance(part, GateLines)]
     return block.sections
 
 
@@ -95,8 +95,9 @@ def test_the_glossary_has_twelve_words() -> None:
 # ---- histories ----------------------------------------------------------------------------------------------------
 
 
-def panel(**values: Any) -> Panel:
-    return Panel("", {name: made_history(0.1, np.array(v)) for name, v in values.items()}, {"displacement": 1.0}, "bar")
+def panel(**values: Any) -> HistoryPanel:
+    histories = {name: made_history(0.1, np.array(v)) for name, v in values.items()}
+    return HistoryPanel("", histories, {"displacement": 1.0}, "bar")
 
 
 def test_lines_on_one_another_are_one_line_with_all_names() -> None:
@@ -212,9 +213,9 @@ def test_mesh_point_springs_and_lateral_strain_have_their_numbers() -> None:
     n, error = core.mesh_errors({"mesh-convergence": group})  # type: ignore[misc]
     assert list(n) == [4, 8, 16] and error == pytest.approx([16 / 4**4, 16 / 8**4, 16 / 16**4])
     assert core.mesh_errors({}) is None
-    chart, said = core.drift_chart(made_group(made_case(PAPER, {"dda": {"displacement.static": -0.01}})),
-                                   [(4, -0.02), (8, -0.025), (16, -0.03)])  # fmt: skip
-    fem, dda = chart.strokes
+    group = made_group(made_case(PAPER, {"dda": {"displacement.static": -0.01}}))
+    panel, said = drift_panel(group, [(4, -0.02), (8, -0.025), (16, -0.03)])
+    fem, dda = panel.lines
     assert list(fem.y) == pytest.approx([-20, -25, -30]) and set(dda.y) == {-10.0}
     assert "changes by −5.00 mm with every halving" in said
     lateral = PAPER.with_values({"block.poisson": 0.3})

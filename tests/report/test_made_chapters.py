@@ -92,7 +92,9 @@ def test_a_base_tells_what_comes_back_in_per_cent_by_blocks() -> None:
 
 
 def test_ten_blocks_a_wavelength_are_told_with_speed_and_amplitude() -> None:
-    travel = waves.Travel("(1/2, 1)", 0.5, np.array([8.0, 10.0]), np.array([0.05, 0.0167]), np.array([0.001, 0.009]))
+    travel = waves.TravelledWaves(
+        "(1/2, 1)", 0.5, np.array([8.0, 10.0]), np.array([0.05, 0.0167]), np.array([0.001, 0.009])
+    )
     said = waves.lead([travel])
     assert "the wave is 1.67\u00a0% too fast" in said and "0.9\u00a0% of its amplitude is left" in said
 
@@ -125,7 +127,11 @@ def test_a_site_draws_the_exact_layers_once_and_dda_at_each_step(drawn: dict[str
     above, below = drawn["waves-site.svg"].axes
     for axes in (above, below):
         shown = [(color, float(y[0])) for color, _, y in lines_of(axes)]
-        assert shown == [("#999999", 1.0), (waves.COLORS[0.5], 1.0), (waves.COLORS[1.0], 2.0)]  # mm, kPa
+        assert shown == [
+            ("#999999", 1.0),
+            (waves.COLORS["(1/4, 1/2)"], 1.0),
+            (waves.COLORS["(1/2, 1)"], 2.0),
+        ]  # mm, kPa
     assert [text.get_text().partition("\n")[0] for text in above.texts] == [
         "exact layers", "dda, dt = 0.002 s,", "dda, dt = 0.004 s,"]  # fmt: skip
 
@@ -163,7 +169,7 @@ def test_tilts_are_over_the_first_tilt_and_over_the_tipping_angle() -> None:
     pushed = load_scene("rocking-pulse").expand()[0]
     leaning = history(rotation=turning.rectangle(pushed).alpha * np.array([0.1, 0.5, 0.9, 0.4]))
     panel = turning.pulse_panel(made_group(made_case(pushed, {}, {"dda": leaning})))
-    assert np.allclose(panel.lines[0].y, [0.1, 0.5, 0.9, 0.4]) and panel.instant == 0.36
+    assert np.allclose(panel.lines[0].y, [0.1, 0.5, 0.9, 0.4]) and panel.marks == {"": 0.36}
 
 
 def test_a_fall_turns_downwards_and_first_order_rotation_grows_in_per_cent() -> None:

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
-from oracles.made_cases import line_in, lines_of, names_at
+from matplotlib.figure import Figure
+from oracles.made_cases import line_in, lines_of, made_case, made_group, names_at, rules_of
 
-from validation.report.figures import contact, friction, response, turning, waves
+from validation.report.chapters import waves
+from validation.report.chapters.opened import rebound, turning
+from validation.report.figures import response
+from validation.report.figures.charts import BESIDE, ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import style_of
+from validation.report.figures.maps import NumberMap, map_figure
 from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.scenes.scene import load_scene
 
 F = np.array([1.0, 2.0, 4.0])  # Hz
 
@@ -62,9 +70,9 @@ def test_damping_ratios_over_frequency_are_in_per_cent() -> None:
 
 def test_speed_is_in_per_cent_beside_what_is_left_as_a_share() -> None:
     blocks = np.array([8.0, 20.0, 100.0])
-    lost = waves.Travel("(1/2, 1)", 0.5, blocks, np.array([0.03, 0.01, 0.001]), np.array([0.1, 0.4, 0.8]))
-    kept = waves.Travel("(1/4, 1/2)", 0.5, blocks, np.array([-0.02, -0.01, 0.0]), np.ones(3))
-    speed, left = waves.travel_figure([lost, kept], []).axes
+    lost = waves.TravelledWaves("(1/2, 1)", 0.5, blocks, np.array([0.03, 0.01, 0.001]), np.array([0.1, 0.4, 0.8]))
+    kept = waves.TravelledWaves("(1/4, 1/2)", 0.5, blocks, np.array([-0.02, -0.01, 0.0]), np.ones(3))
+    speed, left = chart_figure(waves.travel_panels([lost, kept], [])).axes
     for travel in (lost, kept):
         shade = waves.COLORS[travel.scheme]
         assert np.allclose(line_in(speed, shade)[1], 100 * travel.speed)
@@ -75,18 +83,19 @@ def test_speed_is_in_per_cent_beside_what_is_left_as_a_share() -> None:
 
 
 def test_measured_waves_are_dots_at_their_own_blocks() -> None:
-    line = waves.Travel("(1/2, 1)", 0.5, np.array([8.0, 100.0]), np.zeros(2), np.ones(2))
-    dot = waves.Travel("(1/4, 1/2)", 0.5, np.array([10.0]), np.array([0.02]), np.array([0.3]))
-    for axes, value in zip(waves.travel_figure([line], [dot]).axes, (2.0, 0.3), strict=True):
+    line = waves.TravelledWaves("(1/2, 1)", 0.5, np.array([8.0, 100.0]), np.zeros(2), np.ones(2))
+    dot = waves.TravelledWaves("(1/4, 1/2)", 0.5, np.array([10.0]), np.array([0.02]), np.array([0.3]))
+    for axes, value in zip(chart_figure(waves.travel_panels([line], [dot])).axes, (2.0, 0.3), strict=True):
         dots = [(x, y) for shade, x, y in lines_of(axes) if shade == waves.COLORS["(1/4, 1/2)"]]
         assert [(float(x[0]), float(y[0])) for x, y in dots] == [(10.0, pytest.approx(value))]
 
 
 def test_a_site_tells_the_largest_of_each_trace_in_the_unit_of_its_panel() -> None:
     time = np.array([0.0, 1.0, 2.0])
-    moved = waves.SiteTrace("surface", "#123456", 1.0, time, np.array([0.0, -4e-3, 3e-3]))
-    pushed = waves.SiteTrace("base", "#654321", 1.0, time, np.array([0.0, 2e5, -1e5]))
-    first, second = waves.site_figure([("Displacement", "m", [moved]), ("Stress", "Pa", [pushed])]).axes
+    moved = ChartLine("surface", time, np.array([0.0, -4e-3, 3e-3]), "#123456")
+    pushed = ChartLine("base", time, np.array([0.0, 2e5, -1e5]), "#654321")
+    panels = [waves.site_panel("Displacement", "m", [moved], ""), waves.site_panel("Stress", "Pa", [pushed], "t")]
+    first, second = chart_figure(panels, [(42.0, 9.0), (42.0, 0.0)]).axes
     assert (first.get_title(loc="left"), second.get_title(loc="left")) == ("Displacement [mm]", "Stress [kPa]")
     assert [text.get_text() for axes in (first, second) for text in axes.texts] == [
         "surface\n4 mm at most", "base\n200 kPa at most"
@@ -98,23 +107,35 @@ def test_a_site_tells_the_largest_of_each_trace_in_the_unit_of_its_panel() -> No
 # ---- impacts ------------------------------------------------------------------------------------------------------
 
 
-def test_a_restitution_has_its_mean_as_a_line_within_its_range_and_its_impacts_as_dots() -> None:
-    omega = np.array([0.1, 1.0, 10.0])
-    mean, low, high = np.array([0.9, 0.6, 0.5]), np.array([0.8, 0.4, 0.0]), np.array([1.0, 0.8, 1.2])
-    shown = contact.RestitutionCurve("(1/2, 1)", omega, mean, low, high, ((2.0, 0.3), (50.0, 0.7)))
-    (axes,) = contact.restitution_figure([shown], {2.0: "2"}).axes
-    assert np.allclose(line_in(axes, contact.COLORS[0])[1], mean)
+def test_a_restitution_has_its_mean_as_a_line_within_its_range_and_its_impacts_as_dots(
+    drawn: dict[str, Figure], tmp_path: Path
+) -> None:
+    mean, low, high = [0.9, 0.6, 0.5], [0.8, 0.4, 0.0], [1.0, 0.8, 1.2]
+    data = {"omega": [0.1, 1.0, 10.0], "schemes": {"constant": {"mean": mean, "low": low, "high": high}}}
+    scene = load_scene("rebound-constant").expand()[0]
+    width, height = np.ptp(np.array(scene.block.outline), axis=0)
+    natural = np.sqrt(2 * scene.contact.stiffness / (scene.block.density * width * height))
+    cases = [
+        made_case(scene.with_values({"time.step": omega / natural}), {"dda": {"contact.restitution": e}})
+        for omega, e in ((2.0, 0.3), (50.0, 0.7))
+    ]
+    impacts = [replace(made_group(*cases), name="rebound-constant")]
+    rebound.restitution_blocks(data, impacts, tmp_path)
+    (axes,) = drawn["rebound-restitution.svg"].axes
+    assert axes.get_title(loc="left") == "constant acceleration"
+    assert np.allclose(line_in(axes, rebound.COLORS[0])[1], mean)
     dots = [(float(x[0]), float(y[0])) for shade, x, y in lines_of(axes) if x.size == 1]
-    assert dots == [(2.0, 0.3)]  # the other lies beyond the axis
+    assert dots == [(pytest.approx(2.0), 0.3)]  # the other lies beyond the axis
     (edge,) = axes.collections[0].get_paths()
-    for x, least, most in zip(omega, low, high, strict=True):
+    for x, least, most in zip(data["omega"], low, high, strict=True):
         ys = edge.vertices[np.isclose(edge.vertices[:, 0], x), 1]
         assert (ys.min(), ys.max()) == (pytest.approx(least), pytest.approx(most))
 
 
 def test_a_map_of_numbers_says_in_each_cell_what_is_shaded_there() -> None:
     values, texts = np.array([[0.0, 0.2, 0.4], [0.6, 0.8, 1.0]]), (("a", "b", "c"), ("d", "e", "f"))
-    (axes,) = contact.number_maps([[contact.NumberMap("m", values, texts)]], ["p", "q"], ["x", "y", "z"]).axes
+    number_map = NumberMap("m", values, texts)
+    (axes,) = map_figure([[number_map]], ["p", "q"], ["x", "y", "z"], ("", ""), rebound.SHADES).axes
     said = {text.get_position(): text.get_text() for text in axes.texts}
     assert said == {(c, r): texts[r][c] for r in range(2) for c in range(3)}
     assert np.allclose(axes.images[0].get_array(), values)
@@ -135,9 +156,10 @@ def of_legend(axes: Axes) -> dict[str, str]:
 
 def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour() -> None:
     x = np.array([1.0, 2.0, 3.0])
-    run = friction.Trace("dda", x, 2 * x, "#d55e00")
-    other = friction.Trace("program", x, 3 * x, "#000000", dotted=True)
-    (axes,) = friction.panels_figure([friction.TracePanel("Slip", "t [s]", "slip [mm]", (run, other))]).axes
+    run = ChartLine("dda", x, 2 * x, "#d55e00")
+    other = ChartLine("program", x, 3 * x, "#000000", width=0, dots=3.2, hollow=True)
+    panel = ChartPanel("Slip", "t [s]", "slip [mm]", (run, other), names="upper left")
+    (axes,) = chart_figure([panel], margins=BESIDE).axes
     assert (axes.get_title(loc="left"), axes.get_xlabel(), axes.get_ylabel()) == ("Slip", "t [s]", "slip [mm]")
     assert of_legend(axes) == {"dda": "#d55e00", "program": "#000000"}
     assert [(line.get_linestyle(), line.get_marker()) for line in axes.lines] == [("-", "None"), ("None", "o")]
@@ -145,19 +167,23 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
     assert axes.get_xlim() == (0.0, 3.0)
 
 
-def test_a_block_that_turns_is_named_at_its_last_value_beside_level_and_instant() -> None:
+@pytest.mark.parametrize("names", ["ends", "beside", "upper left"])
+@pytest.mark.parametrize("logarithmic", [(False, False), (True, True)])
+def test_a_panel_without_lines_is_empty_axes(names: Names, logarithmic: tuple[bool, bool]) -> None:
+    (axes,) = chart_figure([ChartPanel("Slide", "t [s]", "", (), logarithmic=logarithmic, names=names)]).axes
+    assert (len(axes.lines), axes.get_legend(), axes.get_xlabel()) == (0, None, "t [s]")
+
+
+def test_a_block_that_turns_is_named_at_its_last_value_beside_level_and_instant(
+    drawn: dict[str, Figure], tmp_path: Path
+) -> None:
     x = np.array([0.0, 1.0, 2.0])
-    lines = (
-        turning.TurningLine("run", x, np.array([0.0, 0.5, 0.2])),
-        turning.TurningLine("rigid", x, 0.4 * x, dashed=True),
-    )
-    (axes,) = turning.turning_figure(
-        [turning.TurningPanel("Tilt", "t [s]", "tilt [rad]", lines, level=0.3, instant=0.36)]
-    ).axes
+    lines = [*turning.coloured([("run", x, np.array([0.0, 0.5, 0.2]))]), turning.rigid("rigid", x, 0.4 * x)]
+    panel = ChartPanel("Tilt", "t [s]", "tilt [rad]", lines, levels={"": 0.3}, marks={"": 0.36})
+    turning.drawn([panel], tmp_path, "tilt.svg", "")
+    (axes,) = drawn["tilt.svg"].axes
     assert names_at(axes) == {
         "run": (pytest.approx(0.2), turning.COLORS[0]), "rigid": (pytest.approx(0.8), "#000000")
     }  # fmt: skip
-    rules = [line for line in axes.lines if to_hex(line.get_color()) == "#999999"]
-    assert rules[0].get_ydata()[0] == 0.3 and rules[1].get_xdata()[0] == 0.36
-    assert [rule.get_transform() == axes.get_yaxis_transform(which="grid") for rule in rules] == [True, False]
+    assert rules_of(axes, "#6b6b6b") == ([0.3], [0.36])
     assert np.allclose(line_in(axes, "#000000")[1], 0.4 * x)

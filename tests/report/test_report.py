@@ -20,14 +20,14 @@ from validation.report.appendix import provenance as appendix_provenance
 from validation.report.blocks import (
     Beside,
     Callout,
-    Column,
     FigureBlock,
+    GateLines,
     Heading,
-    Lines,
     PageBreak,
     Paragraph,
     Points,
     Table,
+    TableColumn,
 )
 from validation.report.book import build, figures, ordered_studies
 from validation.report.chapters import data as chapters_data
@@ -398,7 +398,7 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
     with pytest.raises(InputError, match="is not a directory"):
         build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
-        Table((Column("a"), Column("b")), (("1", "2", "3"),))
+        Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
 
 
 def test_provenance_says_versions_and_cost(results):
@@ -419,10 +419,10 @@ def test_every_kind_of_block_is_set(tmp_path):
         Paragraph("text", "lead"),
         Callout("careful", "warn"),
         PageBreak(),
-        Table((Column("x", "decimal"), Column("id", "id")), (("1.5", "a:b[c=d]"),)),
+        Table((TableColumn("x", "decimal"), TableColumn("id", "id")), (("1.5", "a:b[c=d]"),)),
         Points((("One.", "This *is* #not markup"),)),
         Beside((Paragraph("left"),), (Callout("right", "rule"),), 0.4),
-        Lines((("core", "why", (("a", "b", "1", "0 … 2"),)),)),
+        GateLines((("core", "why", (("a", "b", "1", "0 … 2"),)),)),
     ]
     assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 

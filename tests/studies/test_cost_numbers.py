@@ -205,7 +205,7 @@ def test_sub_blocks_are_told_by_rows_with_signed_errors_and_milliseconds() -> No
     assert [c.title for c in shown.columns] == ["Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms"]
     assert shown.rows == (("squares", "3", "−3\u00a0%", "1.23\u00a0%", "36", "5"),)
     line = chapters_subblocks._line("squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2")
-    assert (list(line.x), list(line.y), line.note) == ([0.005], [0.0123], "3")
+    assert (list(line.x), list(line.y), line.notes) == ([0.005], [0.0123], ("3",))
 
 
 def test_the_growth_of_a_step_is_fitted_on_its_seconds() -> None:

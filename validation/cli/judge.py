@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from validation.problems.bands import Standard
     from validation.problems.cause import Cause
     from validation.problems.problem import Problem
-    from validation.report.chapters.judged import Judged
+    from validation.report.chapters.judged import JudgedAnswer
     from validation.runs.history import History
     from validation.runs.run import Run
 
@@ -73,7 +73,7 @@ def judge(
 
 def _judge_target(
     target: str, solver: str | None, scene: str | None, assignments: list[str] | None, progress: Any
-) -> tuple[Judged, str]:
+) -> tuple[JudgedAnswer, str]:
     from validation.errors import InputError
     from validation.problems.problem import problem_of
     from validation.problems.submission import read_submission
@@ -101,7 +101,7 @@ def _judge_target(
     return _judge_history(submission.problem, submission.history, tuple(about), progress), name
 
 
-def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[Judged, str]:
+def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[JudgedAnswer, str]:
     from validation.engine.measure import completed
     from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
     from validation.solvers.registry import get_solver
@@ -160,12 +160,12 @@ def _judge_history(
     about: tuple[tuple[str, str], ...],
     progress: Any,
     warnings: Sequence[str] = (),
-) -> Judged:
+) -> JudgedAnswer:
     from validation.metrics.sameness import is_identical
     from validation.problems.bands import standard
     from validation.problems.judge import Word
     from validation.problems.judge import judge as judgement_of
-    from validation.report.chapters.judged import Judged
+    from validation.report.chapters.judged import JudgedAnswer
 
     progress(1, 3, "the exact motion and the bands")
     bands: Standard = standard(problem)
@@ -181,10 +181,10 @@ def _judge_history(
             *warnings,
             "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back.",
         ]
-    return Judged(problem, history, bands, judgement, identified_cause, about, tuple(warnings))
+    return JudgedAnswer(problem, history, bands, judgement, identified_cause, about, tuple(warnings))
 
 
-def _write_page(judged: Judged, program: str, place: Path, progress: Any) -> list[Path]:
+def _write_page(judged: JudgedAnswer, program: str, place: Path, progress: Any) -> list[Path]:
     from validation.errors import InputError
     from validation.gallery.judged import write_judged
 
@@ -198,7 +198,7 @@ def _write_page(judged: Judged, program: str, place: Path, progress: Any) -> lis
     return write_judged(judged, program, place)
 
 
-def as_data(judged: Judged, program: str) -> dict[str, Any]:
+def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
     """Return the judgement as plain data."""
     from validation.problems.data import PACK, united
 
@@ -233,7 +233,7 @@ def _cause_data(cause: Cause) -> dict[str, Any]:
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
 
 
-def _print(judged: Judged, program: str, written: list[Path]) -> None:
+def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
     from validation.problems.data import united
     from validation.problems.judge import Word
@@ -252,7 +252,7 @@ def _print(judged: Judged, program: str, written: list[Path]) -> None:
             echo(f"what would tell: {judged.cause.would_tell}")
     echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for column in judged.judgement.columns:
-        why = datum(column, judged.held) or column.reason
+        why = datum(column, judged.standard) or column.reason
         error = per_cent(column.error)
         allowed = per_cent(column.band)
         echo(f"  {united(column.name):<25} {column.word:<12} {error:>11} {allowed:>8}  {why}")

@@ -6,14 +6,14 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from validation.report.chapters.data import spoken_of
+from validation.report.chapters.data import CaseResults, spoken_of
 from validation.report.chapters.text import case_labels
 from validation.runs.case_name import scene_of
 from validation.runs.records import CaseRecord, Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.text import shown
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 from validation.solvers.registry import FULL
 
 _DIRECTORIES = re.compile(r"(?<![\w.:/-])(?:[A-Za-z]:[\\/]|/)(?:[^\s/\\'\"]+[\\/])+")
@@ -25,23 +25,13 @@ def readable(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class GalleryCase:
-    """One case of a scene: the scene that was run and the rows by solver."""
-
-    name: str
-    label: str
-    scene: Scene
-    rows: Mapping[str, Row]
-
-
-@dataclass(frozen=True)
 class GalleryScene:
     """A scene with all its cases and verdicts, and the studies that run it."""
 
     name: str
     title: str
     page: str  # file name
-    cases: tuple[GalleryCase, ...]
+    cases: tuple[CaseResults, ...]  # without histories, which a page samples one by one
     studies: tuple[str, ...]
     verdicts: tuple[VerdictRecord, ...]
 
@@ -118,7 +108,7 @@ def _scene(
     for case, label, scene in zip(names, labels, scenes, strict=True):
         keys = {solver: record["key"] for solver, record in of_scene.records[case].items() if not solver.endswith(FULL)}
         rows_by_solver = {solver: rows[key] for solver, key in keys.items() if key in rows}
-        cases.append(GalleryCase(case, label, scene, rows_by_solver))
+        cases.append(CaseResults(case, label, scene, rows_by_solver))
     verdicts_of_scene = tuple(v for v in verdicts if scene_of(v["scene"]) == name)
     return GalleryScene(name, of_scene.title or name, page, tuple(cases), tuple(of_scene.studies), verdicts_of_scene)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,17 +27,18 @@ class Drawing:
     file: str
     caption: str
     svg: str
+    scene: str  # name as the report writes it; empty where a figure is of several
 
 
 @dataclass(frozen=True)
-class Chapter:
+class DrawnChapter:
     """The chapter of a study, and its figures by file name."""
 
     blocks: tuple[Block, ...]
     drawings: Mapping[str, Drawing]
 
 
-def chapter_for(results: Results, study: GalleryStudy) -> Chapter:
+def chapter_for(results: Results, study: GalleryStudy) -> DrawnChapter:
     """Return the chapter that the report has of a study; in place of what cannot be drawn, why."""
     readable_results = Readable(results)
     with tempfile.TemporaryDirectory() as name:
@@ -48,28 +48,22 @@ def chapter_for(results: Results, study: GalleryStudy) -> Chapter:
             blocks = chapter_of(study.name)(readable_results, manifest, directory)
         except (InputError, *DAMAGED) as error:
             reason = readable(printable(str(error)))
-            return Chapter((Callout(f"The chapter cannot be drawn from these results ({reason}).", "fail"),), {})
+            return DrawnChapter((Callout(f"The chapter cannot be drawn from these results ({reason}).", "fail"),), {})
         drawings = {block.file: _drawing(block, directory) for block in blocks if isinstance(block, FigureBlock)}
-    return Chapter(tuple(blocks), drawings)
+    return DrawnChapter(tuple(blocks), drawings)
 
 
 def _drawing(block: FigureBlock, directory: Path) -> Drawing:
     svg = (directory / block.file).read_text(encoding="utf-8")
-    return Drawing(block.file, unescaped(block.caption), svg)
+    return Drawing(block.file, unescaped(block.caption), svg, block.scene)
 
 
-def scene_of_figure(file: str, scenes: Sequence[GalleryScene]) -> GalleryScene | None:
-    """Return the scene that a figure belongs to by its file name, the one with the longest name."""
-    candidates = [scene for scene in scenes if file.startswith(f"{slug(scene.name)}-")]
-    return max(candidates, key=lambda scene: len(scene.name), default=None)
+def scene_of_figure(drawing: Drawing, scenes: Sequence[GalleryScene]) -> GalleryScene | None:
+    """Return the scene that a figure shows, None where it is of several."""
+    return next((scene for scene in scenes if escaped(scene.name) == drawing.scene), None)
 
 
-def slug(name: str) -> str:
-    """Return a scene's name as it begins the file names of its figures."""
-    return re.sub(r"[^\w.-]+", "-", escaped(name)).strip("-.") or "scene"
-
-
-def page_blocks(chapter: Chapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
+def page_blocks(chapter: DrawnChapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
     """Return the blocks of a chapter for the template; figures of one scene lead to its page."""
     blocks = chapter.blocks[1:] if isinstance(chapter.blocks[0], Heading) else chapter.blocks
     template_blocks: list[dict[str, Any]] = []
@@ -96,7 +90,7 @@ def _record(block: Block) -> dict[str, Any]:
 
 
 def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:
-    scene = scene_of_figure(drawing.file, scenes)
+    scene = scene_of_figure(drawing, scenes)
     return {
         "block": "FigureBlock",
         "svg": sheet.placed(drawing.svg, drawing.caption),

@@ -13,7 +13,7 @@ from validation.gallery.pages import environment
 from validation.gallery.svg import Sheet
 from validation.problems.data import PACK
 from validation.problems.judge import Word
-from validation.report.chapters.judged import Judged, page, per_cent
+from validation.report.chapters.judged import JudgedAnswer, page, per_cent
 from validation.runs.files import atomic_path
 
 PAGE = "judged.html"
@@ -23,7 +23,7 @@ LETTER = 7  # px, width of a badge's letter, amply
 MARGIN = 12  # px, beside a text
 
 
-def write_judged(judged: Judged, program: str, place: Path) -> list[Path]:
+def write_judged(judged: JudgedAnswer, program: str, place: Path) -> list[Path]:
     """Write page and badge into a directory that is there, and return their paths.
 
     Raises
@@ -41,7 +41,7 @@ def write_judged(judged: Judged, program: str, place: Path) -> list[Path]:
     return paths
 
 
-def html(judged: Judged, program: str) -> str:
+def html(judged: JudgedAnswer, program: str) -> str:
     """Return the page: verdict, cause, columns, curves."""
     sheet = Sheet()
     with tempfile.TemporaryDirectory() as name:
@@ -59,7 +59,7 @@ def html(judged: Judged, program: str) -> str:
     )
 
 
-def badge(judged: Judged) -> str:
+def badge(judged: JudgedAnswer) -> str:
     """Return the badge: the problem, the verdict, the error that decides, and the columns that are withheld."""
     judgement = judged.judgement
     label = f"DDA field: {judged.problem.name}"

@@ -14,7 +14,7 @@ from validation.errors import InputError
 from validation.gallery import scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS, Calculator, Choice
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
-from validation.gallery.chapters import Chapter, page_blocks, scene_of_figure
+from validation.gallery.chapters import DrawnChapter, page_blocks, scene_of_figure
 from validation.gallery.histories import LEAST, samples_for
 from validation.gallery.svg import Sheet
 from validation.gallery.work import work_plots
@@ -99,7 +99,7 @@ class Pages:
             scripts=SCRIPTS,
         )
 
-    def study(self, study: GalleryStudy, chapter: Chapter) -> str:
+    def study(self, study: GalleryStudy, chapter: DrawnChapter) -> str:
         """Return the page of a study: its chapter, its scenes, its verdicts."""
         blocks = page_blocks(chapter, study.scenes, Sheet()) if chapter.blocks else []
         return self._page(
@@ -117,7 +117,7 @@ class Pages:
         """Draw all histories with as many samples as there is room for [bytes]."""
         self._samples = samples_for(scene_data.all_lines(self._scenes, self._most), room)
 
-    def figures(self, scene: GalleryScene, chapters: Mapping[str, Chapter]) -> list[dict[str, str]]:
+    def figures(self, scene: GalleryScene, chapters: Mapping[str, DrawnChapter]) -> list[dict[str, str]]:
         """Return the figures of a scene in the chapters of its studies, each once."""
         sheet = Sheet()
         figures: dict[str, dict[str, str]] = {}
@@ -125,7 +125,7 @@ class Pages:
             if study.name not in scene.studies:
                 continue
             for file, drawing in chapters[study.name].drawings.items():
-                if file not in figures and scene_of_figure(file, study.scenes) is scene:
+                if file not in figures and scene_of_figure(drawing, study.scenes) is scene:
                     figures[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
         return list(figures.values())
 

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from validation.gallery.cases import GalleryCase, GalleryScene, readable
+from validation.gallery.cases import GalleryScene, readable
 from validation.gallery.histories import lines_of
 from validation.metrics.catalogue import CATALOGUE, is_count
+from validation.report.chapters.data import CaseResults
 from validation.report.chapters.text import bounded, cell
 from validation.report.figures.curves import COLUMNS, is_sparse, style_of
 from validation.runs.history import History
@@ -42,12 +43,12 @@ METRICS = (
 )
 
 
-def lines(case: GalleryCase) -> int:
+def lines(case: CaseResults) -> int:
     """Return how many curves a case may have, as its rows tell without its histories."""
     return sum(row.outcome in WITH_HISTORY for row in case.rows.values()) * len(case.scene.run.columns)
 
 
-def drawn(scene: GalleryScene, most: int) -> list[GalleryCase]:
+def drawn(scene: GalleryScene, most: int) -> list[CaseResults]:
     """Return the cases whose curves are drawn: all, or evenly chosen ones, the first and the last among them.
 
     `most` is the number of curves of a scene; at least `FEWEST` cases are drawn all the same.
@@ -98,7 +99,7 @@ def data(results: Results, scene: GalleryScene, most: int, samples: int) -> dict
     }
 
 
-def _case(results: Results, case: GalleryCase, samples: int) -> dict[str, Any]:
+def _case(results: Results, case: CaseResults, samples: int) -> dict[str, Any]:
     """Return label, curves and what went otherwise than hoped for."""
     histories: dict[str, History] = {}
     messages = []
@@ -125,7 +126,7 @@ def _style(name: str) -> dict[str, Any]:
     return {"color": style.color, "dash": [round(2 * length, 1) for length in style.dash], "width": style.width}
 
 
-def _metrics(cases: Sequence[GalleryCase]) -> list[str]:
+def _metrics(cases: Sequence[CaseResults]) -> list[str]:
     """Return the metrics of which some row has a number."""
     measured: set[str] = set()
     for case in cases:
@@ -134,7 +135,7 @@ def _metrics(cases: Sequence[GalleryCase]) -> list[str]:
     return [name for name in METRICS if name in measured and name in CATALOGUE]
 
 
-def _numbers(case: GalleryCase, metrics: Sequence[str]) -> list[list[str]]:
+def _numbers(case: CaseResults, metrics: Sequence[str]) -> list[list[str]]:
     """Return solver, values of the metrics and steps of each row."""
     return [
         [readable(solver), *(_text(name, row.metrics.get(name)) for name in metrics), str(row.work.get("steps", "–"))]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from validation.gallery.cases import readable
-from validation.report.chapters.gates import ORDER, band, reason, value_cell
+from validation.report.chapters.gates import ORDER, band, measured, reason, value_cell
 from validation.runs.records import VerdictRecord
 
 COLUMNS = ("verdict", "case", "pair", "metric", "value", "band")
@@ -19,12 +19,11 @@ def table(verdicts: Sequence[VerdictRecord]) -> dict[str, Any]:
     reasons: dict[str, int] = {}
     rows = []
     for verdict in sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)):
-        window = f"@{verdict['id'].rpartition('@')[2]}" if "@" in verdict["id"] else ""
         texts = (
             verdict["verdict"],
             verdict["scene"],
             " – ".join(verdict["pair"]),
-            verdict["metric"] + window,
+            measured(verdict),
             value_cell(verdict["value"], verdict["metric"]),
             band(verdict),
         )

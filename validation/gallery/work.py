@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from validation.report.chapters.text import short
+from validation.report.chapters.work import refinement
 from validation.report.figures.curves import style_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -37,18 +37,13 @@ def _plot(runs: Sequence[Point]) -> dict[str, Any]:
         "runs": [
             {
                 "method": methods.index(run.method),
-                "label": _label(run),
+                "label": refinement(run),
                 "costs": [_number(cost(run)) for cost in COSTS.values()],
                 "errors": [[_number(run.errors.get((q, r))) for r in REFERENCES] for q in QUANTITIES],
             }
             for run in runs
         ],
     }
-
-
-def _label(run: Point) -> str:
-    mesh = f", {run.scene.fem.per_side} elements a side" if run.method.startswith("fem") else ""
-    return f"dt = {short(1e3 * run.scene.time.step, 3)} ms{mesh}"
 
 
 def _number(value: float | None) -> float | None:

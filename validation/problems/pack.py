@@ -44,46 +44,6 @@ TEMPLATE = {  # what a submitter changes
     "not_reported": [],
 }
 
-README = """\
-# Problems for any program
-
-A part of the reference pack of dda-validation, version {pack}; nothing needs to be installed to answer a problem.
-
-| what | where |
-|---|---|
-| problems, SI units, which stand in the names | `NAME.json`, by `problem.schema.json` |
-| exact motions | `exact/NAME.csv` |
-| a submission to fill in | `submissions/NAME/submission.json`, by `submission.schema.json` |
-
-{table}
-
-## What the words of a problem mean
-
-- **Block**: a rectangle of unit thickness that moves, turns and strains as a whole: one strain (xx, yy, xy) all over,
-  linear and elastic, its mass spread evenly. A mesh inside it is another model, and another answer.
-- **Contact**: two springs at its lower corners, on a fixed base; `unilateral` ones push and do not pull, and slide by
-  Coulomb's law where `friction_deg` is a number. Springs of friction are unstrained at t = 0.
-- **Load**: there in full from t = 0 on. The block starts unstrained, and at rest but for `velocity_m_per_s`.
-- **Geometry**: `small` is equilibrium in the first shape; with `large rotation` corners and directions turn along.
-- **Column**: a continuum in one direction. A Ricker pulse is p (1 - 2 s) exp(-s), s = (pi f (t - 2/f))^2, as a pressure
-  downwards on the top; a `transmitting` base lets waves through that its impedance matches.
-- Nothing damps, but what leaves through such a base and what friction takes.
-
-## An answer
-
-1. Compute a problem with any program. Its time step is its own; the answer holds the instants of `sampling`: `step_s`,
-   2 `step_s`, ..., `count` of them, and not t = 0.
-2. Write the columns that `answer` names to one CSV file under a header such as `time_s,displacement_m`, beside the
-   `submission.json` of the problem, in a directory of its own. What the program cannot report goes into `not_reported`.
-3. `dda-validate judge DIRECTORY` checks the two files, judges the columns, and writes `judged.html` and `badge.svg`.
-
-Each column passes where norm(answer - exact) / norm(exact), Euclidean over the instants up to `until_s`, lies in its
-band, edges included. The band is what one per cent of the problem's data changes; `reason` says which datum.
-
-Columns of a column's answer are at `heights_m`. A rocking block is judged until it comes down: what an impact takes
-depends on the contact model, and is not asked.
-"""
-
 
 def problem_data(one: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
@@ -147,7 +107,8 @@ def write_problems(directory: Path, progress: Progress = lambda number, total, l
         stem = data_of.__name__.removesuffix("Data").lower()
         _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
-    _write(place / "README.md", README.format(pack=PACK, table=table))
+    readme = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+    _write(place / "README.md", readme.format(pack=PACK, table=table))
     return len(PROBLEMS)
 
 

@@ -10,6 +10,8 @@ from typing import Literal
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
+Kind = Literal["text", "decimal", "verdict", "outcome", "code", "id", "fill"]  # of the cells of a column
+
 
 @dataclass(frozen=True)
 class Heading:
@@ -28,7 +30,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Column:
+class TableColumn:
     """A table column: title, kind of its cells, and a title shared with neighbours.
 
     ``decimal`` aligns numbers at the decimal point, ``verdict`` colours PASS, FAIL and NOT RUN in a list of gates,
@@ -37,13 +39,13 @@ class Column:
     """
 
     title: str
-    kind: Literal["text", "decimal", "verdict", "outcome", "code", "id", "fill"] = "text"
+    kind: Kind = "text"
     group: str = ""
 
 
-def columns(kind: Literal["text", "decimal", "fill"], *titles: str, group: str = "") -> tuple[Column, ...]:
+def columns(kind: Kind, *titles: str, group: str = "") -> tuple[TableColumn, ...]:
     """Return columns of one kind."""
-    return tuple(Column(title, kind, group) for title in titles)
+    return tuple(TableColumn(title, kind, group) for title in titles)
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class Table:
     Where `ruled`, a thin rule is drawn above each row whose first cell is not empty.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[TableColumn, ...]
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
     notes: tuple[str, ...] = ()
@@ -71,6 +73,7 @@ class FigureBlock:
 
     file: str
     caption: str
+    scene: str = ""  # of which it shows the histories or what is computed from them
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,7 @@ GateLine = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
-class Lines:
+class GateLines:
     """Short lines of four cells in small type, in two columns, under the title and the remark that they share."""
 
     # title, empty where it is that of the section before; remark; lines
@@ -114,5 +117,5 @@ class Lines:
 
 
 Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
-Part = Block | Points | Beside | Lines  # of the first and the last pages
+Part = Block | Points | Beside | GateLines  # of the first and the last pages
 Chapter = Callable[[Results, Manifest, Path], list[Block]]

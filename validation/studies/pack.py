@@ -30,49 +30,6 @@ OWN = ("displacement.max", "pressure.max")  # a code against the exact history o
 LEFT_OUT = ("name", "sweep", "gate", "run")  # of a scene: what says which cases and solvers are run
 FIELDS = ("scene", "metric", "low", "high", "reference", "until", "reference_kind", "reason", "id")
 
-README = """\
-# Reference pack for codes of Discontinuous Deformation Analysis
-
-Made by dda-validation (`dda-validate export-pack`). Nothing of it needs to be installed to use this pack.
-
-| what | where |
-|---|---|
-| scenes, SI units | `scenes/NAME.toml` |
-| histories, one row a step from the first step on | `histories/NAME.SOLVER.csv` |
-| bands | `bands.csv`, and the same as `bands.json` |
-| contact that opens: exact motions, a restitution map | `contact`, with a README of its own |
-| contact that slips: exact motions with friction, rigid blocks that slide and rock | `friction`, the same |
-| problems for any program, as JSON, and how an answer to them is judged | `problems`, the same |
-
-One block of unit thickness stands on two locked corner springs (normal stiffness `contact.stiffness`, shear stiffness
-the same unless `shear_stiffness` is given) and is loaded from t = 0 on by `load.pressure`, downwards on its top edge.
-It starts at rest and unstrained; there is no gravity unless a scene says so. The scheme is Newmark's with
-`time.alpha`, `time.delta`; `time.gg` multiplies the velocity at the start of each step; `time.start = "zero"` starts
-from A0 = 0, `"consistent"` from M A0 = F.
-
-Columns: `time` [s]; `displacement`, vertical, of the centroid [m], upwards positive; `contact_pressure`, minus the sum
-of the normal spring forces over the length of the base [Pa], compression positive.
-
-`NAME.dda.csv` is the six-unknown block under the same scheme, to some 1e-12 of the maximum: **your history should be
-this one**. The other histories are exact solutions (`bar`: exact in space, the same scheme in time) and differ by
-model form, as the bands say.
-
-## The bands
-
-A row holds `scene`, `metric`, `low`, `high`, `reference`, `until`, `reference_kind`, `reason`, `id`. With x your
-column and r that of `reference` (a file in `histories/`), over the steps up to the time `until` (all, if empty):
-
-- `*.l2` = norm(x - r) / norm(r), Euclidean over the steps; `*.max` = max|x - r| / max|r|
-- `*.final` last value; `*.minimum` least value; `*.peak` largest value of the first excursion beyond the static value
-- `*.settling_step`: first step n >= 1 from which |x / static - 1| <= 0.01 for ever after
-- `*.static`: static solution, where your code gives one
-- `mode1.frequency`: first axial natural frequency [rad/s], where your code gives one
-- `mode1.damping` or, fitted to the displacement, `mode1.measured_damping`: xi = -Re(ln l) / |ln l| of the first axial
-  mode, l the eigenvalue of one step
-
-A metric of one run that names a reference is compared as value / value of the reference - 1. Both edges are inside.
-"""
-
 
 @dataclass(frozen=True)
 class Written:
@@ -96,7 +53,7 @@ def check_place(directory: Path) -> None:
     readme = directory / "README.md"
     if not directory.is_dir() or not any(directory.iterdir()):
         return
-    title = README.splitlines()[0].encode()
+    title = readme_of(__file__).splitlines()[0].encode()
     if not readme.is_file() or not readme.read_bytes().startswith(title):
         raise InputError(f"{directory}: must be a new or empty directory or an earlier pack, got one with other files")
 
@@ -123,7 +80,7 @@ def write_pack(directory: Path) -> Written:
     bands = [*itertools.starmap(own_band, itertools.product(cases.values(), OWN)), *map(band, gates)]
     part.add_table("bands", bands)
     part.add_text("bands.json", json.dumps(bands, indent=1) + "\n")
-    part.add_text("README.md", README)
+    part.add_readme(__file__)
     return Written(len(cases), len(required_histories), len(bands))
 
 
@@ -162,9 +119,18 @@ class Part:
         writer.writerows(rows)
         self.add_text(f"{name}.csv", text.getvalue())
 
+    def add_readme(self, module: str) -> None:
+        """Write the README of the part that a module writes."""
+        self.add_text("README.md", readme_of(module))
+
     def add_text(self, name: str, text: str) -> None:
         """Write a text file whole or not at all."""
         write_atomically(self.directory / name, lambda stream: stream.write(text.encode()))
+
+
+def readme_of(module: str) -> str:
+    """Return the README of the part of a pack that a module writes: the file beside it, ``pack.md`` of ``pack.py``."""
+    return Path(module).with_suffix(".md").read_text(encoding="utf-8")
 
 
 def slug(name: str) -> str:

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
-from validation.report.blocks import Block, Column, Heading, Table, columns
-from validation.report.chapters.data import CaseGroup
+from validation.report.blocks import Block, Heading, Table, TableColumn, columns
+from validation.report.chapters.data import CaseGroup, labels_of
 from validation.report.chapters.text import percent, plain, short
 from validation.runs.records import AlarmRecord
 from validation.solvers.contract import Role
@@ -21,9 +21,8 @@ MOST_SCENES = 7  # of a kind that get a row each
 def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
     """Return the alarms by kind, scenes beyond the first few by name alone; nothing where none was raised."""
     kinds: dict[str, dict[str, list[AlarmRecord]]] = {}  # by kind and scene
-    labels: dict[str, str] = {}
+    labels = labels_of(groups.values())
     for group in groups.values():
-        labels |= {case.name: case.label for case in group.cases}
         for alarm in group.alarms:
             kinds.setdefault(alarm["kind"], {}).setdefault(group.name, []).append(alarm)
     rows = []
@@ -36,7 +35,7 @@ def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
             others = dict(itertools.islice(scenes.items(), most, None))
             count = sum(map(len, others.values()))
             rows.append((kind, f"{len(others)} more", str(count), f"{', '.join(others)}."))
-    titles = (*columns("text", "Alarm", "Scene", "Cases"), Column("The worst of them", "fill"))
+    titles = (*columns("text", "Alarm", "Scene", "Cases"), TableColumn("The worst of them", "fill"))
     caption = "Results that look better than they are, as the runs raised them."
     return [Heading("Alarms", 2), Table(titles, tuple(rows), caption)] if rows else []
 

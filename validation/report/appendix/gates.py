@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from validation.report.blocks import GateLine, Heading, Lines, Paragraph, Part
-from validation.report.chapters.data import CaseGroup
-from validation.report.chapters.gates import band, reason, value_cell
+from validation.report.blocks import GateLine, GateLines, Heading, Paragraph, Part
+from validation.report.chapters.data import CaseGroup, labels_of
+from validation.report.chapters.gates import band, measured, reason, value_cell
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
 
@@ -19,9 +19,7 @@ def gate_pages(verdicts: Verdicts, groups: Mapping[str, CaseGroup]) -> list[Part
     passed = [v for v in verdicts if v["verdict"] == "PASS"]
     if not passed:
         return []
-    labels: dict[str, str] = {}
-    for group in groups.values():
-        labels |= {case.name: case.label for case in group.cases}
+    labels = labels_of(groups.values())
     joined = len(passed) > MOST_LINES
     sections: list[tuple[str, str, tuple[GateLine, ...]]] = []
     for study in dict.fromkeys(v["study"] for v in passed):
@@ -33,7 +31,7 @@ def gate_pages(verdicts: Verdicts, groups: Mapping[str, CaseGroup]) -> list[Part
     text = "Measured value and band of every gate that passed, under the reason of the band and the kind of reference."
     if joined:
         text += " Gates of a scene that share pair, metric and reason share a line, which gives their number and range."
-    return [Heading("Gates", 2), Paragraph(text, "small"), Lines(tuple(sections))]
+    return [Heading("Gates", 2), Paragraph(text, "small"), GateLines(tuple(sections))]
 
 
 def _sections(verdicts: Verdicts, labels: Mapping[str, str], joined: bool) -> list[tuple[str, tuple[GateLine, ...]]]:
@@ -56,8 +54,7 @@ def _sections(verdicts: Verdicts, labels: Mapping[str, str], joined: bool) -> li
 
 def _measured(v: VerdictRecord) -> str:
     """Return what a gate measures: the pair, the metric and its window."""
-    window = f"@{v['id'].rpartition('@')[2]}" if "@" in v["id"] else ""
-    return f"{'–'.join(v['pair'])} {v['metric']}{window}"
+    return f"{'–'.join(v['pair'])} {measured(v)}"
 
 
 def _line(v: VerdictRecord, labels: Mapping[str, str]) -> GateLine:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.report.blocks import Block, Column, Heading, Table
+from validation.report.blocks import Block, Heading, Table, TableColumn
 
 WORDS = (
     ("block", "A polygon that DDA moves as a whole: u, v, r of its centroid and one strain εx, εy, γxy all over it."),
@@ -25,4 +25,4 @@ WORDS = (
 
 def glossary() -> list[Block]:
     """Return the glossary."""
-    return [Heading("Twelve words", 2), Table((Column("Word"), Column("Meaning", "fill")), WORDS)]
+    return [Heading("Twelve words", 2), Table((TableColumn("Word"), TableColumn("Meaning", "fill")), WORDS)]

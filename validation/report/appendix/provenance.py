@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from validation.report.blocks import Block, Column, Heading, Table, columns
+from validation.report.blocks import Block, Heading, Table, TableColumn, columns
 from validation.report.chapters.data import CaseGroup, varied_fields
-from validation.report.chapters.text import parameters, plain
+from validation.report.chapters.text import parameter_items, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Row
@@ -19,13 +19,13 @@ def parameter_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
     first_items: set[str] = set()
     for group in groups.values():
         varied = varied_fields(group)
-        items = parameters(group.cases[0].scene, varied).removesuffix(".").split(", ")
+        items = parameter_items(group.cases[0].scene, varied)
         differing = [item for item in items if item not in first_items]
         count = f"{len(group.cases)} cases" if len(group.cases) > 1 else "one case"
         rows.append((group.name, ", ".join([*differing, count])))
         first_items = first_items or set(items)
     caption = "Data of the scenes: the first in full, the others where they differ from it."
-    return [Heading("Parameters", 2), Table((Column("Scene"), Column("Data", "fill")), tuple(rows), caption)]
+    return [Heading("Parameters", 2), Table((TableColumn("Scene"), TableColumn("Data", "fill")), tuple(rows), caption)]
 
 
 def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
@@ -39,7 +39,7 @@ def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
     for (name, text), names in studies_by_item.items():
         where = "" if len(names) == len(manifests) else f" ({', '.join(names)})"
         rows.append((name.capitalize(), f"{text}{where}"))
-    table = Table((Column("Item"), Column("Value", "fill")), tuple(rows))
+    table = Table((TableColumn("Item"), TableColumn("Value", "fill")), tuple(rows))
     return [Heading("Provenance", 2), table, cost_table(results, manifests)]
 
 
@@ -72,4 +72,4 @@ def cost_table(results: Results, manifests: Sequence[Manifest]) -> Table:
         lines.append((solver, *map(str, counts), plain(seconds, 3)))
     titles = columns("decimal", "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
     caption = "Cost of the results; cached runs count with their original run time."
-    return Table((Column("Solver"), *titles), tuple(lines), caption)
+    return Table((TableColumn("Solver"), *titles), tuple(lines), caption)

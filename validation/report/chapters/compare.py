@@ -8,10 +8,10 @@ from pathlib import Path
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.sentences import told_lines
-from validation.report.blocks import Block, Callout, Column, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Callout, Heading, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.text import DASH, parameters, short
 from validation.report.figures import histories, motion
-from validation.report.figures.curves import Panel
+from validation.report.figures.curves import HistoryPanel
 from validation.report.typesetting import write_document
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import Scene
@@ -38,7 +38,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
         histories_by_name[name] = History(time, {DISPLACEMENT: values, **pressure})
     drawn = (DISPLACEMENT, PRESSURE) if answer.pressures else (DISPLACEMENT,)
-    panel = Panel(
+    panel = HistoryPanel(
         "displacement of the centroid" + (", contact pressure" if answer.pressures else ""),
         histories_by_name,
         {},
@@ -70,7 +70,7 @@ def _facts(answer: Answer) -> list[Block]:
         rows.append(("departure", f"step {answer.departure.step}, mainly in {answer.departure.kind}"))
     if answer.opened:
         rows.append(("contact open", f"first step {answer.opened[0]}, last {answer.opened[1]}"))
-    return [Table((Column("Found", "code"), Column("In words", "fill")), tuple(rows))] if rows else []
+    return [Table((TableColumn("Found", "code"), TableColumn("In words", "fill")), tuple(rows))] if rows else []
 
 
 def _number(answer: Answer, name: str) -> str:
@@ -81,11 +81,16 @@ def _evidence(answer: Answer) -> list[Block]:
     """Return what was measured before any cause was named."""
     marks = {True: "right", False: "wrong", None: DASH}
     rows = tuple((stage.name.replace("_", " "), marks[stage.agrees], stage.words) for stage in answer.evidence)
-    return [Table((Column("Evidence", "code"), Column("", "code"), Column("In words", "fill")), rows)] if rows else []
+    titles = (*columns("code", "Evidence", ""), *columns("fill", "In words"))
+    return [Table(titles, rows)] if rows else []
 
 
 def _ranking(answer: Answer) -> Table:
-    titles = (Column("Model", "code"), Column("Scheme", "fill"), *columns("decimal", "Misfit [%]", "Compliance [%]"))
+    titles = (
+        *columns("code", "Model"),
+        *columns("fill", "Scheme"),
+        *columns("decimal", "Misfit [%]", "Compliance [%]"),
+    )
     rows = []
     for row in answer.ranking[:LINES]:
         scheme = "exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}"

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from validation.report.blocks import Block, Column, Table
+from validation.report.blocks import Block, Table, TableColumn
 from validation.report.chapters.data import CaseGroup, CaseResults
-from validation.report.chapters.text import DASH, cell, load_size, word_notes
+from validation.report.chapters.measures import MetricColumn, heads
+from validation.report.chapters.text import DASH, case_label, load_size, word_notes
 from validation.report.figures import histories
-from validation.report.figures.paper import BudgetPanel, budget_figure
+from validation.report.figures.budget import BudgetPanel, budget_figure
 from validation.runs.records import BudgetRecord
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import is_solver, role
 
+OVER = ("time.step", "time.steps", "fem.elements")  # what a budget is drawn over or does not depend on
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 
 
@@ -25,17 +26,16 @@ def budget_blocks(group: CaseGroup, directory: Path) -> list[Block]:
     """Return the damping budget chart of a scene, or nothing where its results hold none."""
     if not group.budgets:
         return []
-    labels = {case.name: case.label for case in group.cases}
-    panels = [BudgetPanel(_label(labels.get(budget["scene"], "")), budget) for budget in group.budgets]
+    scenes = {case.name: case.scene for case in group.cases}
+    panels = []
+    for budget in group.budgets:
+        name = budget["scene"]
+        title = case_label(name, scenes[name], OVER) if name in scenes else ""
+        panels.append(BudgetPanel(title, budget))
     if len(panels) == 1:
         panels = [BudgetPanel("", group.budgets[0])]
     file = f"{group.slug}-damping-budget.svg"
-    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets))]
-
-
-def _label(text: str) -> str:
-    """Return a case's label without its time step, over which the chart is drawn."""
-    return ", ".join(part for part in text.split(", ") if not part.startswith(("dt =", "steps =", "n =")))
+    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets), group.name)]
 
 
 def _caption(budgets: Sequence[BudgetRecord]) -> str:
@@ -62,28 +62,15 @@ def _caption(budgets: Sequence[BudgetRecord]) -> str:
 # ---- the table of a scene ------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Measure:
-    """A column of the damping table: titles, metric, factor and decimals (four digits where None)."""
-
-    title: str
-    over: str
-    metric: str
-    factor: float = 1.0
-    decimals: int | None = None
-
-
-_MEASURES = (
-    Measure("ω₁ [rad/s]", "", "mode1.frequency"),
-    Measure("ξ₁ [%]", "", "mode1.damping", 100.0, 3),
-    Measure("displ.", "Settling step", "displacement.settling_step", 1.0, 0),
-    Measure("press.", "Settling step", "pressure.settling_step", 1.0, 0),
-    Measure("mm", "First peak", "displacement.peak", 1e3),
-    Measure("MPa", "First peak", "pressure.peak", 1e-6),
-    Measure("MPa", "Least pressure", "pressure.minimum", 1e-6),
+MEASURES = (
+    MetricColumn("mode1.frequency", 1.0, "ω₁ [rad/s]"),
+    MetricColumn("mode1.damping", 100.0, "ξ₁ [%]", decimals=3),
+    MetricColumn("displacement.settling_step", 1.0, "displ.", "Settling step", decimals=0),
+    MetricColumn("pressure.settling_step", 1.0, "press.", "Settling step", decimals=0),
+    MetricColumn("displacement.peak", 1e3, "mm", "First peak"),
+    MetricColumn("pressure.peak", 1e-6, "MPa", "First peak"),
+    MetricColumn("pressure.minimum", 1e-6, "MPa", "Least pressure"),
 )
-
-
 LONG_LABEL = 18  # letters; a longer label takes a line of its own above its solvers
 
 
@@ -98,8 +85,9 @@ def damping_table(group: CaseGroup) -> Table:
     for case in group.cases:
         solvers_by_cells: dict[tuple[str, ...], list[str]] = {}
         for solver in _finished(case):
-            values = [case.rows[solver].metrics.get(measure.metric) for measure in _MEASURES]
-            cells = tuple(_measure_cell(m, value, case.scene) for m, value in zip(_MEASURES, values, strict=True))
+            metrics = case.rows[solver].metrics
+            values = [_significant(m.metric, metrics.get(m.metric), case.scene) for m in MEASURES]
+            cells = tuple(measure.text(value) for measure, value in zip(MEASURES, values, strict=True))
             if set(cells) != {DASH}:
                 solvers_by_cells.setdefault(cells, []).append(solver)
                 measured += values
@@ -109,9 +97,9 @@ def damping_table(group: CaseGroup) -> Table:
         else:
             labels = itertools.chain([case.label], itertools.repeat(""))
             rows += [(label, *line) for label, line in zip(labels, lines, strict=False)]
-    titles = (Column("Solver"), *(Column(m.title, "decimal", m.over) for m in _MEASURES))
+    titles = (TableColumn("Solver"), *heads(MEASURES))
     if not has_long_labels:
-        titles = (Column("Case"), *titles)
+        titles = (TableColumn("Case"), *titles)
     return Table(titles, tuple(rows), notes=word_notes(measured), ruled=not has_long_labels)
 
 
@@ -120,11 +108,7 @@ def _finished(case: CaseResults) -> list[str]:
     return [solver for solver in finished if not is_solver(solver) or role(solver) not in EXACT_IN_TIME] or finished
 
 
-def _measure_cell(measure: Measure, value: Value, scene: Scene) -> str:
-    if not isinstance(value, int | float):
-        return cell(value)
-    if measure.decimals is None:
-        noise = NOISE * load_size(scene) if measure.metric == "pressure.minimum" else 0.0
-        significant = value if abs(value) > noise else 0.0
-        return cell(significant, measure.factor)
-    return f"{round(value * measure.factor, measure.decimals) + 0.0:.{measure.decimals}f}".replace("-", "−")
+def _significant(metric: str, value: Value, scene: Scene) -> Value:
+    """Return a metric without rounding: a least pressure that is nothing beside the load."""
+    is_noise = isinstance(value, int | float) and abs(value) <= NOISE * load_size(scene)
+    return 0.0 if is_noise and metric == "pressure.minimum" else value

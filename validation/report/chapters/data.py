@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -30,7 +30,7 @@ class CaseResults:
     label: str
     scene: Scene
     rows: Mapping[str, Row]
-    histories: Mapping[str, History]
+    histories: Mapping[str, History] = field(default_factory=dict)
 
     def number(self, solver: str, metric: str) -> float | None:
         """Return a metric of a solver where it is a number."""
@@ -118,6 +118,11 @@ def spoken_of(manifest: Manifest) -> list[CaseRecord]:
     except (AttributeError, LookupError, TypeError, ValueError):  # no field, or one of another version
         return cases
     return [entry for entry in cases if entry["scene"] in scenes]
+
+
+def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:
+    """Return the labels of all cases, by their names."""
+    return {case.name: case.label for group in groups for case in group.cases}
 
 
 def verdicts_of(groups: Iterable[CaseGroup]) -> list[VerdictRecord]:

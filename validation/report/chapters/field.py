@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
-from validation.report.blocks import Block, Column, Heading, Paragraph, Table
+from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
@@ -88,9 +88,9 @@ def _part(title: str, table: Table) -> list[Block]:
 def by_problem(field: Field) -> Table:
     """Return the table of programs by problems."""
     titles = (
-        Column("Program"),
-        *(Column(problem.name, "outcome") for problem in field.problems),
-        Column("Time [s]", "decimal"),
+        TableColumn("Program"),
+        *(TableColumn(problem.name, "outcome") for problem in field.problems),
+        TableColumn("Time [s]", "decimal"),
     )
     installed = installed_programs(field)
     rows = [("allowed [%]", *(allowed(field, problem.name) for problem in field.problems), "")]
@@ -150,7 +150,7 @@ def seconds(field: Field, program: ProgramLine) -> str:
 
 def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
-    titles = (Column("Program"), Column("Problems"), Column("Cause", "fill"))
+    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Cause", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_cause: dict[str, list[str]] = {}
@@ -172,7 +172,7 @@ def _right_until(cell: Cell) -> str:
 
 def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    titles = (Column("Program"), Column("Problems"), Column("Reason", "fill"))
+    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Reason", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_reason: dict[str, list[str]] = {}
@@ -199,7 +199,7 @@ def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[
 
 def programs(field: Field) -> Table:
     """Return what each program says of itself."""
-    titles = (Column("Program"), Column("Version"), Column("Model", "fill"), Column("Settings", "fill"))
+    titles = (*columns("text", "Program", "Version"), *columns("fill", "Model", "Settings"))
     rows: list[tuple[str, str, str, str]] = []
     previous: Mapping[str, str] = {}
     for program in installed_programs(field):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validation.metrics.catalogue import is_count
-from validation.report.blocks import Block, Callout, Column, Heading, Table
+from validation.report.blocks import Block, Callout, Heading, Table, TableColumn
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -19,6 +19,16 @@ def value_cell(value: Value, metric: str = "") -> str:
     if value == 0 and is_count(metric):
         return "0"
     return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
+
+
+def window(v: VerdictRecord) -> str:
+    """Return the time up to which a gate compares, ``0.2s``, which its id ends with; nothing for a whole run."""
+    return v["id"].rpartition("@")[2] if "@" in v["id"] else ""
+
+
+def measured(v: VerdictRecord) -> str:
+    """Return the metric of a gate, and its window."""
+    return f"{v['metric']}@{window(v)}" if window(v) else v["metric"]
 
 
 def band(v: VerdictRecord) -> str:
@@ -49,7 +59,12 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     if failures:
         text = "One gate fails." if failures == 1 else f"{failures} gates fail."
         blocks.append(Callout(text, "fail"))
-    titles = (Column("Verdict", "verdict"), Column("Gate", "id"), Column("Value", "decimal"), Column("Band"))
+    titles = (
+        TableColumn("Verdict", "verdict"),
+        TableColumn("Gate", "id"),
+        TableColumn("Value", "decimal"),
+        TableColumn("Band"),
+    )
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
         row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))

@@ -12,10 +12,9 @@ from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
 from validation.problems.quantities import COUNTED, Quantity
-from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, columns
-from validation.report.blocks import Column as TableColumn
+from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.text import DASH, bounded, plain, short
-from validation.report.figures.curves import EXACT, Panel
+from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
 
 if TYPE_CHECKING:
@@ -29,19 +28,19 @@ ALLOWED = (
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class JudgedAnswer:
     """An answer with its verdict and all that the page holds of it."""
 
     problem: Problem
     history: History
-    held: Standard
+    standard: Standard
     judgement: Judgement
     cause: Cause | None  # of a failure
     about: tuple[tuple[str, str], ...]  # what the answer says of itself: field and text
     warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
-def headline(answer: Judged) -> str:
+def headline(answer: JudgedAnswer) -> str:
     """Return the verdict and what it rests on, in a sentence."""
     judgement = answer.judgement
     column = judgement.deciding
@@ -54,7 +53,7 @@ def headline(answer: Judged) -> str:
     )
 
 
-def reached(answer: Judged) -> str:
+def reached(answer: JudgedAnswer) -> str:
     """Return how far an answer that fails is right, in a sentence."""
     within = answer.judgement.within
     if not within:
@@ -70,7 +69,7 @@ def per_cent(share: float | None) -> str:
     return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
-def page(answer: Judged, directory: Path) -> list[Block]:
+def page(answer: JudgedAnswer, directory: Path) -> list[Block]:
     """Return the blocks of the page; its figures are written to a directory."""
     judgement = answer.judgement
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(judgement.word, "warn")
@@ -83,26 +82,26 @@ def page(answer: Judged, directory: Path) -> list[Block]:
     return [
         *blocks,
         Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
-        _columns(judgement.columns, answer.held),
+        _columns(judgement.columns, answer.standard),
         *figures(answer, directory),
         *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
         Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(answer.about)),
     ]
 
 
-def figures(answer: Judged, directory: Path) -> Sequence[FigureBlock]:
+def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
     """Draw every column that is judged, with the exact one."""
     from validation.report.figures import histories, motion  # which load matplotlib; a verdict alone needs none
 
     drawn = []
-    exact = answer.held.exact
+    exact = answer.standard.exact
     rows = len(exact.time)
     for name in answer.history.columns:
         lines = {
             EXACT: History(exact.time, {name: exact.columns[name]}),
             ANSWER: History(answer.history.time[:rows], {name: answer.history.columns[name][:rows]}),
         }
-        panel = Panel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
+        panel = HistoryPanel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
         if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
             caption = f"The answer lies on the exact motion: {united(name)}."
         else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,9 @@ from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Tab
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures import histories
-from validation.report.figures.paper import StepPanel, radius_figure, steps_figure
-from validation.runs.history import Array
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import style_of
+from validation.report.figures.histories import Margins
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -29,6 +30,7 @@ VERBS = {  # of one, of several
     "refuted": ("is refuted", "are refuted"),
 }
 CLAIMS = "claims"
+SCHEME_COLORS = ("#009e73", "#5d3a9b", "#cc79a7", "#8c6d1f")  # schemes are no solvers: colours of their own
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,34 @@ def figure_1(manifest: Manifest, groups: Mapping[str, CaseGroup], directory: Pat
         "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
         "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."
     )
-    return [histories.saved(radius_figure(data, _points(cases)), directory, "figure-1.svg", caption)]
+    figure = chart_figure([radius_panel(data, _points(cases))], 58.0, Margins(13.0, 56.0, 4.0, 9.5))
+    return [histories.saved(figure, directory, "figure-1.svg", caption)]
+
+
+def radius_panel(data: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> ChartPanel:
+    """Return the spectral radius over w dt of some schemes, what the paper prints dashed, the code's as circles."""
+    omega = np.array(data["omega"])
+    lines = []
+    for (name, curve), color in zip(data["schemes"].items(), SCHEME_COLORS, strict=True):
+        radius = np.array(curve["radius"])
+        printed = np.array(curve["printed"])
+        lines.append(ChartLine(name, omega, radius, color))
+        departs = np.abs(printed - radius) > 1e-6
+        if departs.any():
+            words = f"{name.split(' (')[0]}: √(1+h), as printed"
+            lines.append(ChartLine(words, omega[departs], printed[departs], color, (4.0, 2.0), 0.9))
+    x, y = np.array(points).reshape(-1, 2).T
+    lines.append(ChartLine("", x, y, style_of("dda").color, width=0, dots=2.6, hollow=True))
+    return ChartPanel(
+        "",
+        "ω dt",
+        "Spectral radius |λ|",
+        lines,
+        (omega[0], omega[-1]),
+        (0.0, 1.06),
+        (True, False),
+        {"ω dt = 4": 4.0},
+    )
 
 
 def _points(cases: Sequence[CaseResults]) -> list[tuple[float, float]]:
@@ -127,30 +156,58 @@ def _points(cases: Sequence[CaseResults]) -> list[tuple[float, float]]:
 
 def figure_block(figure: PaperFigure, group: CaseGroup, directory: Path) -> FigureBlock:
     """Draw one of the paper's figures and return its block."""
-    panels = [_panel(figure, case) for case in group.cases]
+    panels = [_panel(figure, case, len(group.cases)) for case in group.cases]
     label = "Relative error of displacement [%]" if figure.relative else COLUMNS[figure.quantity][2]
     caption = f"Figure {figure.number}. {figure.caption}. Hairline: static value."
-    if any(panel.settled is not None for panel in panels):
+    if any(panel.marks for panel in panels):
         caption += " Dashed: step from which DDA stays within 1 % of static."
     pairs = zip(group.cases, panels, strict=True)
-    if any("continuum" in case.histories and "continuum" not in panel.lines for case, panel in pairs):
+    if any("continuum" in case.histories and not _has_line(panel, "continuum") for case, panel in pairs):
         caption += f" The continuum is left out where its period has fewer than {COARSE} steps."
-    chart = steps_figure(panels, label, figure.last)
+    panels = [replace(panel, y_label=label, y_range=_range(panels)) for panel in panels]
+    chart = chart_figure(panels, 36.0, Margins(right=22.0, bottom=9.5), shared=True)
     return histories.saved(chart, directory, f"figure-{figure.number}.svg", caption)
 
 
-def _panel(figure: PaperFigure, case: CaseResults) -> StepPanel:
+def _has_line(panel: ChartPanel, name: str) -> bool:
+    return any(line.name == name for line in panel.lines)
+
+
+def _range(panels: Sequence[ChartPanel]) -> tuple[float, float]:
+    """Return the range of all lines and of rest."""
+    values = np.zeros(1)
+    for panel in panels:
+        values = np.concatenate([values, *(line.y for line in panel.lines)])
+    values = values[np.isfinite(values)]
+    pad = 0.06 * float(np.ptp(values)) or 1.0
+    return float(values.min()) - pad, float(values.max()) + pad
+
+
+def _panel(figure: PaperFigure, case: CaseResults, count: int) -> ChartPanel:
+    """Return one case of the `count` that a figure has side by side."""
     column, factor, _ = COLUMNS[figure.quantity]
     static = case.number("dda", f"{figure.quantity}.static") or 0.0
-    lines: dict[str, Array] = {}
-    for solver in SOLVERS:
-        if solver in case.histories:
-            values = case.histories[solver].columns[column]
-            lines[solver] = 100 * (values / static - 1) if figure.relative and static else factor * values
     w = case.number("bar", "mode1.frequency")
-    if w is not None and 2 * np.pi / w < COARSE * case.scene.time.step:
-        lines.pop("continuum", None)
-    if figure.relative:
-        return StepPanel(case.label, lines, level=0.0)
-    settled = case.number("dda", f"{figure.quantity}.settling_step")
-    return StepPanel(case.label, lines, factor * static, settled)
+    is_coarse = w is not None and 2 * np.pi / w < COARSE * case.scene.time.step
+    lines = []
+    for solver in SOLVERS:
+        if solver not in case.histories or (solver == "continuum" and is_coarse):
+            continue
+        values = case.histories[solver].columns[column][: figure.last]
+        scaled = 100 * (values / static - 1) if figure.relative and static else factor * values
+        lines.append(ChartLine(solver, np.arange(1.0, values.size + 1), scaled))
+    level = 0.0 if figure.relative else factor * static
+    settled = None if figure.relative else case.number("dda", f"{figure.quantity}.settling_step")
+    marks = {} if settled is None else {f"{settled:.0f} steps": settled}
+    is_wide = count <= (3 if figure.last < 1000 else 2)
+    return ChartPanel(
+        case.label,
+        "Time step",
+        "",
+        lines,
+        (0.0, float(figure.last)),
+        marks=marks,
+        levels={"": level},
+        x_ticks=4 if is_wide else 2,
+        y_ticks=5,
+    )

@@ -26,7 +26,8 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
-from validation.report.figures.curves import COLUMNS, Panel, differences
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import COLUMNS, HistoryPanel, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
@@ -237,7 +238,7 @@ def history_block(
     panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
-    return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences))
+    return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
 
 
 def _ends(cases: Sequence[CaseResults]) -> list[float]:
@@ -261,7 +262,7 @@ def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without
     return CALM * latest
 
 
-def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> list[str]:
+def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]:
     """Name the lines that lie on one another, and how far off they are at most."""
     parts = []
     for name, others in motion.twins(panels, columns).items():
@@ -269,7 +270,7 @@ def _on_one(panels: Sequence[Panel], columns: Sequence[str]) -> list[str]:
     return [f"{', '.join(parts)}."] if parts else []
 
 
-def _reading(panels: Sequence[Panel], columns: Sequence[str], apart: bool) -> list[str]:
+def _reading(panels: Sequence[HistoryPanel], columns: Sequence[str], apart: bool) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
     sentences = []
     if start := motion.start_of(panels, columns[0]):
@@ -315,7 +316,7 @@ def _motion_of(case: CaseResults) -> dict[str, Any]:
 
 def _panel(
     case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
-) -> Panel:
+) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
         if solver not in without and set(columns) & set(history.columns):
@@ -330,7 +331,7 @@ def _panel(
             static[column] = numbers[0]
     finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
-    return Panel(title, drawn, static, reference, finer=finer_drawn)
+    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn)
 
 
 def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
@@ -340,20 +341,29 @@ def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
     return sorted((n, v) for n, v in displacements.items() if v is not None)
 
 
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[ChartPanel, str]:
+    """Return the drift of fem on corner point springs as a panel, and the sentence that it carries."""
     n, v = np.array(drift, dtype=float).T
+    v = 1e3 * v  # mm
     slope = float(np.polyfit(np.log2(n), v, 1)[0])
+    lines = [ChartLine("fem", n, v, dots=DOTS)]
     dda = group.cases[0].number("dda", "displacement.static")
-    levels = {} if dda is None else {"dda": 1e3 * dda}
-    line = histories.Line("fem", n, 1e3 * v, f": {plain(1e3 * slope, 3)} mm per doubling of n")
-    figure = histories.line_figure([line], "Elements a side n", "Static displacement [mm]", levels, log2_x=True)
-    caption = "Static displacement on corner point springs over the mesh, with the fitted slope."
+    if dda is not None:
+        lines.append(ChartLine("dda", n, np.full(n.size, 1e3 * dda)))
+    low = 1.1 * min(float(v.min()), 1e3 * (dda or 0.0))
+    title = "v at rest on corner point springs [mm]"
+    x_range = (n[0] / 1.3, n[-1] * 1.3)
+    panel = ChartPanel(title, "elements a side n", "", lines, x_range, (low, 0.0), (True, False))
+    return panel, (
+        f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
+        "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
+    )
+
+
+def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+    panel, sentence = drift_panel(group, drift)
+    caption = "Displacement at rest on corner point springs over the mesh."
     return [
-        histories.saved(figure, directory, f"{group.slug}-drift.svg", caption),
-        Callout(
-            f"On corner point springs the static displacement changes by {plain(1e3 * slope, 3)} mm with every "
-            "halving of the mesh and has no limit: a point force moves its own point of an elastic body "
-            'infinitely. The cure is foundation = "distributed" or "patch".',
-            "warn",
-        ),
+        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption, group.name),
+        Callout(f'{sentence} The cure is foundation = "distributed" or "patch".', "warn"),
     ]

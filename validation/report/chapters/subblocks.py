@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
-from validation.report.figures.histories import Line
-from validation.report.figures.work import work_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.histories import Margins
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -70,7 +70,7 @@ def _count(case: CaseResults) -> int:
     return (case.scene.block.subdivide or (1, 1))[1]
 
 
-def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str, metric: str) -> Line | None:
+def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str, metric: str) -> ChartLine | None:
     """Return one method of refinement as a line: seconds and error, each point with its count."""
     points = []
     for case in cases:
@@ -81,7 +81,7 @@ def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str,
     if not points:
         return None
     x, y, notes = zip(*points, strict=True)
-    return Line(name, np.array(x), np.array(y), " ".join(notes))
+    return ChartLine(name, np.array(x), np.array(y), dots=3.0, notes=notes)
 
 
 def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
@@ -102,7 +102,10 @@ def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
         lines_with_points = [line for line in lines if line is not None]
         if lines_with_points:
             caption = f"{title}: error against run time. A number at a point counts the sub-blocks along a side."
-            figure = work_figure(lines_with_points, "Seconds of the run", "Relative L2 error")
+            panel = ChartPanel(
+                "", "Seconds of the run", "Relative L2 error", lines_with_points, logarithmic=(True, True)
+            )
+            figure = chart_figure([panel], 46.0, Margins(16.0, 34.0, 3.0, 9.5))
             blocks.append(histories.saved(figure, directory, f"subblocks-time-{kind}.svg", caption))
     return blocks
 
@@ -132,7 +135,7 @@ def _patterns(group: CaseGroup) -> Table:
         errors = (_percent(_frequency_error(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
         cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
         rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
-    titles = (Column("Pattern"), Column("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
+    titles = (TableColumn("Pattern"), TableColumn("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
     titles += columns("decimal", "Unknowns", "ms")
     return Table(titles, tuple(rows), f"{group.title}, against quadratic elements")
 
@@ -160,7 +163,7 @@ def _glue(group: CaseGroup) -> Table:
         errors_by_motion = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
         errors_by_motion[bool(case.scene.load.traction)] = _percent(_frequency_error(case))
     rows = tuple((short(ratio), *errors_by_motion.values()) for ratio, errors_by_motion in errors.items())
-    titles = (Column("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
+    titles = (TableColumn("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
     return Table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
 
 
@@ -178,4 +181,4 @@ def _rocking(group: CaseGroup) -> Table:
     for group_title in ("ω₁ [rad/s]", "ξ₁ [1]"):
         titles += columns("decimal", "dda", "fem", group=group_title)
     caption = "First rocking mode on springs of equal total stiffness"
-    return Table((*titles, Column("Block above elements")), tuple(rows), caption)
+    return Table((*titles, TableColumn("Block above elements")), tuple(rows), caption)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from validation.runs.case_name import CaseName
@@ -120,17 +120,17 @@ def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
 
 def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
     """Return a short label per case of one scene: the swept values in the symbols of the text."""
-    fields = [dict(CaseName.parse(name).values) for name in names]
-    full = list(map(_label, fields, scenes))
-    for values in fields:
-        values.pop("time.steps", None)
-    short = list(map(_label, fields, scenes))
+    full = list(map(case_label, names, scenes))
+    short = [case_label(name, scene, {"time.steps"}) for name, scene in zip(names, scenes, strict=True)]
     return short if len(set(short)) == len(short) else full
 
 
-def _label(values: Mapping[str, str], scene: Scene) -> str:
+def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
+    """Return the swept values of a case in the symbols of the text, without those of some fields."""
     parts = []
-    for field, value in values.items():
+    for field, value in CaseName.parse(name).values.items():
+        if field in without:
+            continue
         symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))
         if field == "contact.stiffness":
             symbol = "p"
@@ -151,6 +151,11 @@ def _pressure(text: str) -> tuple[str, str]:
 
 def parameters(scene: Scene, varied: set[str]) -> str:
     """Return the data of a scene in one line, without the fields that vary between its cases."""
+    return f"{', '.join(parameter_items(scene, varied))}."
+
+
+def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
+    """Return the data of a scene, without the fields that vary between its cases."""
     time = scene.time
     items = [
         *(_of_column(scene) if scene.column is not None else _of_block(scene)),
@@ -165,7 +170,7 @@ def parameters(scene: Scene, varied: set[str]) -> str:
         *_of_mesh(scene),
     ]
     items += _of_others(scene, {field for field, _ in items})
-    return ", ".join(text for field, text in items if field not in varied) + "."
+    return [text for field, text in items if field not in varied]
 
 
 def _of_block(scene: Scene) -> Iterator[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,15 +22,30 @@ from validation.report.chapters.data import (
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
-from validation.report.figures.waves import COLORS as BY_SCHEME
-from validation.report.figures.waves import SiteTrace, Travel, site_figure, travel_figure
-from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import engineering
+from validation.report.figures.histories import Margins
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
+from validation.studies.waves.rows import COUNTS, row_name
 
 SCHEMES = {1.0: "(1/2, 1)", 0.5: "(1/4, 1/2)"}  # by delta
-COLORS = {delta: BY_SCHEME[scheme] for delta, scheme in SCHEMES.items()}
+COLORS = {"(1/2, 1)": "#d55e00", "(1/4, 1/2)": "#0072b2"}
+DASHES = {0.1: (1.0, 1.2), 0.25: (2.5, 1.2), 0.5: (5.0, 1.5)}  # by c dt/h
+BLOCKS = (8, 10, 20, 40, 100)  # ticks
+
+
+@dataclass(frozen=True)
+class TravelledWaves:
+    """Waves of one scheme and one c dt/h: closed form, or what was measured."""
+
+    scheme: str  # "(1/2, 1)" or "(1/4, 1/2)"
+    courant: float  # c dt/h [-]
+    blocks: Array  # a wavelength [-]
+    speed: Array  # error of the phase speed [-]
+    amplitude: Array  # after ten wavelengths, over that at the start [-]
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
@@ -44,15 +60,16 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
             "Waves in welded blocks: closed forms (lines) and what was measured on stepped histories (dots); solid "
             "c dt/h = 1, long dashes 1/2, short dashes 1/4, dots 1/10."
         )
-        blocks.append(histories.saved(travel_figure(curves, measured), directory, "waves-travel.svg", caption))
+        figure = chart_figure(travel_panels(curves, measured), 52.0, Margins(13.0, 34.0, 6.0, 9.5))
+        blocks.append(histories.saved(figure, directory, "waves-travel.svg", caption))
     tables = (_others(groups, rows), _joints(groups, rows), _base(groups, rows))
     blocks += [table for table in tables if table.rows]
     return [*blocks, *_site(groups, directory)]
 
 
-def _curve(data: Mapping[str, Any]) -> Travel:
+def _curve(data: Mapping[str, Any]) -> TravelledWaves:
     parts = (np.array(data[part]) for part in ("blocks", "speed", "left"))
-    return Travel(data["scheme"], data["courant"], *parts)
+    return TravelledWaves(data["scheme"], data["courant"], *parts)
 
 
 # ---- waves in blocks ------------------------------------------------------------------------------------------------
@@ -70,14 +87,14 @@ def _courant(scene: Scene) -> float:
 def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
     """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
     waves = []
-    for (scene, name), metrics in rows.items():
-        words = name.split()
-        if scene == case.name and words[0] == "dda" and isinstance(metrics.get(metric), float):
-            waves.append((int(words[2]), metrics))
-    return sorted(waves, key=lambda wave: wave[0])
+    for blocks in COUNTS:
+        metrics = rows.get((case.name, row_name("dda", blocks)), {})
+        if isinstance(metrics.get(metric), float):
+            waves.append((blocks, metrics))
+    return waves
 
 
-def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[Travel]:
+def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[TravelledWaves]:
     """Return the waves measured in welded blocks, by case."""
     group = groups.get("waves-blocks")
     measured = []
@@ -86,11 +103,11 @@ def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[Travel]:
         if waves and case.scene.time.delta in SCHEMES:
             parts = (np.array([wave[f"wave.{part}"] for _, wave in waves]) for part in ("speed_error", "left"))
             blocks = np.array([float(count) for count, _ in waves])
-            measured.append(Travel(SCHEMES[case.scene.time.delta], _courant(case.scene), blocks, *parts))
+            measured.append(TravelledWaves(SCHEMES[case.scene.time.delta], _courant(case.scene), blocks, *parts))
     return measured
 
 
-def lead(measured: Sequence[Travel]) -> str:
+def lead(measured: Sequence[TravelledWaves]) -> str:
     """Say what ten blocks a wavelength give, in one sentence."""
     for travel in measured:
         at = np.flatnonzero(travel.blocks == 10)
@@ -102,6 +119,35 @@ def lead(measured: Sequence[Travel]) -> str:
                 f"too fast, but under (1/2, 1) {amplitude} of its amplitude is left after ten wavelengths."
             )
     return ""
+
+
+def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[TravelledWaves]) -> list[ChartPanel]:
+    """Return the error of the speed and what is left, closed forms as lines and measured waves as dots."""
+    speeds = []
+    amplitudes = []
+    for waves in curves:
+        look = (COLORS[waves.scheme], DASHES.get(waves.courant, ()), 0.9)
+        name = f"{waves.scheme}, c dt/h = {waves.courant:g}"
+        if waves.scheme == "(1/4, 1/2)":  # which loses nothing, whatever the step
+            name = "(1/4, 1/2), every dt"
+        speeds.append(ChartLine("", waves.blocks, 100 * waves.speed, *look))
+        amplitudes.append(ChartLine(name, waves.blocks, waves.amplitude, *look))
+    for waves in measured:
+        dots: dict[str, Any] = {"color": COLORS[waves.scheme], "width": 0, "dots": 2.6}
+        speeds.append(ChartLine("", waves.blocks, 100 * waves.speed, **dots))
+        amplitudes.append(ChartLine("", waves.blocks, waves.amplitude, **dots))
+    axes: dict[str, Any] = {"x_range": (7.0, 115.0), "logarithmic": (True, False)}
+    axes["x_ticks"] = {float(blocks): str(blocks) for blocks in BLOCKS}
+    label = "blocks a wavelength"
+    shares = {
+        share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)
+    }  # a zero would meet the other axis' last tick
+    return [
+        ChartPanel("Error of the phase speed [%]", label, "", speeds, y_range=(-3.0, 4.0), levels={"": 0.0}, **axes),
+        ChartPanel(
+            "Amplitude left after ten wavelengths", label, "", amplitudes, y_range=(-0.02, 1.04), y_ticks=shares, **axes
+        ),
+    ]
 
 
 def _others(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
@@ -170,27 +216,42 @@ def _base(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
 def _site(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
     """Return the page of the layered site: surface and base under two schemes and exactly."""
     groups_of_site = [groups[name] for name in ("waves-site", "waves-site-usual") if name in groups]
-    traces: dict[str, list[SiteTrace]] = {DISPLACEMENT: [], PRESSURE: []}
+    traces: dict[str, list[ChartLine]] = {DISPLACEMENT: [], PRESSURE: []}
     for group in groups_of_site:
         case = group.cases[0]
         name = f"dda, dt = {case.scene.time.step:g} s,\n{SCHEMES.get(case.scene.time.delta, '')}"
-        lines = [("dda", name, COLORS[case.scene.time.delta], 0.6)]
+        lines = [("dda", name, COLORS[SCHEMES[case.scene.time.delta]], 0.6)]
         if not traces[DISPLACEMENT]:  # once, below the others
             lines.insert(0, ("layers", "exact layers", "#999999", 1.6))
         for solver, label, color, width in lines:
             history = case.histories.get(solver)
             for column, traces_of_column in traces.items():
                 if history is not None and column in history.columns:
-                    traces_of_column.append(SiteTrace(label, color, width, history.time, history.columns[column]))
+                    values = history.columns[column]
+                    traces_of_column.append(ChartLine(label, history.time, values, color, width=width))
     if not all(traces.values()):
         return []
-    rows = [("Surface displacement", "m", traces[DISPLACEMENT]), ("Shear stress on the base", "Pa", traces[PRESSURE])]
+    panels = [
+        site_panel("Surface displacement", "m", traces[DISPLACEMENT], ""),
+        site_panel("Shear stress on the base", "Pa", traces[PRESSURE], "Time [s]"),
+    ]
+    figure = chart_figure(panels, [(42.0, 9.0), (42.0, 0.0)], Margins(13.0, 36.0, 6.0, 9.0))
     caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
     return [
         Heading("A site under a record", 2),
         Paragraph(_site_sentence(groups_of_site)),
-        histories.saved(site_figure(rows), directory, "waves-site.svg", caption),
+        histories.saved(figure, directory, "waves-site.svg", caption),
     ]
+
+
+def site_panel(title: str, unit: str, traces: Sequence[ChartLine], x_label: str) -> ChartPanel:
+    """Return traces [m or Pa] as a panel in a unit that suits them, each with its largest value."""
+    largest = [float(np.abs(trace.y).max()) for trace in traces]
+    factor, unit = engineering(max(largest), unit)
+    lines = []
+    for trace, value in zip(traces, largest, strict=True):
+        lines.append(replace(trace, y=factor * trace.y, note=f"{factor * value:.3g} {unit} at most"))
+    return ChartPanel(f"{title} [{unit}]", x_label, "", lines, (0.0, float(traces[0].x[-1])), names="beside")
 
 
 def _site_sentence(site: Sequence[CaseGroup]) -> str:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Column, Heading, Paragraph, Table, columns
+from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.cost import work_figure
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.studies.work.points import Point, cheapest, floor, points
+from validation.studies.work.points import METHODS, Point, cheapest, floor, points
 
 SCHEMES = {"work-constant": "Constant acceleration", "work-average": "Average acceleration, consistent start"}
+MESHED = {method for (solver, _), method in METHODS.items() if solver == "fem"}
 TARGET_ERRORS = (0.1, 0.01, 0.001)
 
 
@@ -34,7 +36,7 @@ def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Pat
         return [Heading(title, 2), Paragraph("No run completed.")]
     caption = (
         "Error against cost, step and mesh refined together. Left of each pair against the bar under the same scheme, "
-        "right against the continuum; relative L2. Grey: what no run beats in both; dotted: the model form of DDA; "
+        "right against the continuum; relative L2. Grey: what no run beats in both; hairline: the model form of DDA; "
         "hollow: below the reference's own uncertainty."
     )
     return [
@@ -62,9 +64,13 @@ def cheapest_sentence(runs: Sequence[Point]) -> str:
 
 
 def _run_text(run: Point) -> str:
-    mesh = f", {run.scene.fem.per_side} elements a side" if run.method.startswith("fem") else ""
-    step = short(1e3 * run.scene.time.step, 3)
-    return f"{run.method} with dt = {step} ms{mesh} (in {short(1e3 * run.seconds, 2)} ms)"
+    return f"{run.method} with {refinement(run)} (in {short(1e3 * run.seconds, 2)} ms)"
+
+
+def refinement(run: Point) -> str:
+    """Return time step and mesh of a run."""
+    mesh = f", {run.scene.fem.per_side} elements a side" if run.method in MESHED else ""
+    return f"dt = {short(1e3 * run.scene.time.step, 3)} ms{mesh}"
 
 
 def floor_sentence(runs: Sequence[Point]) -> str:
@@ -84,14 +90,13 @@ def floor_sentence(runs: Sequence[Point]) -> str:
 def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
     """Return the orders that were fitted: what was refined, and the order of each quantity."""
     orders_by_name: dict[str, dict[str, str]] = {}
-    for v in verdicts:
-        kind, _, quantity = v["metric"].partition(".")
-        if kind == "order" and isinstance(v["value"], int | float):
+    for v, quantity in itertools.product(verdicts, ("displacement", "pressure")):
+        if v["metric"] == f"order.{quantity}" and isinstance(v["value"], int | float):
             orders_by_name.setdefault(v["scene"], {})[quantity] = plain(float(v["value"]), 4)
     rows = []
     for name, orders in orders_by_name.items():
         rows.append((name, orders.get("displacement", DASH), orders.get("pressure", DASH)))
-    titles = (Column("Refined", "code"), *columns("decimal", "displacement", "pressure", group="Order"))
+    titles = (TableColumn("Refined", "code"), *columns("decimal", "displacement", "pressure", group="Order"))
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
         "grid-convergence index as its uncertainty."

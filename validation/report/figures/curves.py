@@ -134,7 +134,7 @@ def engineering(largest: float, unit: str) -> tuple[float, str]:
 
 
 @dataclass(frozen=True)
-class Panel:
+class HistoryPanel:
     """One of several small multiples: the histories of all solvers for one case."""
 
     title: str
@@ -158,7 +158,7 @@ class Panel:
         return {name: history for name, history in finest.items() if column in history.columns}
 
 
-def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
+def common_range(panels: Sequence[HistoryPanel], column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     columns = [np.zeros(1)]
     for panel in panels:
@@ -171,7 +171,7 @@ def common_range(panels: Sequence[Panel], column: str) -> tuple[float, float]:
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 
 
-def differences(panel: Panel, column: str) -> dict[str, tuple[Array, Array]]:
+def differences(panel: HistoryPanel, column: str) -> dict[str, tuple[Array, Array]]:
     """Return the envelope of each solver's scaled difference from the reference."""
     base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:

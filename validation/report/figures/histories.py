@@ -21,7 +21,6 @@ from validation.report.figures.curves import (
     dash_style,
     nudge,
     style_of,
-    thin,
 )
 from validation.runs.files import write_atomically
 from validation.runs.history import Array
@@ -50,10 +49,10 @@ def save(figure: Figure, path: Path) -> Path:
     return path
 
 
-def saved(figure: Figure, directory: Path, file: str, caption: str) -> FigureBlock:
-    """Write a figure into a directory and return its block."""
+def saved(figure: Figure, directory: Path, file: str, caption: str, scene: str = "") -> FigureBlock:
+    """Write a figure, of one scene or of none, into a directory and return its block."""
     save(figure, directory / file)
-    return FigureBlock(file, caption)
+    return FigureBlock(file, caption, scene)
 
 
 @dataclass(frozen=True)
@@ -82,46 +81,6 @@ def axes_grid(
         grid.append([figure.add_axes((x / width, y / height, across / width, row / height)) for x in left_edges])
         y -= gap
     return figure, grid
-
-
-def map_axes(
-    lines: int, across: int, rows: Sequence[str], columns: Sequence[str], cell: float
-) -> tuple[Figure, list[list[Axes]]]:
-    """Return a figure for maps of numbers, `lines` times `across` axes without ticks.
-
-    A map has labelled `rows`, whose height is `cell` mm, and `columns`; rows are labelled at the left, columns below.
-    """
-    gap = 6.0  # mm, also above each line, for its titles
-    left = 16.0  # mm
-    bottom = 9.0  # mm
-    width = (WIDTH - left - 2.0 - gap * (across - 1)) / across
-    pitch = gap + cell * len(rows)
-    height = pitch * lines + bottom
-    figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
-    grid = []
-    for i in reversed(range(lines)):
-        y = (bottom + pitch * i) / height
-        left_edges = [left + k * (width + gap) for k in range(across)]
-        grid.append([figure.add_axes((x / WIDTH, y, width / WIDTH, cell * len(rows) / height)) for x in left_edges])
-    for line in grid:
-        x_labels = columns if line is grid[-1] else [""] * len(columns)
-        for axes in line:
-            y_labels = rows if axes is line[0] else [""] * len(rows)
-            axes.set_xticks(range(len(columns)), list(x_labels))
-            axes.set_yticks(range(len(rows)), list(y_labels))
-            axes.tick_params(length=0)
-    return figure, grid
-
-
-def one_axes(
-    height: float, margins: Margins, labels: tuple[str, str], logarithmic: bool = False
-) -> tuple[Figure, Axes]:
-    """Return a figure with one pair of axes of a height [mm], labelled in x and y."""
-    figure, ((axes,),) = axes_grid([(height, 0.0)], 1, margins)
-    if logarithmic:
-        axes.set(xscale="log", yscale="log")
-    axes.set(xlabel=labels[0], ylabel=labels[1])
-    return figure, axes
 
 
 def size_of(axes: Axes) -> tuple[float, float]:
@@ -203,36 +162,3 @@ def outer_ticks(axes: Axes, last: float, texts: Mapping[float, str]) -> None:
     labels[0].set_horizontalalignment("left")
     if max(texts) > 0.95 * last:
         labels[-1].set_horizontalalignment("right")
-
-
-@dataclass(frozen=True)
-class Line:
-    """A named line; the name chooses the style, `note` follows it at the line's end."""
-
-    name: str
-    x: Array
-    y: Array
-    note: str = ""
-
-
-def line_figure(
-    lines: Sequence[Line], x_label: str, y_label: str, levels: Mapping[str, float] | None = None, log2_x: bool = False
-) -> Figure:
-    """Draw named lines (with markers where they have few points) and horizontal levels, labelled at their ends."""
-    with house_style():
-        figure, axes = one_axes(38.0, Margins(16.0, 56.0, 3.0, 9.5), (x_label, y_label))
-        if log2_x:
-            axes.set_xscale("log", base=2)
-            axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        for line in lines:
-            x, y = thin(line.x, line.y)
-            draw_line(axes, line.name, x, y)
-            if x.size <= 20:
-                axes.plot(x, y, "o", ms=3, color=style_of(line.name).color, zorder=9)
-        for name, level in (levels or {}).items():
-            axes.axhline(level, color=style_of(name).color, lw=style_of(name).width)
-        axes.margins(x=0.02, y=0.08)
-        axes.autoscale_view()
-        ends = {line.name: float(line.y[-1]) for line in lines} | dict(levels or {})
-        label_ends(axes, ends, {line.name: f"{line.name}{line.note}" for line in lines})
-    return figure

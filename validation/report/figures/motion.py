@@ -19,7 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from validation.report.figures.curves import (
     COLUMNS,
     HAIR,
-    Panel,
+    HistoryPanel,
     common_range,
     differences,
     engineering,
@@ -49,7 +49,7 @@ FLOOR = 1e-9  # of the static value; smaller differences are not drawn
 Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
 
 
-def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) -> Figure:
+def history_figure(panels: Sequence[HistoryPanel], *columns: str, apart: bool = False) -> Figure:
     """Draw columns of all solvers, one panel a case; if `apart`, the first one's differences from the reference below.
 
     Differences are divided by the static value (by the reference's largest value where there is none) and shown
@@ -87,7 +87,7 @@ def history_figure(panels: Sequence[Panel], *columns: str, apart: bool = False) 
 # ---- lines that lie on one another --------------------------------------------------------------------------------
 
 
-def twins(panels: Sequence[Panel], columns: Sequence[str]) -> Twins:
+def twins(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> Twins:
     """Return the solvers that are drawn, and with each the later ones that lie on it in every panel."""
     lines: dict[str, dict[str, float]] = {}
     for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
@@ -101,7 +101,7 @@ def twins(panels: Sequence[Panel], columns: Sequence[str]) -> Twins:
     return lines
 
 
-def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str) -> float | None:
+def _apart(panels: Sequence[HistoryPanel], columns: Sequence[str], one: str, other: str) -> float | None:
     """Return how far a solver is off another at most, over the largest value; None where it is drawn without it."""
     worst = 0.0
     for panel in panels:
@@ -125,7 +125,7 @@ def _apart(panels: Sequence[Panel], columns: Sequence[str], one: str, other: str
     return worst
 
 
-def _with_lines(panel: Panel, on_one: Twins) -> Panel:
+def _with_lines(panel: HistoryPanel, on_one: Twins) -> HistoryPanel:
     """Return a panel with the histories that are drawn; of the reference, which may lie on another, the base."""
     lines = {name: history for name, history in panel.histories.items() if name in on_one}
     like_base = next((name for name, others in on_one.items() if panel.reference in others), None)
@@ -142,7 +142,7 @@ def swings(history: History, column: str) -> int:
     return int(np.count_nonzero(np.diff(np.signbit(far))))
 
 
-def start_of(panels: Sequence[Panel], column: str) -> float | None:
+def start_of(panels: Sequence[HistoryPanel], column: str) -> float | None:
     """Return the time [s] of the start that is drawn by itself, or None where all swings can be seen."""
     spans = []
     for panel in panels:
@@ -152,7 +152,7 @@ def start_of(panels: Sequence[Panel], column: str) -> float | None:
     return max(spans, default=None)
 
 
-def _until(panel: Panel, span: float) -> Panel:
+def _until(panel: HistoryPanel, span: float) -> HistoryPanel:
     cut = {name: history.until(span) for name, history in panel.histories.items()}
     return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
@@ -173,19 +173,19 @@ def _columns(count: int) -> int:
     return -(-count // rows)
 
 
-def _scale(panels: Sequence[Panel], column: str) -> tuple[float, str]:
+def _scale(panels: Sequence[HistoryPanel], column: str) -> tuple[float, str]:
     """Return the factor and the unit that a column is drawn in."""
     low, high = common_range(panels, column)
     return engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
 
 
-def _label(panels: Sequence[Panel], column: str) -> str:
+def _label(panels: Sequence[HistoryPanel], column: str) -> str:
     name, _ = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
     _, unit = _scale(panels, column)
     return f"{name}\n[{unit}]" if unit else name
 
 
-def _ends(band: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[str, float]:
+def _ends(band: Sequence[HistoryPanel], panels: Sequence[HistoryPanel], column: str) -> dict[str, float]:
     """Return where each line ends, in the last panel of a band that has it."""
     factor, _ = _scale(panels, column)
     ends = {}
@@ -195,7 +195,7 @@ def _ends(band: Sequence[Panel], panels: Sequence[Panel], column: str) -> dict[s
     return ends
 
 
-def _history_row(row: list[Axes], panels: Sequence[Panel], column: str, limits: tuple[float, float]) -> None:
+def _history_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str, limits: tuple[float, float]) -> None:
     low, high = limits
     factor, _ = engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
     pad = 0.05 * (high - low) or 1.0
@@ -224,7 +224,7 @@ def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
         axes.plot(middles, edge, color=style.color, lw=0.6, zorder=2 + style.layer)
 
 
-def _difference_row(row: list[Axes], panels: Sequence[Panel], column: str, names: Mapping[str, str]) -> None:
+def _difference_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str, names: Mapping[str, str]) -> None:
     curves = [differences(panel, column) for panel in panels]
     values = np.zeros(0)
     for lines in curves:
@@ -262,7 +262,7 @@ def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]])
             axes.tick_params(labelbottom=axes.get_xlim() != below.get_xlim())
 
 
-def _time_axis(axes: Axes, panel: Panel) -> None:
+def _time_axis(axes: Axes, panel: HistoryPanel) -> None:
     longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
     axes.set_xlim(0, longest)
     count = 3 if size_of(axes)[0] < 40 else 5

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, Column, Heading, PageBreak, Paragraph, Table, columns
-from validation.report.chapters.data import CaseResults
+from validation.report.blocks import Block, Callout, Heading, PageBreak, Paragraph, Table, TableColumn, columns
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
-from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
+from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
 from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
@@ -24,6 +25,14 @@ DISCOUNTS = (1.0, 0.98, 0.95, 0.9)  # of the paper's Figure 9
 STEPS = (1e-2, 2e-3, 1e-3, 1e-4)  # s
 STEP = 2e-3  # s, of the page on springs
 RATE_STEPS = (1e-3, 2e-3, 1e-2, 2e-2)  # s, at which the damping of a discount that is held as a rate is given
+SETTLING = (
+    MetricColumn("displacement.settling_step", 1.0, "displ.", "steps to 1 %", decimals=0),
+    MetricColumn("pressure.settling_step", 1.0, "press.", "steps to 1 %", decimals=0),
+)
+FINE_SETTLING = (
+    MetricColumn("displacement.fine_settling_step", 1.0, "displ.", "steps to 0.01 %", decimals=0),
+    MetricColumn("pressure.fine_settling_step", 1.0, "press.", "steps to 0.01 %", decimals=0),
+)
 SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
@@ -48,18 +57,20 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
     lines = [
-        Stroke(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
-        for r, scene, color in zip(RATIOS, scenes, CHOICES, strict=False)
+        ChartLine(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
+        for r, scene, color in zip(RATIOS, scenes, SETTINGS, strict=False)
     ]
     greatest = max(float(np.nanmax(line.y)) for line in lines)
     turn = closed.most_damped(scenes[0])
     transit = 1e3 * spectra.transit(paper)
-    chart = Chart(
+    chart = ChartPanel(
         "Damping ratio of the first axial mode [%], constant acceleration",
-        ("time step dt [ms]", ""),
+        "time step dt [ms]",
+        "",
         lines,
         RANGE,
         (0.05, 60.0),
+        (True, True),
         {f"a/c = {transit:.3g} ms": transit},
         {f"{100 * xi:g} %": 100 * xi for xi in TARGET_DAMPING},
     )
@@ -77,7 +88,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
             "Small damping and the wave both need a short step, and no step repairs the model: what is left "
             "when the damping is gone is one strain in place of a wave."
         ),
-        histories.saved(charts_figure([chart], 62.0), directory, "decision-step.svg", caption),
+        histories.saved(chart_figure([chart], 62.0), directory, "decision-step.svg", caption),
         step_table(scenes),
         *_as_run(groups),
     ]
@@ -92,7 +103,7 @@ def step_table(scenes: Sequence[Scene]) -> Table:
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
     titles = (
-        Column("Wanted ξ"),
+        TableColumn("Wanted ξ"),
         *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
     )
     return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
@@ -151,23 +162,18 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
     high = np.array([100 * (spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1) for s in scenes])
     marks = {f"{r:g}E": r for r in RATIOS}
-    deflection = Chart(
-        "What the springs add [%]",
-        ("p / E", ""),
-        (
-            Stroke("share of v at rest", grid, share, CHOICES[0]),
-            Stroke("ω₁ above the bar's", grid, high, CHOICES[3]),
-        ),
-        (0.1, 1e5), (0.0, 100.0), marks, logarithmic=(True, False),
-    )  # fmt: skip
+    axes: dict[str, Any] = {"x_range": (0.1, 1e5), "logarithmic": (True, False), "marks": marks}
+    additions = (
+        ChartLine("share of v at rest", grid, share, SETTINGS[0]),
+        ChartLine("ω₁ above the bar's", grid, high, SETTINGS[3]),
+    )
+    deflection = ChartPanel("What the springs add [%]", "p / E", "", additions, y_range=(0.0, 100.0), **axes)
     radii = []
-    for (name, (alpha, delta)), color in zip(SCHEMES.items(), CHOICES[1:], strict=False):
+    for (name, (alpha, delta)), color in zip(SCHEMES.items(), SETTINGS[1:], strict=False):
         stepped = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
-        radii.append(Stroke(name, grid, np.array([closed.contact_radius(s) for s in stepped]), color))
-    ringing = Chart(
-        f"|λ| of the contact at dt = {milliseconds(STEP)}",
-        ("p / E", ""), radii, (0.1, 1e5), (0.0, 1.05), marks, logarithmic=(True, False),
-    )  # fmt: skip
+        radii.append(ChartLine(name, grid, np.array([closed.contact_radius(s) for s in stepped]), color))
+    title = f"|λ| of the contact at dt = {milliseconds(STEP)}"
+    ringing = ChartPanel(title, "p / E", "", radii, y_range=(0.0, 1.05), **axes)
     caption = (
         "Left: the springs' share of v at rest; the stiffer they are, the more the first natural frequency exceeds the "
         "bar's. Right: share of its amplitude that the contact keeps per step; at 1 it rings for ever. Of "
@@ -177,7 +183,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     return [
         Heading("Decision 2: which spring stiffness?", 2),
         _rule(spring_rule(groups, base)),
-        histories.saved(charts_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
+        histories.saved(chart_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
         Paragraph(
             "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
@@ -190,8 +196,7 @@ def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
     usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
     case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
-    pressure = _steps(case, "pressure.fine_settling_step")
-    displacement = _steps(case, "displacement.fine_settling_step")
+    displacement, pressure = cells(FINE_SETTLING, case)
     as_run = ""
     if DASH not in (pressure, displacement):
         as_run = (
@@ -223,28 +228,17 @@ def spring_table(groups: Groups, base: Scene) -> Table:
             f"{closed.contact_radius(scene):.4f}",
             f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
         )
-        settling_cells = (
-            _steps(case, "displacement.settling_step"),
-            _steps(case, "pressure.settling_step"),
-            _steps(fine or case, "displacement.fine_settling_step"),
-            _steps(fine or case, "pressure.fine_settling_step"),
-        )
+        settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
         rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
     titles = (
-        Column("p"),
+        TableColumn("p"),
         *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
         *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
-        *columns("decimal", "displ.", "press.", group="steps to 1 %"),
-        *columns("decimal", "displ.", "press.", group="steps to 0.01 %"),
+        *heads(SETTLING + FINE_SETTLING),
     )  # fmt: skip
     return Table(
         titles, tuple(rows), f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run."
     )
-
-
-def _steps(case: CaseResults | None, metric: str) -> str:
-    value = None if case is None else case.number("dda", metric)
-    return DASH if value is None else f"{value:.0f}"
 
 
 # ---- which discount -----------------------------------------------------------------------------------------------
@@ -255,20 +249,26 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
     lines = []
-    for gg, color in zip(DISCOUNTS[1:], CHOICES, strict=False):
+    for gg, color in zip(DISCOUNTS[1:], SETTINGS, strict=False):
         scene = closed.timed(base, gg=gg)
-        lines.append(Stroke(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
+        lines.append(ChartLine(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
     rate = closed.rate_for(base, 0.05)
     at_rate = closed.timed(base, gg_rate=rate, gg=1.0)
     lines.append(
-        Stroke(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), CHOICES[3], DASHED)
+        ChartLine(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), SETTINGS[3], DASHED)
     )
     turns = ", ".join(short(spectra.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
-    chart = Chart(
+    chart = ChartPanel(
         "Damping ratio of the first axial mode [%], average acceleration",
-        ("time step dt [ms]", ""), lines, RANGE, (0.1, 1000.0), {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
+        "time step dt [ms]",
+        "",
+        lines,
+        RANGE,
+        (0.1, 1000.0),
+        (True, True),
+        {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
         {"critical": 100.0},
-    )  # fmt: skip
+    )
     caption = (
         "The shorter the step, the more a discount per step damps, without bound; held as a rate (dashed), it damps "
         f"the block alike while ω₁ dt is small: asked for 5 %, it is {damping_at_steps(at_rate, RATE_STEPS)} "
@@ -287,7 +287,7 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
             f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
             "step never converges."
         ),
-        histories.saved(charts_figure([chart], 60.0), directory, "decision-discount.svg", caption),
+        histories.saved(chart_figure([chart], 60.0), directory, "decision-discount.svg", caption),
         discount_table(base),
         Paragraph(
             "The discount does not damp a stiff contact: with average acceleration its roots tend to −1 and −gg. It "

@@ -6,18 +6,20 @@ import cmath
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
 from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
+from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
-from validation.report.figures.front.charts import CHOICES, DASHED, Chart, Stroke, charts_figure
-from validation.report.figures.front.model import model_figure
+from validation.report.figures.model import model_figure
 from validation.report.front import closed
-from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
@@ -36,7 +38,7 @@ def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], 
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
     answers = (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups))
-    charts = charts_figure(damping_and_error(groups, paper), 37.0)
+    charts = chart_figure(damping_and_error(groups, paper), 37.0)
     return [
         Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
         Heading("The answer in five sentences", 3),
@@ -129,26 +131,21 @@ def _windows(groups: Groups, shortest: tuple[CaseResults, float, float]) -> str:
         subject = (verdict["scene"], tuple(verdict["pair"]), verdict["metric"])
         value = verdict["value"]
         if subject == (case.name, ("dda", "bar"), "pressure.l2") and isinstance(value, int | float):
-            errors.append((_window_of(verdict["id"]) or case.scene.time.duration, float(value)))
+            until = window(verdict)
+            errors.append((float(until.removesuffix("s")) if until else case.scene.time.duration, float(value)))
     if len(errors) < 2:
         errors = [(case.scene.time.duration, pressure_error)]
-    texts = [f"{percent(value)} over {short(window)} s" for window, value in sorted(errors)]
+    texts = [f"{percent(value)} over {short(time)} s" for time, value in sorted(errors)]
     return (
         f" A relative L2 difference is mostly phase and grows with its window: at "
         f"{milliseconds(case.scene.time.step)} {', '.join(texts)}."
     )
 
 
-def _window_of(gate: str) -> float | None:
-    """Return the time up to which a gate compares [s], which its id ends with; None where it takes the whole run."""
-    seconds = gate.rpartition("@")[2]
-    return float(seconds.removesuffix("s")) if "@" in gate else None
-
-
 def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
     """Say that the time step is the damping, and which one gives 5 %."""
     measured = []
-    for case in by_step(groups.get(paper.name.partition("[")[0])):
+    for case in by_step(groups.get(PAPER)):
         if (xi := case.number("dda", "mode1.damping")) is not None:
             measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
     step = closed.step_for(paper, TARGET_DAMPING)
@@ -251,41 +248,41 @@ def stepped_frequency(scene: Scene) -> float:
 # ---- the figure ---------------------------------------------------------------------------------------------------
 
 
-def damping_and_error(groups: Groups, paper: Scene) -> list[Chart]:
+def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
     """Return damping and error over the time step, the paper's steps marked."""
     orange = style_of("dda").color
     black = style_of("bar").color
     grid = np.geomspace(5e-5, 2e-2, 200)
-    cases = by_step(groups.get(paper.name.partition("[")[0]))
+    cases = by_step(groups.get(PAPER))
     marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in cases}
     measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in cases]
     dots = np.array([(x, 100 * y) for x, y in measured if y is not None]).reshape(-1, 2).T
-    labels = ("time step dt [ms]", "")
-    limits = (0.05, 20.0)  # ms
-    damping = Chart(
+    axes: dict[str, Any] = {"x_range": (0.05, 20.0), "logarithmic": (True, True), "marks": marks}
+    damping = ChartPanel(
         "Damping ratio of the first mode [%]",
-        labels,
+        "time step dt [ms]",
+        "",
         (
-            Stroke("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
-            Stroke("as run", dots[0], dots[1], orange, dots=True, line=False, has_label=False),
+            ChartLine("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
+            ChartLine("", dots[0], dots[1], orange, width=0, dots=DOTS),
         ),
-        limits,
-        (0.2, 100.0),
-        marks,
-        {"5 %": 100 * TARGET_DAMPING},
+        y_range=(0.2, 100.0),
+        levels={"5 %": 100 * TARGET_DAMPING},
+        **axes,
     )
     errors = []
     for name, pair, color, dash in (
         ("DDA − bar", ("dda", "bar"), orange, ()),
         ("bar − continuum", ("bar", "continuum"), black, ()),
-        ("DDA − continuum", ("dda", "continuum"), CHOICES[0], DASHED),
+        ("DDA − continuum", ("dda", "continuum"), SETTINGS[0], DASHED),
     ):
         x, y = _errors(groups.get("model-form"), pair)
         if x.size:
-            errors.append(Stroke(name, x, 100 * y, color, dash, dots=True))
+            errors.append(ChartLine(name, x, 100 * y, color, dash, dots=DOTS))
     if not errors:
         return [damping]
-    return [damping, Chart("Error of the displacement over 0.2 s [%]", labels, errors, limits, (0.2, 200.0), marks)]
+    title = "Error of the displacement over 0.2 s [%]"
+    return [damping, ChartPanel(title, "time step dt [ms]", "", errors, y_range=(0.2, 200.0), **axes)]
 
 
 def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Array]:

@@ -28,35 +28,6 @@ OMEGAS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 3.0, 10.0, 100.0, math.inf)
 PHASES = tuple(round(0.05 * n, 2) for n in range(21))
 FEW = 10  # steps of which each is a number of its own
 
-README = """\
-# Contact that opens: exact motions
-
-A part of the reference pack of dda-validation; nothing needs to be installed.
-
-| what | where |
-|---|---|
-| scenes, SI units | `scenes/NAME.toml` |
-| exact motions, one row a step | `histories/NAME.block-events.csv`, `NAME.bar-events.csv` |
-| single numbers with their uncertainties | `numbers.csv`: `scene,motion,quantity,value,unit,uncertainty` |
-| restitution of a landing under a scheme | `restitution.csv`: `alpha,delta,omega,theta,restitution` |
-
-One block stands on, or falls onto, two springs `contact.stiffness` = p that carry no tension: with w the gap of a
-corner, the force on the block is p max(0, -w). Loads act from t = 0 on; `block.velocity` is the velocity at t = 0,
-upwards positive, `contact.gap` the gap then. `block-events` is the block of one strain, which a DDA code tends to as dt
-goes to 0, through every opening and closing; `bar-events` is the continuum, which elements tend to. The scenes' time
-step says only where the motions are sampled.
-
-Quantities: `first_opening`, `first_closing`, `second_...`: instants of the switches after t = 0 [s]; `restitution`:
-greatest speed of the centre of mass upwards in flight after the landing over that before it, where no load acts; the
-others are columns at an instant. A block under a pressure that is switched on leaves its springs at t = 0 at once.
-
-`restitution.csv`: a rigid mass m lands on a spring k under Newmark's scheme (alpha, delta) with gg = 1; omega =
-sqrt(k/m) dt, `inf` for a rigid stop; theta is how far the first predictor in contact lies below the spring's end, over
-the way of that step. Your code should give these numbers to rounding.
-
-Switches of stiff springs amplify every difference: judge a history up to its first switches, or by its balances.
-"""
-
 
 def write_contact_pack(directory: Path) -> int:
     """Write the part into `contact` of a pack's directory, and return how many numbers it holds.
@@ -74,7 +45,7 @@ def write_contact_pack(directory: Path) -> int:
             rows += numbers(scene, motion, part)
     part.add_table("numbers", rows)
     part.add_table("restitution", list(restitutions()))
-    part.add_text("README.md", README)
+    part.add_readme(__file__)
     return len(rows)
 
 

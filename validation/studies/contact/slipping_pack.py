@@ -57,46 +57,6 @@ TILTS = (1e-3, 0.5, 0.9)  # over alpha
 PULSES = (0.2, 0.5)  # s
 BISECTED = 1e-10  # of an overturning acceleration: integrated to 1e-13, which the balance of the block amplifies
 
-README = """\
-# Contact that slips: exact motions
-
-A part of the reference pack of dda-validation; nothing needs to be installed.
-
-| what | where |
-|---|---|
-| scenes, SI units | `scenes/NAME.toml` |
-| exact motions, one row a step | `histories/NAME.block-events.csv` |
-| single numbers with their uncertainties | `numbers.csv`: `scene,quantity,value,unit,uncertainty` |
-| every switch of the exact motions with its proven enclosure | `enclosures.csv`: `scene,corner,kind,midpoint,radius` |
-| rigid block on a base that vibrates along its slope | `newmark.csv` |
-| rigid block that rocks | `rocking.csv` |
-
-One block stands on two springs that carry no tension, `contact.stiffness` = p and `contact.shear_stiffness` = p_s (p
-where absent), without damping. With w the gap of a corner and s its slide along the base, N = -p w while w < 0. The
-corner sticks, T = -p_s (s - r), as long as |T| <= tan(phi) N; it slips with |T| = tan(phi) N against its motion and
-takes r = s + T / p_s along; where it opens N = T = 0, and where it closes r = s. Without `contact.friction` it never
-slips. `load.slope` turns gravity to g (sin, -cos) in x and y. All loads act from t = 0 on.
-
-Columns: `displacement`, `horizontal_displacement` (m) and `rotation` (rad, counter-clockwise) of the centroid; `gap_*`
-and `slide_*` (m); `normal_force_*` and `shear_force_*` (N, on the block, upwards and towards +x); `state_*`: 0 open,
-1 sticks, 2 and -2 slips towards +x and -x. M is the corner at x = 0, N that at x = a. Compare forces and gaps rather
-than states.
-
-`enclosures.csv`: each switch is proven to be the first after the one before, and to lie within `radius` [s] of
-`midpoint` [s], which is printed to forty digits, for the data of the scene as doubles (ball arithmetic, python-flint).
-
-`creep`, `creep-low-friction` and `creep-stiff-shear` are stable blocks, tan(slope) < tan(phi), that shift by a few
-millimetres while they ring on their springs: nothing damps them.
-
-`sliding`: while every corner slips one way or is open, u + tan(phi) v of the centroid accelerates by exactly
-g (sin b - tan(phi) cos b), whatever springs, time step and scheme: compare your code's own run with that.
-
-`newmark.csv`: a rigid block under the base's acceleration A sin(w t) down the slope for a time, then at constant
-velocity. `two_way` 0 holds it against sliding up the slope. `slide` is where it is over its base a second after,
-`slip` the length of its way. `rocking.csv`: the time in which a rigid block that is released at a tilt comes down, and
-the least amplitude of a half sine of the base's acceleration that overturns it. Both are what stiff springs tend to.
-"""
-
 
 def slipping_cases() -> Iterator[Scene]:
     """Yield the scenes of the part."""
@@ -126,7 +86,7 @@ def write_slipping_pack(directory: Path) -> int:
     tables = {"numbers": rows, "enclosures": enclosed, "newmark": shaken, "rocking": rocked}
     for name, table in tables.items():
         part.add_table(name, table)
-    part.add_text("README.md", README)
+    part.add_readme(__file__)
     return sum(map(len, tables.values()))
 
 

@@ -39,6 +39,14 @@ JOINTS = (  # blocks a wavelength, c dt/h, scheme
 )
 
 
+COUNTS = sorted({*itertools.chain(*BLOCKS.values(), *OTHERS.values(), BASE), *(blocks for blocks, *_ in JOINTS)})
+
+
+def row_name(solver: str, blocks: int) -> str:
+    """Return the name of the derived row of a wave."""
+    return f"{solver} at {blocks} blocks"
+
+
 @dataclass(frozen=True)
 class Wave:
     """One frequency of one case."""
@@ -50,7 +58,7 @@ class Wave:
     @property
     def name(self) -> str:
         """Name of its derived row."""
-        return f"{self.solver} at {self.blocks} blocks"
+        return row_name(self.solver, self.blocks)
 
     @property
     def guide(self) -> Guide:

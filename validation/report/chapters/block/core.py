@@ -10,11 +10,11 @@ import numpy as np
 from validation.report.blocks import Block, Heading, Table, columns
 from validation.report.chapters.data import CaseGroup, groups_by_name
 from validation.report.chapters.ledger import ledger_blocks
-from validation.report.chapters.scene import drift_values, opening, scene_section
+from validation.report.chapters.measures import MetricColumn, cells, heads
+from validation.report.chapters.scene import drift_panel, drift_values, opening, scene_section
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
-from validation.report.figures.curves import style_of
-from validation.report.figures.front.charts import Chart, Stroke, charts_figure
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -30,6 +30,9 @@ DRAWN_COLUMNS = {  # scene -> columns that its figure holds
     "model-form": (DISPLACEMENT, PRESSURE),
 }
 UNDER_THE_STEP = ("figures-3-4", "figures-5-6", "model-form")  # where the undamped continuum would hide the rest
+AT_REST = tuple(
+    MetricColumn("displacement.static", 1e3, solver, decimals=3, solver=solver) for solver in ("dda", "fem")
+)
 IN_WORDS = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
 
 
@@ -46,19 +49,21 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
 
 def mesh_blocks(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
     """Return what mesh, point springs and lateral strain do to the finite elements beside DDA."""
-    charts: list[Chart] = []
+    charts: list[ChartPanel] = []
     sentences: list[str] = []
     points = mesh_errors(groups)
     if points is not None:
         n, error = points
         slope = float(np.polyfit(np.log(n), np.log(error), 1)[0])
         charts.append(
-            Chart(
+            ChartPanel(
                 "Error of fem against the bar [-]",
-                ("elements a side n", ""),
-                (Stroke("fem", n, error, style_of("fem").color, dots=True),),
+                "elements a side n",
+                "",
+                (ChartLine("fem", n, error, dots=DOTS),),
                 (n[0] / 1.3, n[-1] * 1.3),
                 (error.min() / 3, 3 * error.max()),
+                (True, True),
             )
         )
         sentences.append(
@@ -67,12 +72,12 @@ def mesh_blocks(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]
         )
     drift = drift_values(groups["corner-springs"]) if "corner-springs" in groups else []
     if len(drift) > 1:
-        chart, sentence = drift_chart(groups["corner-springs"], drift)
+        chart, sentence = drift_panel(groups["corner-springs"], drift)
         charts.append(chart)
         sentences.append(sentence)
     if not charts:
         return []
-    figure = histories.saved(charts_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(sentences))
+    figure = histories.saved(chart_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(sentences))
     table = lateral_table(groups)
     return [Heading("Mesh, point springs and lateral strain", 2), figure, *([table] if table.rows else [])]
 
@@ -93,39 +98,14 @@ def mesh_errors(groups: Mapping[str, CaseGroup]) -> tuple[np.ndarray, np.ndarray
     return n, errors
 
 
-def drift_chart(group: CaseGroup, drift: list[tuple[int, float]]) -> tuple[Chart, str]:
-    """Return the drift of fem on corner point springs as a chart, and the sentence that it carries."""
-    n, v = np.array(drift, dtype=float).T
-    v = 1e3 * v  # mm
-    slope = float(np.polyfit(np.log2(n), v, 1)[0])
-    strokes = [Stroke("fem", n, v, style_of("fem").color, dots=True)]
-    dda = group.cases[0].number("dda", "displacement.static")
-    if dda is not None:
-        strokes.append(Stroke("dda", n, np.full(n.size, 1e3 * dda), style_of("dda").color))
-    low = 1.1 * min(float(v.min()), 1e3 * (dda or 0.0))
-    chart = Chart(
-        "v at rest on corner point springs [mm]",
-        ("elements a side n", ""),
-        strokes,
-        (n[0] / 1.3, n[-1] * 1.3),
-        (low, 0.0),
-        logarithmic=(True, False),
-    )
-    return chart, (
-        f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
-        "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
-    )
-
-
 def lateral_table(groups: Mapping[str, CaseGroup]) -> Table:
     """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
     rows = []
     group = groups.get("poisson-statics")
     for case in group.cases if group else ():
         dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
-        cells = [DASH if value is None else f"{1e3 * value:.3f}".replace("-", "−") for value in (dda, fem)]
         ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
-        rows.append((case.label, short(case.scene.block.poisson), *cells, ratio))
-    titles = (*columns("text", "Case"), *columns("decimal", "μ", "dda", "fem"), *columns("text", "apart"))
+        rows.append((case.label, short(case.scene.block.poisson), *cells(AT_REST, case), ratio))
+    titles = (*columns("text", "Case"), *columns("decimal", "μ"), *heads(AT_REST), *columns("text", "apart"))
     caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
     return Table(titles, tuple(rows), caption)

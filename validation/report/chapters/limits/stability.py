@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Block, Column, Heading, Table, columns
+from validation.report.blocks import Block, Heading, Table, TableColumn, columns
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.report.figures import histories
-from validation.report.figures.stability import DigitMap, digit_maps, digits_of
+from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -28,6 +28,7 @@ MEASURE = {"bar": "scaled"}  # the bar's wave may not have arrived; all others o
 SOLVERS = ("dda", "dda-textbook", "fem", "bar")
 MATRIX = "extremes-"  # prefix of the scenes of the maps
 FACTOR = "extreme-"  # prefix of the scenes with one datum at its extremes
+SHADES = MapScale("cividis", 16.0, cell=4.6)
 MOST_ROWS = 16  # of the one-factor extremes
 
 
@@ -77,6 +78,20 @@ def _errors(runs: Iterable[ExtremeRun]) -> list[float]:
     return [float(value) for value in values if isinstance(value, int | float)]
 
 
+def digits_of(error: Array) -> Array:
+    """Return -log10 of the error, cut to 0 .. 16; NaN stays NaN."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        digits: Array = np.clip(-np.log10(np.maximum(error, 1e-16)), 0.0, 16.0) + 0.0
+    return digits
+
+
+def digit_map(title: str, error: Array) -> NumberMap:
+    """Return a map of whole correct digits; a cell without a run is empty."""
+    values = digits_of(error)
+    texts = [[f"{np.floor(value):.0f}" if np.isfinite(value) else "" for value in row] for row in values]
+    return NumberMap(title, values, texts)
+
+
 def digits(error: float) -> int:
     """Return the whole number of correct digits."""
     return int(digits_of(np.array(error)))
@@ -114,7 +129,7 @@ def outcome_table(runs: Sequence[ExtremeRun]) -> Table:
             count[str(kind) if has_kind else str(run.row.outcome)] += 1
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
-    titles = (Column("Solver"), *columns("decimal", *kinds), Column("otherwise", "fill"))
+    titles = (TableColumn("Solver"), *columns("decimal", *kinds), TableColumn("otherwise", "fill"))
     notes = tuple(f"{kind}: {kind.sentence}" for kind in Stability)
     caption = "Outcomes by name; the bar has no matrix and completes or does not apply."
     return Table(titles, tuple(rows), caption, notes)
@@ -126,8 +141,9 @@ def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> list[Block
         return []
     ratios = sorted({run.ratio for run in runs})
     steps = sorted({run.step for run in runs})
-    maps = [DigitMap(title, _worst(runs, q, ratios, steps)) for q, title in QUANTITIES.items()]
-    figure = digit_maps(maps, [*map(_decade, ratios)], [*map(_decade, steps)], "Time step dt [s]", "p / E")
+    maps = [digit_map(title, _worst(runs, q, ratios, steps)) for q, title in QUANTITIES.items()]
+    labels = ("Time step dt [s]", "p / E")
+    figure = map_figure([maps], [*map(_decade, ratios)], [*map(_decade, steps)], labels, SHADES)
     solver = runs[0].solver
     scale = "over the static value where nothing has arrived, " if solver == "bar" else ""
     caption = f"{solver}: correct digits, {scale}the worst of all bounded schemes; blank: no bounded run."
@@ -161,7 +177,7 @@ def factor_tables(runs: Sequence[ExtremeRun]) -> list[Block]:
         rows = [row for row in rows if row in fewest]
         caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
     titles = (
-        Column("Scene", "id"),
+        TableColumn("Scene", "id"),
         *columns("decimal", "|λ|", "condition", "residual", group="dda"),
         *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
     )

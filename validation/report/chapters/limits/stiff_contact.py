@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +12,12 @@ from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures import histories
-from validation.report.figures.stability import Settling, settling_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.histories import Margins
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
+COLORS = ("#0072b2", "#d55e00", "#56b4e9", "#8c6d1f")  # of quantities and schemes, which are no solvers
 SCHEMES = {0.5: "(1/2, 1)", 0.5625: "(9/16, 1)"}
 QUANTITIES = ("displacement", "pressure")
 
@@ -29,6 +31,15 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "Steps until displacement and contact pressure stay within 10⁻⁴ of their static values, dda; a hollow mark has "
         "not settled within the run."
     )
+    panel = ChartPanel(
+        "",
+        "p / E",
+        "Steps to settle within $10^{-4}$",
+        curves(table, longest),
+        y_range=(10.0, 1.6 * longest),
+        logarithmic=(True, True),
+    )
+    figure = chart_figure([panel], 48.0, Margins(16.0, 54.0, 4.0, 10.0))
     ring = (
         "The amplitude of the ringing falls as 1/p, and so does its decay per step, 8/(ω dt)²: it takes longest to "
         "settle in between, and beyond, a ringing too small to see never ends."
@@ -36,7 +47,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
     return [
         *opening(manifest, lead=conclusion(table)),
         settling_table(table),
-        histories.saved(settling_figure(curves(table), longest), directory, f"{group.slug}-settling.svg", caption),
+        histories.saved(figure, directory, f"{group.slug}-settling.svg", caption, group.name),
         Paragraph(f"{ring} {gate_count(group.verdicts).capitalize()}."),
     ]
 
@@ -57,15 +68,21 @@ def _steps(case: CaseResults | None, quantity: str) -> float | None:
     return None if case is None else case.number("dda", f"{quantity}.fine_settling_step")
 
 
-def curves(table: CasesByRatio) -> Sequence[Settling]:
-    """Return the four curves of the figure."""
+def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
+    """Return steps to settle over p/E; a hollow dot at the longest run has not settled within it."""
     ratios = np.array(list(table))
-    settling = []
-    for alpha, name in SCHEMES.items():
-        for quantity in QUANTITIES:
-            steps = [_steps(row.get(alpha), quantity) for row in table.values()]
-            settling.append(Settling(f"{quantity} {name}", ratios, np.array(steps, dtype=float)))
-    return settling
+    lines: list[ChartLine] = []
+    for (alpha, scheme), quantity in itertools.product(SCHEMES.items(), QUANTITIES):
+        color = COLORS[len(lines) // 3]
+        settling = np.array([_steps(row.get(alpha), quantity) for row in table.values()], dtype=float)
+        settles = np.isfinite(settling)
+        steps = np.where(settles, settling, longest)
+        lines += [
+            ChartLine(f"{quantity} {scheme}", ratios, steps, color),
+            ChartLine("", ratios[settles], steps[settles], color, width=0, dots=3.0),
+            ChartLine("", ratios[~settles], steps[~settles], color, width=0, dots=4.0, hollow=True),
+        ]
+    return lines
 
 
 def conclusion(table: CasesByRatio) -> str:

@@ -6,20 +6,20 @@ from pathlib import Path
 
 from validation.report.blocks import Block, Heading, Table, columns
 from validation.report.chapters.data import CaseGroup, case_groups, verdicts_of
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import cell
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import role
 
-QUANTITIES = (  # title, metric, factor
-    ("lands [ms]", "switches.first_closing", 1e3),
-    ("leaves [ms]", "switches.first_opening", 1e3),
-    ("lands again [ms]", "switches.second_closing", 1e3),
-    ("restitution", "contact.restitution", 1.0),
-    ("peak force [MN]", "contact.peak_force", 1e-6),
-    ("penetration [mm]", "contact.penetration", 1e3),
+QUANTITIES = (
+    ("switches.first_closing", 1e3, "lands [ms]"),
+    ("switches.first_opening", 1e3, "leaves [ms]"),
+    ("switches.second_closing", 1e3, "lands again [ms]"),
+    ("contact.restitution", 1.0, "restitution"),
+    ("contact.peak_force", 1e-6, "peak force [MN]"),
+    ("contact.penetration", 1e3, "penetration [mm]"),
 )
 NOTE = (
     "A step sees a switch at its end. The peak force of a rigid wall is ρ c V a; where a stepped solution gives "
@@ -36,15 +36,19 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return blocks
 
 
+def measures_of(solver: str) -> list[MetricColumn]:
+    """Return the columns of a solver."""
+    return [MetricColumn(*quantity, digits=5, solver=solver) for quantity in QUANTITIES]
+
+
 def table(group: CaseGroup) -> Table:
     """Return the quantities of each run."""
-    titles = (*columns("text", "Case", "Solver"), *columns("decimal", *(title for title, _, _ in QUANTITIES)))
+    titles = (*columns("text", "Case", "Solver"), *heads(measures_of("dda")))
     rows = []
     for case in group.cases:
         label = case.label
         for solver in case.rows:
             name = f"{solver} (exact)" if role(solver) in EXACT_IN_TIME else solver
-            cells = (cell(case.number(solver, metric), factor, 5) for _, metric, factor in QUANTITIES)
-            rows.append((label, name, *cells))
+            rows.append((label, name, *cells(measures_of(solver), case)))
             label = ""
     return Table(titles, tuple(rows))

@@ -12,9 +12,13 @@ import numpy as np
 
 from validation.report.blocks import Block, Heading, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, plain, short
-from validation.report.figures import contact, histories
+from validation.report.chapters.text import DASH, cell, short
+from validation.report.figures import histories
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.histories import Margins
+from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.theory import landing
@@ -22,13 +26,29 @@ from validation.theory import landing
 EXACT = "block-events"
 IMPACT = "rebound-"  # prefix of the scenes of single landings
 MAP = "contact-map-"  # prefix of the scenes over step and springs
-MARKS = {0.3: "0.3", 2.0: "2"}
+MARKS = {"0.3": 0.3, "2": 2.0}
+COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7")
+SHADES = MapScale("Greys", 1.6, cell=6.5)
 WORDS = {  # the ends of the scenes' names
     "constant": "constant acceleration (1/2, 1)",
     "average": "average acceleration (1/4, 1/2)",
     "implicit": "implicit contact, (1/4, 1/2) in the block",
     "conserving": "energy-conserving contact",
 }
+TITLES = {  # of the panels
+    "constant": "constant acceleration",
+    "average": "average acceleration",
+    "implicit": "implicit contact",
+    "conserving": "energy-conserving contact",
+}
+LOST = "Lost by, over the energy given"
+BUDGET = (
+    MetricColumn("energy.switching_gain", -1.0, "switching", LOST, digits=3),
+    MetricColumn("contact.peak_force", 1e-6, "Peak force [MN]", digits=3),
+    MetricColumn("contact.penetration", 1e3, "Penetration [mm]", digits=3),
+    MetricColumn("contact.open_share", 100.0, "Open [%]", digits=3),
+    MetricColumn("horizon.time", 1.0, "Repeatable up to [s]", digits=3),
+)
 BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
@@ -50,15 +70,32 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
 def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> list[Block]:
     """Return the restitution map as a figure, and what it is on a rigid contact."""
     omega = np.array(data["omega"])
-    curves = []
-    for name, rows in data["schemes"].items():
+    top = 1.05 * max(max(rows["high"]) for rows in data["schemes"].values())
+    panels = []
+    for (name, rows), color in zip(data["schemes"].items(), COLORS, strict=False):
         dots: list[tuple[float, float]] = []
         for group in impacts:
             if kind(group) == name:
-                dots += impact_dots(group)
-        words = WORDS.get(name, name).partition(",")[0].removesuffix(" (1/2").removesuffix(" (1/4")
+                dots += [(x, e) for x, e in impact_dots(group) if omega[0] <= x <= omega[-1]]
+        x, e = np.array(dots).reshape(-1, 2).T
         mean, low, high = (np.array(rows[part]) for part in ("mean", "low", "high"))
-        curves.append(contact.RestitutionCurve(words, omega, mean, low, high, tuple(dots)))
+        lines = (
+            ChartLine("", omega, mean, color, shaded=(low, high)),
+            ChartLine("", x, e, color, width=0, dots=2.4, hollow=True),
+        )
+        panels.append(
+            ChartPanel(
+                TITLES.get(name, name),
+                r"$\Omega = \omega_c\,dt$",
+                "Restitution e",
+                lines,
+                (omega[0], omega[-1]),
+                (0.0, top),
+                (True, False),
+                MARKS,
+                {"": 1.0},
+            )
+        )
     caption = (
         "Share of its landing speed that a rigid block keeps, over ω_c dt: mean (line) and range over the phase of the "
         "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. Without a time "
@@ -74,7 +111,7 @@ def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], direc
         f"restitution is {exact[1.0]:.3f}, {exact[10.0]:.3f} and {exact[100.0]:.3f} at p = 1, 10 and 100E, and "
         "at p ≫ E it lands in three contacts in a row."
     )
-    figure = contact.restitution_figure(curves, MARKS)
+    figure = chart_figure(panels, 45.0, Margins(13.0, 3.0, 6.0, 10.0), shared=True)
     return [
         Heading("What a landing returns", 2),
         histories.saved(figure, directory, "rebound-restitution.svg", caption),
@@ -142,9 +179,8 @@ def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], dir
     steps = sorted({case.scene.time.step for case in cases}, reverse=True)
     exact = exact_switches(maps)
     number_maps = [number_maps_of(group, ratios, steps, exact) for group in maps]
-    figure = contact.number_maps(
-        number_maps, [f"p = {short(r)}E" for r in ratios], [short(1e3 * step) for step in steps]
-    )
+    rows = [f"p = {short(r)}E" for r in ratios]
+    figure = map_figure(number_maps, rows, [short(1e3 * step) for step in steps], ("dt [ms]", ""), SHADES)
     schemes = ", ".join(WORDS.get(kind(group), group.title) for group in maps)
     caption = (
         "The paper's block, unlocked, over 0.2 s, dda: solves of the open-close iteration a step (mean), greatest "
@@ -172,10 +208,10 @@ HORIZON = (
 
 def number_maps_of(
     group: CaseGroup, ratios: Sequence[float], steps: Sequence[float], exact: dict[float, float]
-) -> list[contact.NumberMap]:
+) -> list[NumberMap]:
     """Return the three maps of a scheme."""
-    cells = {(ratio(case), case.scene.time.step): case for case in group.cases}
-    grid = [[cells.get((r, step)) for step in steps] for r in ratios]
+    case_at = {(ratio(case), case.scene.time.step): case for case in group.cases}
+    grid = [[case_at.get((r, step)) for step in steps] for r in ratios]
     solves = [[None if c is None else c.number("dda", "contact.mean_solves") for c in row] for row in grid]
     rises = [[None if c is None else c.number("dda", "energy.rise") for c in row] for row in grid]
     switches = [[_switches_over_exact(c, exact) for c in row] for row in grid]
@@ -194,10 +230,10 @@ def _switches_over_exact(case: CaseResults | None, exact: dict[float, float]) ->
     return None if count is None or not exact_count else count / exact_count
 
 
-def _map(title: str, values: list[list[float | None]], shade: Any) -> contact.NumberMap:
+def _map(title: str, values: list[list[float | None]], shade: Any) -> NumberMap:
     shades = [[math.nan if v is None else shade(v) for v in row] for row in values]
     texts = tuple(tuple(DASH if v is None else _number(v) for v in row) for row in values)
-    return contact.NumberMap(title, np.array(shades), texts)
+    return NumberMap(title, np.array(shades), texts)
 
 
 def _number(value: float) -> str:
@@ -211,9 +247,7 @@ def _number(value: float) -> str:
 
 def budget_table(maps: Sequence[CaseGroup]) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
-    titles = columns("text", "Scheme", "p", "dt [ms]")
-    titles += columns("decimal", "scheme", "switching", group="Lost by, over the energy given")
-    titles += columns("decimal", "Peak force [MN]", "Penetration [mm]", "Open [%]", "Repeatable up to [s]")
+    titles = columns("text", "Scheme", "p", "dt [ms]") + columns("decimal", "scheme", group=LOST) + heads(BUDGET)
     rows = []
     for group in maps:
         name = kind(group)
@@ -228,13 +262,5 @@ def budget_cells(case: CaseResults) -> tuple[str, ...]:
     """Return losses, peak force, penetration, share open and horizon of a case."""
     input_energy = case.number("dda", "energy.given")
     lost = case.number("dda", "energy.lost_algorithmic")
-    numbers = (
-        (None if lost is None or not input_energy else lost / input_energy, 1.0),
-        (case.number("dda", "energy.switching_gain"), -1.0),
-        (case.number("dda", "contact.peak_force"), 1e-6),
-        (case.number("dda", "contact.penetration"), 1e3),
-        (case.number("dda", "contact.open_share"), 100.0),
-        (case.number("dda", "horizon.time"), 1.0),
-    )
-    # Adding zero takes the sign off a negative zero.
-    return tuple(DASH if value is None else plain(factor * value + 0.0, 3) for value, factor in numbers)
+    share = None if lost is None or not input_energy else lost / input_energy
+    return (cell(share, digits=3), *cells(BUDGET, case))

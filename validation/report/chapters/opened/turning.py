@@ -13,14 +13,16 @@ from validation.report.blocks import Block, Paragraph, Table, columns
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
-from validation.report.figures import histories, turning
-from validation.report.figures.turning import TurningLine, TurningPanel
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.histories import Margins, saved
+from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.rocking.read import increments, rectangle
 from validation.studies.rocking.rocking import DURATION, LET_GO, PULSE, PUSH
 from validation.studies.rocking.toppling import TURN, beyond
 
+COLORS = ("#d55e00", "#0072b2", "#009e73", "#666666")
 SWINGS = (
     "The quarter period of a rigid block, by quadrature, is met up to the settlement of the corner. How much of its "
     "rate a block keeps after an impact is no property of DDA: springs have no restitution of their own, and the ratio "
@@ -74,10 +76,21 @@ def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> l
     return [*blocks, *drawn(panels, directory, "toppling.svg", caption)]
 
 
-def drawn(panels: Sequence[TurningPanel], directory: Path, file: str, caption: str) -> list[Block]:
+def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> list[Block]:
     """Return the figure of the panels that have lines, nothing where no case finished."""
     filled = [panel for panel in panels if panel.lines]
-    return [histories.saved(turning.turning_figure(filled), directory, file, caption)] if filled else []
+    margins = Margins(13.0, 20.0, 6.0, 10.0, 33.0)
+    return [saved(chart_figure(filled, 42.0, margins), directory, file, caption)] if filled else []
+
+
+def coloured(curves: Sequence[tuple[str, Array, Array]]) -> list[ChartLine]:
+    """Return lines of (name, x, y), each in a colour of its own."""
+    return [ChartLine(*curve, color) for curve, color in zip(curves, COLORS, strict=False)]
+
+
+def rigid(name: str, x: Array, y: Array) -> ChartLine:
+    """Return the line of a rigid block or of a closed form, to compare with."""
+    return ChartLine(name, x, y, "#000000", (3.0, 2.0))
 
 
 def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
@@ -134,7 +147,7 @@ def fall_table(groups: Sequence[CaseGroup]) -> Table:
     return Table(titles, tuple(rows))
 
 
-def swing_panel(group: CaseGroup) -> TurningPanel:
+def swing_panel(group: CaseGroup) -> ChartPanel:
     """Return tilt over time of blocks that are let go."""
     lines = []
     for case in group.cases:
@@ -143,18 +156,20 @@ def swing_panel(group: CaseGroup) -> TurningPanel:
             tilt = math.radians(case.scene.block.tilt)
             x = history.time / block.quarter_period(tilt)
             y = 1 + history.columns["rotation"] / tilt
-            lines.append(TurningLine(f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
-    return TurningPanel("Let go", "t / T", "tilt / first tilt", tuple(lines), 0.0, 1.0)
+            lines.append((f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
+    return ChartPanel("Let go", "t / T", "tilt / first tilt", coloured(lines), levels={"": 0.0}, marks={"": 1.0})
 
 
-def pulse_panel(group: CaseGroup) -> TurningPanel:
+def pulse_panel(group: CaseGroup) -> ChartPanel:
     """Return tilt over time of blocks on a base that accelerates."""
     lines = []
     for case in group.cases:
         if (history := case.histories.get("dda")) is not None:
             tilt = history.columns["rotation"] / rectangle(case.scene).alpha
-            lines.append(TurningLine(f"{size(case):.2f}", history.time, tilt))
-    return TurningPanel("A pulse of the base", "t [s]", "tilt / tipping angle", tuple(lines), 1.0, DURATION)
+            lines.append((f"{size(case):.2f}", history.time, tilt))
+    title = "A pulse of the base"
+    y_label = "tilt / tipping angle"
+    return ChartPanel(title, "t [s]", y_label, coloured(lines), levels={"": 1.0}, marks={"": DURATION})
 
 
 def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
@@ -163,29 +178,31 @@ def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
     return [case for case in cases if "dda" in case.histories]
 
 
-def fall_panel(groups: Sequence[CaseGroup]) -> TurningPanel:
+def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
     """Return the turn of falling towers, and that of a rigid one."""
-    lines = []
+    curves = []
     for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "let go")):
         for case in finished_cases(groups, name):
             history = case.histories["dda"]
-            lines.append(TurningLine(words, history.time, -history.columns["rotation"]))
+            curves.append((words, history.time, -history.columns["rotation"]))
+    lines = coloured(curves)
     for case in finished_cases(groups, "toppling-fall"):
         turns = np.linspace(0.0, -float(case.histories["dda"].columns["rotation"][-1]), 101)[1:]
         times = np.array([rectangle(case.scene).fall_time(beyond(case.scene), turn) for turn in turns])
-        lines.append(TurningLine("rigid", times, turns, dashed=True))
-    return TurningPanel("Toppling", "t [s]", "turn [rad]", tuple(lines))
+        lines.append(rigid("rigid", times, turns))
+    return ChartPanel("Toppling", "t [s]", "turn [rad]", lines)
 
 
-def area_panel(groups: Sequence[CaseGroup]) -> TurningPanel:
+def area_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
     """Return the area of towers by exact and by first-order rotation."""
-    lines = []
+    curves = []
     for name, words in (("toppling-fall", "exact"), ("toppling-growth", "first-order")):
         for case in finished_cases(groups, name):
             history = case.histories["dda"]
-            lines.append(TurningLine(words, history.time, 100 * (history.columns["area"] - 1)))
+            curves.append((words, history.time, 100 * (history.columns["area"] - 1)))
+    lines = coloured(curves)
     for case in finished_cases(groups, "toppling-growth"):
         history = case.histories["dda"]
         product = 100 * (np.cumprod(1 + increments(history) ** 2) - 1)
-        lines.append(TurningLine("product", history.time, np.asarray(product, dtype=np.float64), dashed=True))
-    return TurningPanel("Growth of the area", "t [s]", "area / first area − 1 [%]", tuple(lines))
+        lines.append(rigid("product", history.time, np.asarray(product, dtype=np.float64)))
+    return ChartPanel("Growth of the area", "t [s]", "area / first area − 1 [%]", lines)

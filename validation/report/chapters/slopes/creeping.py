@@ -11,7 +11,7 @@ from validation.report.blocks import Block, FigureBlock, Paragraph, Table, colum
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import cell, plain
-from validation.report.figures.friction import Trace, TracePanel, panels_figure
+from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import saved
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -64,15 +64,18 @@ def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> Figu
     slips = [over_step(words, [c for c in steps if of(c, kind)], color) for kind, words, color in kinds]
     slips.append(over_step("lagged, dead bands", lagged(groups), GREEN))
     program_steps, program_slips = np.array(sorted(study.PROGRAM.items())).T
-    slips.append(Trace("an established program", 1e3 * program_steps, 1e3 * program_slips, BLACK, dotted=True))
+    program = ChartLine(
+        "an established program", 1e3 * program_steps, 1e3 * program_slips, BLACK, width=0, dots=DOTS, hollow=True
+    )
+    slips.append(program)
     slips += [across(case) for case in exact[:1]]
     lines = [line for line in lines if len(line.x)]
     slips = [line for line in slips if len(line.x)]
     panels = (
-        TracePanel("Slide", "t [s]", "slide [mm]", tuple(lines), legend="upper left"),
-        TracePanel("Slip in a second", "dt [ms]", "slip [mm]", tuple(slips), True, "upper center"),
+        ChartPanel("Slide", "t [s]", "slide [mm]", lines, names="upper left"),
+        ChartPanel("Slip in a second", "dt [ms]", "slip [mm]", slips, logarithmic=(True, True), names="upper center"),
     )
-    return saved(panels_figure(panels), directory, "creep.svg", CAPTION)
+    return saved(chart_figure(panels, margins=BESIDE), directory, "creep.svg", CAPTION)
 
 
 def cases(groups: Mapping[str, CaseGroup], name: str) -> list[CaseResults]:
@@ -98,12 +101,12 @@ def lagged(groups: Mapping[str, CaseGroup]) -> list[CaseResults]:
     return [case for case in cases(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
 
 
-def trace(words: str, case: CaseResults, solver: str, color: str) -> Trace:
+def trace(words: str, case: CaseResults, solver: str, color: str) -> ChartLine:
     """Return the slide of a case over time."""
     history = case.histories.get(solver)
     if history is None:
-        return Trace(words, np.zeros(0), np.zeros(0), color)
-    return Trace(words, history.time, 1e3 * study.slid(history.columns), color)
+        return ChartLine(words, np.zeros(0), np.zeros(0), color)
+    return ChartLine(words, history.time, 1e3 * study.slid(history.columns), color)
 
 
 def slip(case: CaseResults) -> float | None:
@@ -114,20 +117,20 @@ def slip(case: CaseResults) -> float | None:
     return None if history is None else float(study.slid(history.columns)[-1])
 
 
-def over_step(words: str, runs: list[CaseResults], color: str) -> Trace:
+def over_step(words: str, runs: list[CaseResults], color: str) -> ChartLine:
     """Return the slip of some cases over their steps."""
     points = sorted((case.scene.time.step, value) for case in runs if (value := slip(case)))
     steps, slips = 1e3 * np.array(points).reshape(-1, 2).T
-    return Trace(words, steps, slips, color)
+    return ChartLine(words, steps, slips, color)
 
 
-def across(case: CaseResults) -> Trace:
+def across(case: CaseResults) -> ChartLine:
     """Return the exact block's slip in a second, at any step."""
     history = case.histories.get("block-events")
     if history is None:
-        return Trace("exact", np.zeros(0), np.zeros(0), BLACK)
+        return ChartLine("exact", np.zeros(0), np.zeros(0), BLACK)
     speed = float(study.slid(history.columns)[-1] / history.time[-1])
-    return Trace("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
+    return ChartLine("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
 
 
 def by_step(groups: Mapping[str, CaseGroup]) -> Table:

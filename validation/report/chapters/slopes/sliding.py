@@ -12,7 +12,7 @@ from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Tab
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, cell, plain
-from validation.report.figures.friction import Trace, TracePanel, panels_figure
+from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import saved
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
@@ -71,17 +71,24 @@ def trajectories(free: CaseGroup, braked: CaseGroup, directory: Path) -> FigureB
         gg = case.scene.time.discount
         words = f"gg = {gg:g}, dt = {1e3 * case.scene.time.step:g} ms"
         displacement, _ = friction.free_motion(case.scene, friction.sliding_acceleration(case.scene))
-        traces.append(Trace(words, history.time, history.columns[ALONG], color))
-        traces.append(Trace("_", history.time, displacement, "black", dash=(2.0, 2.0)))
-    curve = Trace("drag c", RATES, np.array([drag_share(rate) for rate in RATES]), GREY)
+        traces.append(ChartLine(words, history.time, history.columns[ALONG], color))
+        traces.append(ChartLine("", history.time, displacement, "black", dash=(2.0, 2.0)))
+    curve = ChartLine("drag c", RATES, np.array([drag_share(rate) for rate in RATES]), GREY)
     measured = [point for case in braked.cases if (point := share(case)) is not None]
     rates, shares = np.array(measured).reshape(-1, 2).T
-    points = Trace("dda", rates, shares, ORANGE, dotted=True)
+    points = ChartLine("dda", rates, shares, ORANGE, width=0, dots=DOTS, hollow=True)
     panels = (
-        TracePanel("Way down the incline", "t [s]", "way [m]", tuple(traces), legend="upper left"),
-        TracePanel("What a drag leaves after 1 s", "c [1/s]", "share of the way", (curve, points), True, "lower left"),
+        ChartPanel("Way down the incline", "t [s]", "way [m]", traces, names="upper left"),
+        ChartPanel(
+            "What a drag leaves after 1 s",
+            "c [1/s]",
+            "share of the way",
+            (curve, points),
+            logarithmic=(True, True),
+            names="lower left",
+        ),
     )
-    return saved(panels_figure(panels), directory, "slopes-ways.svg", CAPTION)
+    return saved(chart_figure(panels, margins=BESIDE), directory, "slopes-ways.svg", CAPTION)
 
 
 def drag_share(rate: float, time: float = 1.0) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from validation.report.figures.histories import saved
 from validation.report.figures.response import ResponseCurve, response_figure
 from validation.runs.records import Manifest
 from validation.runs.results import Results
+from validation.studies.waves.response import FREQUENCIES, LOW, row_name
 
 ANSWERS = {  # scene -> title
     "response-exact": "exact in time",
@@ -56,7 +58,7 @@ def _response_curve(frequency: Sequence[float], curve: Mapping[str, Any]) -> Res
 def lead(rows: DerivedRows) -> str:
     """Say what the step takes next to the first frequency."""
     scenes = ("response-exact", "response-constant")
-    exact, stepped = (rows.get((scene, "dda at 52 Hz"), {}).get("displacement") for scene in scenes)
+    exact, stepped = (rows.get((scene, row_name("dda", 52.0)), {}).get("displacement") for scene in scenes)
     if not (isinstance(exact, float) and isinstance(stepped, float)):
         return ""
     return (
@@ -68,13 +70,13 @@ def lead(rows: DerivedRows) -> str:
 def amplitudes(rows: DerivedRows) -> Table:
     """Return the amplitudes of each answer, frequency and solver."""
     lines = []
-    answers = dict.fromkeys((scene, name.partition(" at ")[2]) for scene, name in rows if scene in ANSWERS)
-    for scene, frequency in answers:
+    for scene, frequency in itertools.product(ANSWERS, FREQUENCIES):
         cells = []
         for part, factor in PARTS.items():
-            values = [rows.get((scene, f"{solver} at {frequency}"), {}).get(part) for solver in SOLVERS]
+            values = [rows.get((scene, row_name(solver, frequency)), {}).get(part) for solver in SOLVERS]
             cells += [plain(factor * value, DIGITS) if isinstance(value, float) else DASH for value in values]
-        lines.append((ANSWERS[scene], frequency.removesuffix(" Hz"), *cells))
+        if set(cells) != {DASH}:
+            lines.append((ANSWERS[scene], f"{frequency:g}", *cells))
     titles = (
         *columns("text", "Answer"), *columns("decimal", "f [Hz]"),
         *columns("decimal", *SOLVERS, group="Displacement [mm]"),
@@ -86,8 +88,11 @@ def amplitudes(rows: DerivedRows) -> Table:
 
 def hidden(rows: DerivedRows) -> str:
     """Say the damping that the step hides, as measured on the steps."""
-    ratios = {name: row.get("damping.steps") for (scene, name), row in rows.items() if scene == HIDDEN}
-    parts = [f"{percent(xi)} at {name.partition(' at ')[2]}" for name, xi in ratios.items() if isinstance(xi, float)]
+    parts = []
+    for frequency in LOW:
+        ratio = rows.get((HIDDEN, row_name("dda", frequency)), {}).get("damping.steps")
+        if isinstance(ratio, float):
+            parts.append(f"{percent(ratio)} at {frequency:g} Hz")
     if not parts:
         return ""
     return (
