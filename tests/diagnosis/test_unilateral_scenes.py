@@ -81,5 +81,5 @@ def test_a_scene_with_a_gap_is_refused_by_name() -> None:
 
 def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight() -> None:
     scene = SCENE.with_values({"contact.gap": 1e-3, "load.gravity": 9.81})
-    with pytest.raises(InputError, match=r"that rest on unilateral contact; got contact.gap = 0.001$"):
+    with pytest.raises(InputError, match=r"that rest on unilateral contact, got contact.gap = 0.001$"):
         compare(scene, Foreign(np.arange(1, 9) * 5e-4, -np.ones(8)))

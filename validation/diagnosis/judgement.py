@@ -79,13 +79,14 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(
-            f"{scene.name}: compare takes linear scenes, and centred loads on blocks that rest on unilateral contact; "
-            f"got {', '.join(_beyond(scene))}"
+            "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
+            source=scene.name,
+            value=", ".join(_beyond(scene)),
         )
     features.refuse_sweep(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
-        raise InputError(f"{scene.name}: displacement: must not be zero throughout, got zeros only")
+        raise InputError("must not be zero throughout", source=scene.name, field="displacement", value="zeros only")
     if column is None:
         return _without_rectangle(scene, foreign)
     scene_variant = own_variant(scene)
@@ -373,7 +374,7 @@ def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
             verdict = judged(scene, reading, 1.0, (DDA, "fem"), DDA)
             verdicts += [(reading, verdict)] if verdict is not None else []
     if not verdicts:
-        raise InputError(f"{scene.name}: the times of the history are not uniform, which this scene needs")
+        raise InputError("the times of the history are not uniform, which this scene needs", source=scene.name)
     reading, verdict = min(verdicts, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
     note = "the block is not an upright rectangle: opening and updated geometry are not tried"
     return _answer_of_rival(replace(foreign, notes=(*foreign.notes, note)), reading, verdict)

@@ -57,7 +57,9 @@ def parse_columns(text: str | None) -> dict[str, str]:
     pairs = [part.partition("=") for part in (text or "").split(",") if part.strip()]
     for ours, equals, theirs in pairs:
         if not equals or not theirs.strip() or ours.strip() not in OURS:
-            raise InputError(f"--columns: must be OURS=THEIRS with ours among {', '.join(OURS)}, got {text!r}")
+            raise InputError(
+                f"must be OURS=THEIRS with ours among {', '.join(OURS)}", field="--columns", value=repr(text)
+            )
     return {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
 
 
@@ -79,7 +81,9 @@ def parse_scale(text: str | None) -> dict[str, float]:
         except ValueError:
             factor = math.nan
         if ours not in OURS or not math.isfinite(factor) or factor == 0:
-            raise InputError(f"--scale: must be OURS=FACTOR with ours among {', '.join(OURS)}, got {text!r}")
+            raise InputError(
+                f"must be OURS=FACTOR with ours among {', '.join(OURS)}", field="--scale", value=repr(text)
+            )
         factors[ours] = factor
     return factors
 
@@ -105,9 +109,9 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         regular(path, LARGEST_FILE)
         text = path.read_bytes().decode("utf-8-sig").replace("\0", "")
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: must be UTF-8 text, got bytes that are not UTF-8") from None
+        raise InputError("must be UTF-8 text", source=path, value="bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
     columns_of_file = reader(text, path, columns)
@@ -127,7 +131,7 @@ def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array
     """Return our columns of a table."""
     lines = [line for line in map(str.strip, re.sub(r"[#%].*", "", text).splitlines()) if line]
     if not lines:
-        raise InputError(f"{path}: must hold a history, got an empty file")
+        raise InputError("must hold a history", source=path, value="an empty file")
     _bounded(len(lines), path)
     rows = [_cells(line) for line in lines]
     header = None if _numbers(rows[0]) else rows.pop(0)
@@ -136,7 +140,9 @@ def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array
     for number, row in enumerate(rows, start=1):
         parsed = _numbers(row)
         if parsed is None or len(parsed) != len(names):
-            raise InputError(f"{path}: row {number}: must be {len(names)} numbers, got {', '.join(row)[:60]!r}")
+            raise InputError(
+                f"row {number}: must be {len(names)} numbers", source=path, value=repr(", ".join(row)[:60])
+            )
         values.append(parsed)
     table = np.array(values, dtype=float).reshape(len(values), len(names))
     places = {ours: _place(ours, columns.get(ours, ours), names, path) for ours in OURS}
@@ -168,7 +174,9 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
     if ours in FREE and theirs == ours:
         return None
     raise InputError(
-        f"{path}: no column {theirs!r} for {ours}; it has {', '.join(names)}; name it with --columns {ours}=NAME"
+        f"no column {theirs!r} for {ours}; it has {', '.join(names)}",
+        source=path,
+        advice=f"name it with --columns {ours}=NAME",
     )
 
 
@@ -185,14 +193,17 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     points = dict(re.findall(r"(measpoint\d+)\s*=\s*\[([^\]]*)", text))
     name = columns.get(DISPLACEMENT, next(iter(points)))
     if name not in points:
-        raise InputError(f"{path}: no measured point {name!r}; it has {', '.join(points)}")
+        raise InputError(f"no measured point {name!r}", source=path, advice=f"it has {', '.join(points)}")
     lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
     _bounded(len(lines), path)
     rows = [_numbers(line.split()) for line in lines]
     full_rows = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
     if not full_rows or len(full_rows) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
-            f"{path}: {name}: must hold rows of {NTDDA_COLUMNS} numbers, got {len(rows) - len(full_rows)} other rows"
+            f"must hold rows of {NTDDA_COLUMNS} numbers",
+            source=path,
+            field=name,
+            value=f"{len(rows) - len(full_rows)} other rows",
         )
     step, time, dt, x, y, size, vx, vy, _ = np.array(full_rows).T
     summed = np.cumsum(vy * dt)
@@ -209,7 +220,9 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
 def _bounded(rows: int, path: Path) -> None:
     """Refuse a history that would take hours to judge."""
     if rows > MOST_STEPS + 2:  # a header and the row at t = 0
-        raise InputError(f"{path}: must hold at most {MOST_STEPS} rows, got {rows}; cut it, or keep every tenth row")
+        raise InputError(
+            f"must hold at most {MOST_STEPS} rows", source=path, value=rows, advice="cut it, or keep every tenth row"
+        )
 
 
 def _notes_of(columns_of_file: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
@@ -233,15 +246,17 @@ def _checked(
         if not np.all(sound):
             row = int(np.flatnonzero(~sound)[0]) + 1
             rule = f"must be finite numbers below {LARGEST:g} in size"
-            raise InputError(f"{path}: {name}: {rule}, got {values[row - 1]} in row {row}")
+            raise InputError(rule, source=path, field=name, value=f"{values[row - 1]} in row {row}")
     if len(time) and np.any(np.diff(time) <= 0):
         row = int(np.flatnonzero(np.diff(time) <= 0)[0]) + 2
-        raise InputError(f"{path}: time: must increase from row to row, got {time[row - 1]:g} in row {row}")
+        raise InputError(
+            "must increase from row to row", source=path, field="time", value=f"{time[row - 1]:g} in row {row}"
+        )
     if len(time) and time[0] < 0:
-        raise InputError(f"{path}: time: must not be negative, got {time[0]:g} in row 1")
+        raise InputError("must not be negative", source=path, field="time", value=f"{time[0]:g} in row 1")
     keep = time > 0
     if int(np.sum(keep)) < LEAST_ROWS:
-        raise InputError(f"{path}: must hold at least {LEAST_ROWS} rows after t = 0, got {int(np.sum(keep))}")
+        raise InputError(f"must hold at least {LEAST_ROWS} rows after t = 0", source=path, value=int(np.sum(keep)))
     if not np.all(keep):
         notes = (*notes, "the row at t = 0 is ignored")
     pressure = columns_of_file.get(PRESSURE)
@@ -310,7 +325,9 @@ def _multiples(gaps: Array, step: float) -> list[Stepping]:
     if whole[-1] > MOST_STEPS:
         if np.ptp(gaps) <= SAME_STEP * gaps[0]:
             return []  # the program's own steps, longer than the scene's
-        raise InputError(f"time: must end within {MOST_STEPS} steps of {step:g} s, got step {whole[-1]:.0f}")
+        raise InputError(
+            f"must end within {MOST_STEPS} steps of {step:g} s", field="time", value=f"step {whole[-1]:.0f}"
+        )
     counts = whole.astype(int)
     every = np.diff(counts, prepend=0)
     kind = (

@@ -34,7 +34,12 @@ def write_judged(judged: JudgedAnswer, program: str, place: Path) -> list[Path]:
     paths = [place / PAGE, place / BADGE]
     for path in paths:
         if path.is_dir():
-            raise InputError(f"{path}: must be a file or nothing yet, got a directory; choose another place with --out")
+            raise InputError(
+                "must be a file or nothing yet",
+                source=path,
+                value="a directory",
+                advice="choose another place with --out",
+            )
     with ExitStack() as both:  # leaves both files or neither
         for path, text in zip(paths, (html(judged, program), badge(judged)), strict=True):
             both.enter_context(atomic_path(path)).write_bytes(text.encode())

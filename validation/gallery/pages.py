@@ -158,7 +158,7 @@ def _provenance(studies: Sequence[GalleryStudy]) -> dict[str, str]:
     newest: dict[str, Any] = max(records, key=lambda p: str(p.get("date", "")), default={})
     packages = newest.get("packages") or {}
     if not isinstance(packages, Mapping):
-        raise InputError(f"{studies[0].name}: provenance: packages must be a table, got {packages!r}")
+        raise InputError("packages must be a table", source=studies[0].name, field="provenance", value=repr(packages))
     return {
         "date": readable(str(newest.get("date", "unknown"))),
         "commit": readable(str(newest.get("commit", "unknown"))),

@@ -87,6 +87,8 @@ def _write(path: Path, text: str) -> None:
 def _check(out: Path) -> None:
     """Refuse a place that cannot be written, or whose files are not those of a gallery."""
     if out.exists() and not out.is_dir():
-        raise InputError(f"--out: must be a directory, got the file {out}")
+        raise InputError("must be a directory", field="--out", value=f"the file {out}")
     if out.is_dir() and any(out.iterdir()) and not (out / NOTICE).is_file():
-        raise InputError(f"--out: must be a new or empty directory or an earlier gallery, got {out} with other files")
+        raise InputError(
+            "must be a new or empty directory or an earlier gallery", field="--out", value=f"{out} with other files"
+        )

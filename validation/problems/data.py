@@ -262,7 +262,7 @@ def _input_data(scene: Scene) -> InputData:
     """
     drive = scene.input
     if drive.shape is None:
-        raise InputError(f"{scene.name}: input.record: must be a pulse in a problem, got a record")
+        raise InputError("must be a pulse in a problem", source=scene.name, field="input.record", value="a record")
     return InputData(
         at=drive.at,
         shape=drive.shape,

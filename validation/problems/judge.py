@@ -140,12 +140,14 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
 def _check_instants(problem: Problem, history: History, reference: Standard) -> None:
     rows, step = len(reference.exact.time), problem.scene.time.step
     if len(history.time) < rows:
-        raise InputError(f"{problem.name}: time: must hold {rows} rows, got {len(history.time)}")
+        raise InputError(f"must hold {rows} rows", source=problem.name, field="time", value=len(history.time))
     apart = np.abs(history.time[:rows] - reference.exact.time)
     if not np.all(apart <= SAME_INSTANT * step):
         row = int(np.argmin(apart <= SAME_INSTANT * step))
         expected, stated = reference.exact.time[row], history.time[row]
-        raise InputError(f"{problem.name}: time: must be {expected:.9g} s in row {row + 1}, got {stated:.9g}")
+        raise InputError(
+            f"must be {expected:.9g} s in row {row + 1}", source=problem.name, field="time", value=f"{stated:.9g}"
+        )
 
 
 def _judged(name: str, values: Array | None, reference: Standard) -> Column:

@@ -130,5 +130,7 @@ def _write(path: Path, text: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{path.parent}: cannot be made: {error.strerror}; choose another place") from None
+        raise InputError(
+            f"cannot be made: {error.strerror}", source=path.parent, advice="choose another place"
+        ) from None
     write_atomically(path, lambda stream: stream.write(text.encode()))

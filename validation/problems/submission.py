@@ -51,11 +51,16 @@ def read_submission(directory: Path, own_problem: Problem | None = None) -> Subm
         A file or a field is missing or wrong; the line names it.
     """
     if not directory.is_dir():
-        raise InputError(f"{directory}: must be a directory with {FILE} and one CSV file; {EXPORT}")
+        raise InputError(f"must be a directory with {FILE} and one CSV file", source=directory, advice=EXPORT)
     data = _data(directory / FILE)
     posed = own_problem or _problem(directory / FILE, data.problem)
     if data.problem != posed.name:
-        raise InputError(f"{directory / FILE}: problem: must be {posed.name!r}, the scene's name, got {data.problem!r}")
+        raise InputError(
+            f"must be {posed.name!r}, the scene's name",
+            source=directory / FILE,
+            field="problem",
+            value=repr(data.problem),
+        )
     columns = _reported(directory / FILE, data, posed.scene.run.columns)
     table = _table(directory)
     return Submission(data, posed, _history(table, posed, columns))
@@ -64,14 +69,20 @@ def read_submission(directory: Path, own_problem: Problem | None = None) -> Subm
 def _data(path: Path) -> SubmissionData:
     stated = _object(path)
     if "pack" in stated and stated["pack"] != PACK:
-        raise InputError(f"{path}: pack: must be {PACK!r}, the version of this pack, got {stated['pack']!r}; {EXPORT}")
+        raise InputError(
+            f"must be {PACK!r}, the version of this pack",
+            source=path,
+            field="pack",
+            value=repr(stated["pack"]),
+            advice=EXPORT,
+        )
     try:
         data = SubmissionData.model_validate(stated)
     except ValidationError as error:
         raise first_defect(error, str(path)) from None
     for field in ("program", "version", "settings", "who"):
         if getattr(data, field) == TEMPLATE[field]:
-            raise InputError(f"{path}: {field}: must be filled in, got {getattr(data, field)!r}")
+            raise InputError("must be filled in", source=path, field=field, value=repr(getattr(data, field)))
     return data
 
 
@@ -82,13 +93,15 @@ def _object(path: Path) -> dict[str, Any]:
     except InputError:
         raise
     except FileNotFoundError:
-        raise InputError(f"{path}: is required, got no such file; {EXPORT} with one to fill in for each") from None
+        raise InputError(
+            "is required", source=path, value="no such file", advice=f"{EXPORT} with one to fill in for each"
+        ) from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: must be JSON in UTF-8: {' '.join(str(error).split())}") from None
+        raise InputError(f"must be JSON in UTF-8: {' '.join(str(error).split())}", source=path) from None
     if not isinstance(content, dict):
-        raise InputError(f"{path}: must be an object, got {type(content).__name__}")
+        raise InputError("must be an object", source=path, value=type(content).__name__)
     return content
 
 
@@ -106,7 +119,9 @@ def _problem(path: Path, name: str) -> Problem:
         return problem(name)
     near = difflib.get_close_matches(name, PROBLEMS, n=1)
     suggestion = f"; did you mean {near[0]}?" if near else ""
-    raise InputError(f"{path}: problem: must be among {', '.join(PROBLEMS)}, got {name!r}{suggestion}")
+    raise InputError(
+        f"must be among {', '.join(PROBLEMS)}", source=path, field="problem", value=f"{name!r}{suggestion}"
+    )
 
 
 def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[str]:
@@ -114,10 +129,12 @@ def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[
     names = [united(column) for column in columns]
     for name in data.not_reported:
         if name not in names:
-            raise InputError(f"{path}: not_reported: must be among {', '.join(names)}, got {name!r}")
+            raise InputError(f"must be among {', '.join(names)}", source=path, field="not_reported", value=repr(name))
     reported = [column for column in columns if united(column) not in data.not_reported]
     if not reported:
-        raise InputError(f"{path}: not_reported: must leave a column to judge, got all of {', '.join(names)}")
+        raise InputError(
+            "must leave a column to judge", source=path, field="not_reported", value=f"all of {', '.join(names)}"
+        )
     return reported
 
 
@@ -128,10 +145,10 @@ def _table(directory: Path) -> Path:
     try:  # a name that begins with a point is the system's, not the submitter's
         tables = sorted(p for p in directory.iterdir() if p.suffix.lower() == ".csv" and not p.name.startswith("."))
     except OSError as error:
-        raise InputError(f"{directory}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=directory) from None
     if len(tables) != 1:
         listed = ", ".join(path.name for path in tables) or "none"
-        raise InputError(f"{directory}: must hold one CSV file beside {FILE}, got {listed}")
+        raise InputError(f"must hold one CSV file beside {FILE}", source=directory, value=listed)
     return tables[0]
 
 
@@ -150,7 +167,7 @@ def _history(path: Path, posed: Problem, columns: Sequence[str]) -> History:
         if plain in UNITS and (
             other_unit := factor(plain, history.columns[column], motion.columns[column], posed.scene)
         ):
-            raise InputError(f"{path}: {united(column)}: {other_unit.replace(plain, 'it', 1)}")
+            raise InputError(other_unit.replace(plain, "it", 1), source=path, field=united(column))
     return history
 
 
@@ -161,11 +178,11 @@ def _read(path: Path, most: int) -> tuple[list[str], list[list[str]]]:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             rows = list(islice(_filled(csv.reader(stream)), most + 1))
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from None
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: must be a CSV table in UTF-8: {error}") from None
+        raise InputError(f"must be a CSV table in UTF-8: {error}", source=path) from None
     if not rows:
-        raise InputError(f"{path}: must be a table of numbers under a header, got an empty file")
+        raise InputError("must be a table of numbers under a header", source=path, value="an empty file")
     return rows[0], rows[1:]
 
 
@@ -181,7 +198,7 @@ def _filled(rows: Iterator[list[str]]) -> Iterator[list[str]]:
 
 def _numbers(path: Path, names: Sequence[str], number: int, row: Sequence[str]) -> list[float]:
     if len(row) != len(names):
-        raise InputError(f"{path}: row {number}: must have {len(names)} values, got {len(row)}")
+        raise InputError(f"row {number}: must have {len(names)} values", source=path, value=len(row))
     return [_number(f"{path}: row {number}: {name}", cell) for name, cell in zip(names, row, strict=True)]
 
 
@@ -192,29 +209,37 @@ def _number(where: str, cell: str) -> float:
         value = float(cell)
     except ValueError:
         hint = "; a decimal comma?" if cell.count(",") == 1 else ""
-        raise InputError(f"{where}: must be a number, got {cell!r}{hint}") from None
+        raise InputError("must be a number", field=where, value=f"{cell!r}{hint}") from None
     if not np.isfinite(value):
-        raise InputError(f"{where}: must be a finite number, got {cell}")
+        raise InputError("must be a finite number", field=where, value=cell)
     if abs(value) > LARGEST:
-        raise InputError(f"{where}: must be at most {LARGEST:g} in size, got {cell}")
+        raise InputError(f"must be at most {LARGEST:g} in size", field=where, value=cell)
     return value
 
 
 def _check_header(path: Path, names: Sequence[str], posed: Problem, columns: Sequence[str]) -> None:
     unit_by_name = {TIME: "s"} | {united(column): unit(column) for column in columns}
     if between := next((s for s in SEPARATORS if TIME in names[0].split(s)[:-1]), ""):
-        raise InputError(f"{path}: header: must be separated by commas, got {SEPARATORS[between]}: {names[0]!r}")
+        raise InputError(
+            "must be separated by commas", source=path, field="header", value=f"{SEPARATORS[between]}: {names[0]!r}"
+        )
     for place, name in enumerate(names, start=1):
         if not name:
-            raise InputError(f"{path}: header: column {place}: must be among {', '.join(unit_by_name)}, got no name")
+            raise InputError(
+                f"column {place}: must be among {', '.join(unit_by_name)}", source=path, field="header", value="no name"
+            )
         if name not in unit_by_name:
-            raise InputError(f"{path}: header: {name}: {_rule(name, unit_by_name, posed)}, got {name!r}")
+            raise InputError(
+                f"{name}: {_rule(name, unit_by_name, posed)}", source=path, field="header", value=repr(name)
+            )
         if names.count(name) > 1:
-            raise InputError(f"{path}: header: {name}: must appear once, got it {names.count(name)} times")
+            raise InputError(
+                f"{name}: must appear once", source=path, field="header", value=f"it {names.count(name)} times"
+            )
     for name in unit_by_name:
         if name not in names:
             hint = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"
-            raise InputError(f"{path}: header: {name}: is required, got {', '.join(names)}{hint}")
+            raise InputError(f"{name}: is required", source=path, field="header", value=f"{', '.join(names)}{hint}")
 
 
 def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:
@@ -238,8 +263,10 @@ def _check_times(path: Path, times: Array, instants: Array) -> None:
         n = int(off[0])
         close = np.allclose(times, 1e3 * instants, rtol=1e-6, atol=0)
         hint = "; milliseconds?" if close else ""
-        raise InputError(f"{path}: row {n + 1}: {TIME}: must be {instants[n]:.9g}, got {times[n]:.9g}{hint}")
+        raise InputError(f"row {n + 1}: {TIME}: must be {instants[n]:.9g}", source=path, value=f"{times[n]:.9g}{hint}")
 
 
 def _miscounted(path: Path, instants: Array, count: str) -> InputError:
-    return InputError(f"{path}: {TIME}: must have {len(instants)} rows, {float(instants[0]):g} s apart, got {count}")
+    return InputError(
+        f"must have {len(instants)} rows, {float(instants[0]):g} s apart", source=path, field=TIME, value=count
+    )

@@ -44,7 +44,12 @@ def truth_of(scene: Scene) -> Truth:
         The scene has a sweep, or no exact motion is known for it.
     """
     if scene.sweep:
-        raise InputError(f"{scene.name}: sweep: must not be there, one problem has one scene; use --set key=value")
+        raise InputError(
+            "must not be there, one problem has one scene",
+            source=scene.name,
+            field="sweep",
+            advice="use --set key=value",
+        )
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
@@ -54,7 +59,7 @@ def truth_of(scene: Scene) -> Truth:
         if reason is None:
             return Truth(name, scene.time.duration)
         reasons.append(f"{name}: {reason}")
-    raise InputError(f"{scene.name}: no exact motion is known: {'; '.join(reasons)}")
+    raise InputError(f"no exact motion is known: {'; '.join(reasons)}", source=scene.name)
 
 
 def exact(scene: Scene, truth: Truth) -> History:
@@ -69,7 +74,7 @@ def exact(scene: Scene, truth: Truth) -> History:
         return _rotation(scene, truth)
     run = get_solver(truth.name).solve(scene)
     if run.outcome is not Outcome.COMPLETED or run.history is None:
-        raise InputError(f"{scene.name}: {truth.name}: {run.outcome.sentence} {'; '.join(run.notes)}")
+        raise InputError(f"{run.outcome.sentence} {'; '.join(run.notes)}", source=scene.name, field=truth.name)
     return run.history
 
 
@@ -92,27 +97,33 @@ SETTLES = 1e-3  # of what the tilt lifts the other corner: what a corner that st
 def _refuse_other_rocking(scene: Scene) -> None:
     apart = [f.name for f in features.FEATURES if f.name in features.of(scene) and f.name not in OF_ROCKING]
     if apart:
-        raise InputError(f"{scene.name}: no exact motion is known of a block that turns with {', '.join(apart)}")
+        raise InputError(f"no exact motion is known of a block that turns with {', '.join(apart)}", source=scene.name)
     if scene.block.tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
-        raise InputError(f"{scene.name}: a block that turns is known exactly where it is let go from a tilt, by weight")
+        raise InputError(
+            "a block that turns is known exactly where it is let go from a tilt, by weight", source=scene.name
+        )
     c, turns = scene.contact, "the block does not turn about its corner alone"
     if c.gap or scene.block.velocity or c.cohesion:
-        raise InputError(f"{scene.name}: no exact motion is known: {turns}: it has a gap, a velocity or cohesion")
+        raise InputError(f"no exact motion is known: {turns}: it has a gap, a velocity or cohesion", source=scene.name)
     width, height = _sizes(scene)
     needed = math.degrees(math.atan(friction_needed(width, height, abs(math.radians(scene.block.tilt)))))
     if c.shear == 0 or (c.friction is not None and c.friction <= needed):
         raise InputError(
-            f"{scene.name}: contact.friction: must be above {needed:.4g} degrees, else the corner slides; got "
-            f"{'no shear springs' if c.shear == 0 else format(c.friction, 'g')}"
+            f"must be above {needed:.4g} degrees, else the corner slides",
+            source=scene.name,
+            field="contact.friction",
+            value="no shear springs" if c.shear == 0 else format(c.friction, "g"),
         )
     weight = scene.block.mass * scene.load.gravity
     settles = weight / min(c.stiffness, c.shear) + weight * height / (scene.block.young * width)
     if settles > SETTLES * width * math.sin(abs(math.radians(scene.block.tilt))):
-        raise InputError(f"{scene.name}: no exact motion is known: springs or block are not rigid beside the tilt")
+        raise InputError("no exact motion is known: springs or block are not rigid beside the tilt", source=scene.name)
     if set(scene.run.columns) != {"rotation"}:
         raise InputError(
-            f"{scene.name}: run.columns: must be rotation alone, which is known exactly, got "
-            f"{', '.join(scene.run.columns)}"
+            "must be rotation alone, which is known exactly",
+            source=scene.name,
+            field="run.columns",
+            value=", ".join(scene.run.columns),
         )
 
 
@@ -123,7 +134,7 @@ def _sizes(scene: Scene) -> tuple[float, float]:
     points = np.asarray(scene.block.outline)
     width, height = np.ptp(points, axis=0)
     if len(points) != 4 or not math.isclose(scene.block.mass, scene.block.density * width * height):
-        raise InputError(f"{scene.name}: no exact motion is known of a block that turns and is no rectangle")
+        raise InputError("no exact motion is known of a block that turns and is no rectangle", source=scene.name)
     return float(width), float(height)
 
 

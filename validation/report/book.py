@@ -27,7 +27,7 @@ def ordered_studies(results: Results) -> list[str]:
     order = {name: place for place, name in enumerate(CHAPTERS)}
     studies = sorted(results.studies(), key=lambda name: (order.get(name, len(order)), name))
     if not studies:
-        raise InputError(f"{results.directory}: no study's results here; run a study first")
+        raise InputError("no study's results here", source=results.directory, advice="run a study first")
     return studies
 
 
@@ -128,11 +128,11 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
     study = escaped(study)
     if study not in results.studies():
         studies = ", ".join(results.studies()) or "none"
-        raise InputError(f"study: must be one of those in {results.directory} ({studies}), got {study!r}")
+        raise InputError(f"must be one of those in {results.directory} ({studies})", field="study", value=repr(study))
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{out}: cannot be made: {error.strerror}; choose another place") from None
+        raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
     blocks = _chapter(results, study, out)
     paths: list[Path] = []
     for block in blocks:

@@ -30,7 +30,9 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Pa
         The file cannot be written.
     """
     if not out.parent.is_dir():
-        raise InputError(f"{out}: cannot be written: {out.parent} is not a directory; choose another place")
+        raise InputError(
+            f"cannot be written: {out.parent} is not a directory", source=out, advice="choose another place"
+        )
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         pdf = typeset(root, blocks_of(root))

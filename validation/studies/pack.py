@@ -49,13 +49,15 @@ def check_place(directory: Path) -> None:
         It is a file, or a directory of other files.
     """
     if directory.exists() and not directory.is_dir():
-        raise InputError(f"{directory}: must be a directory, got a file")
+        raise InputError("must be a directory", source=directory, value="a file")
     readme = directory / "README.md"
     if not directory.is_dir() or not any(directory.iterdir()):
         return
     title = readme_of(__file__).splitlines()[0].encode()
     if not readme.is_file() or not readme.read_bytes().startswith(title):
-        raise InputError(f"{directory}: must be a new or empty directory or an earlier pack, got one with other files")
+        raise InputError(
+            "must be a new or empty directory or an earlier pack", source=directory, value="one with other files"
+        )
 
 
 def write_pack(directory: Path) -> Written:
@@ -100,7 +102,7 @@ class Part:
                 (directory / name).mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise InputError(
-                    f"{directory / name}: cannot be made: {error.strerror}; choose another place"
+                    f"cannot be made: {error.strerror}", source=directory / name, advice="choose another place"
                 ) from None
 
     def add_scene(self, scene: Scene) -> None:

@@ -62,20 +62,28 @@ def read(scene: Scene, foreign: Foreign) -> Read:
     _check(scene)
     if foreign.sideways is None:
         raise InputError(
-            f"{scene.name}: {SIDEWAYS}: a history with friction must have it, got none; "
-            f"name it with --columns {SIDEWAYS}=NAME"
+            "a history with friction must have it",
+            source=scene.name,
+            field=SIDEWAYS,
+            value="none",
+            advice=f"name it with --columns {SIDEWAYS}=NAME",
         )
     stepping = steppings(foreign, scene.time.step)[0]
     steps = stepping.steps
     if len(stepping.rows) != len(steps):
         last, rows = float(np.max(np.diff(foreign.time))), len(stepping.rows)
         raise InputError(
-            f"{scene.name}: time: with friction a history must show every step, got one of {len(steps) // rows} or so: "
-            f"its rows are {last:.6g} s apart, the scene's step is {scene.time.step:.6g} s; if that is the program's "
-            f"step, use --set time.step={last:.6g}"
+            "with friction a history must show every step",
+            source=scene.name,
+            field="time",
+            value=f"one of {len(steps) // rows} or so: its rows are {last:.6g} s apart, the scene's step is "
+            f"{scene.time.step:.6g} s",
+            advice=f"if that is the program's step, use --set time.step={last:.6g}",
         )
     if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
-        raise InputError(f"{scene.name}: time: with friction all steps must be equal, in seconds, got others")
+        raise InputError(
+            "with friction all steps must be equal, in seconds", source=scene.name, field="time", value="others"
+        )
     place = np.column_stack([foreign.sideways, foreign.displacement])
     units = [
         last_digits(column) if unit is None else unit
@@ -109,7 +117,7 @@ def _check(scene: Scene) -> None:
     if more or not upright(scene) or not at_rest or scene.time.alpha == 0:
         refused = ", ".join(more) or ("alpha = 0" if scene.time.alpha == 0 else "another scene")
         raise InputError(
-            f"{scene.name}: with friction compare takes an upright rectangle at rest on its springs, got {refused}"
+            "with friction compare takes an upright rectangle at rest on its springs", source=scene.name, value=refused
         )
     features.refuse_sweep(scene)
 

@@ -100,7 +100,7 @@ def numbers(scene: Scene, part: Part, enclosed: list[dict[str, Any]]) -> Iterato
     """
     prepared = get_solver(MOTION).prepare(scene)
     if not isinstance(prepared, BlockMotion):
-        raise InputError(f"{MOTION}: must be the suite's own solver to write its pack")
+        raise InputError("must be the suite's own solver to write its pack", source=MOTION)
     history = prepared.run().history
     if history is None:
         raise InputError(f"{scene.name} {MOTION}: no history")

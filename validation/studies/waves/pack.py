@@ -46,7 +46,7 @@ def write_waves_pack(directory: Path) -> int:
     try:
         shutil.copyfile(SCENE_DIRECTORY / f"{SITE}.csv", part.directory / "scenes" / f"{SITE}.csv")
     except OSError as error:
-        raise InputError(f"{part.directory}: cannot be written: {error.strerror}") from None
+        raise InputError(f"cannot be written: {error.strerror}", source=part.directory) from None
     for scene in scenes():
         _add_scene(scene, part)
     part.add_readme(__file__)
