@@ -15,7 +15,6 @@ from functools import cache, cached_property
 
 import numpy as np
 from flint import arb, arb_mat, ctx
-from scipy.linalg import expm
 
 from fem_reference.events.block_model import OPEN, RIGHT, STICKS, BlockModel, States, row, sigma
 from fem_reference.events.enclosure import ball, precision, radius_of
@@ -255,9 +254,7 @@ class Flow:
         known = self._exponentials.get(key_of(length))
         if known is not None:
             return known[2] + float(length - known[0]) * self.G_floats @ known[2]
-        scaled = self.G_floats * self.units / self.units[:, None]
-        J = expm(scaled * float(length)) / self.units * self.units[:, None]
-        return np.vstack([J[:12], UNIT[12:]])
+        return to_floats(self._exp(length))
 
     def exponential_error(self, J: Array, hull: Array) -> Array:
         """How far the floats of exp(G s) may move a set that reaches so far from zero; references and the one rest."""

@@ -20,7 +20,7 @@ def test_each_data_file_is_declared():
     files: list[Path] = []
     for name in PACKAGES:
         files += [path.relative_to(ROOT) for path in (ROOT / name).rglob("*") if path.is_file()]
-    files = [file for file in files if file.suffix not in (".py", ".pyc")]
+    files = [file for file in files if file.suffix != ".py" and "__pycache__" not in file.parts]
     missing = []
     for file in files:
         package = package_of(file)
