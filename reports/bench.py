@@ -30,9 +30,6 @@ from rivals import block_numpy, elements_skfem, engines  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
-from fem_reference.history.solver import run  # noqa: E402
-from fem_reference.mesh.model import build  # noqa: E402
-from fem_reference.scheme.newmark import Stepper  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
 from validation.engine.run import run_study  # noqa: E402
@@ -50,8 +47,6 @@ AS_TYPED = 1.5  # largest ratio of its seconds over those on one BLAS thread
 TABLE = HERE.parent / "docs" / "speed.md"
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 PAPER = (0.5, 1.0, 1.0, 1e-3)  # alpha, delta, gg, dt [s]
-OPENING = ((10**5, 1e-3, 1e9), (10**5, 1e-4, 1e9), (10**5, 1e-5, 1e9), (10**6, 1e-5, 1e9), (10**6, 1e-6, 1e9))
-ELEMENTS = ((16, 1e-4, 2000), (32, 1e-4, 1000), (64, 1e-4, 300))  # a side, dt [s], steps
 History = tuple[np.ndarray, ...]  # displacement [m], contact pressure [Pa]
 
 
@@ -152,57 +147,11 @@ def opening_history(
     return dda.solve_unilateral(model or opening_model(), dda.Scheme(0.5, 1.0, 1.0, dt), steps, options=options)
 
 
-def opening_contest(steps: int = 10**5, dt: float = 1e-4) -> Contest:
-    """Return the contest of the block on corners that open."""
-    name = f"dda, contact that opens, {steps:,} steps, dt = {dt:g} s, model built too"
-    ours = lambda: tuple(opening_history(steps, dt).columns.values())  # noqa: E731
-    theirs = lambda: block_numpy.opening(steps, dt=dt)  # noqa: E731
-    return Contest(name, ours, "numpy loop, all states' inverses", theirs, 50, 1e-9)
-
-
-def opening_line(steps: int, dt: float, p: float, repeats: int = 5) -> str:
-    """Return a line of the table of contact that opens: its cost over that of locked contact, and over single steps."""
-    unlocked = opening_model(p)
-    model = dda.TwoBlockModel(unlocked.block, dda.Contact(p), 5e6)
-    locked = lambda: tuple(dda.solve(model, dda.Scheme(0.5, 1.0, 1.0, dt), steps).columns.values())  # noqa: E731
-    opens = lambda: tuple(opening_history(steps, dt, unlocked).columns.values())  # noqa: E731
-    spent = np.array([(timed(locked)[0], timed(opens)[0]) for _ in range(repeats)]).min(axis=0)
-    seconds, answer = timed(lambda: tuple(opening_history(steps, dt, unlocked, singly=True).columns.values()))
-    switches = np.count_nonzero(np.diff(opening_history(steps, dt, unlocked).closed_m))
-    numbers = f"{spent[0]:.2g} | {spent[1]:.2g} | {spent[1] / spent[0]:.1f} | {seconds / spent[1]:.0f}"
-    text = f"| {p / 1e9:g} E | {dt:g} | {steps:,} | {switches} | {numbers} | {difference(opens(), answer):.0e} |"
-    print(text, flush=True)
-    return text
-
-
 def opening_elements(n: int, dt: float, shear: float = 0.0) -> tuple[fem_reference.Problem, fem_reference.Scheme]:
     """Return the square block under a load off its centre, in bilinear elements."""
     numbers = (2700.0, 1e9, 0.25, "plane stress", 1e9, shear, 5e6)
     problem = fem_reference.Problem(SQUARE, 0, 2, *numbers, elements=n, degree=1, eccentricity=0.25)
     return problem, fem_reference.Scheme(0.5, 1.0, 1.0, dt)
-
-
-def opening_elements_line(n: int, dt: float, steps: int, repeats: int = 3) -> str:
-    """Return a line of the table of elements on a base that opens: its steps over locked steps of the same mesh."""
-    problem, scheme = opening_elements(n, dt)
-    columns = ("displacement", "contact_pressure")
-    locked, opens, rival = [], [], []
-    for _ in range(repeats):
-        model = build(problem, full=True)
-        stepper = Stepper(model.M, model.K, model.F, scheme)
-        locked.append(timed(lambda: tuple(run(stepper, model, steps, columns, None)))[0])  # noqa: B023
-        found = fem_reference.solve_unilateral(problem, scheme, steps, columns=(*columns, "open_share"))
-        opens.append(found.stepping_seconds)
-        spent, answer = timed(lambda: elements_skfem.opening(steps, n, dt=dt))
-        rival.append(spent - found.setup_seconds)
-    share = np.count_nonzero(np.diff(found.columns["open_share"])) / steps
-    off = difference(tuple(found.columns[name] for name in columns), answer)
-    if not off <= 1e-9:
-        raise SystemExit(f"fem, contact that opens: the rival differs by {off:.2g} of the maximum")
-    times = f"{min(locked):.2g} | {min(opens):.2g} | {min(opens) / min(locked):.2f} | {min(rival) / min(opens):.1f}"
-    text = f"| {n} x {n} | {dt:g} | {steps:,} | {share:.1%} | {times} | {off:.0e} |"
-    print(text, flush=True)
-    return text
 
 
 def fem_contest(steps: int, mu: float, target: float, repeats: int) -> Contest:
@@ -216,7 +165,7 @@ def fem_contest(steps: int, mu: float, target: float, repeats: int) -> Contest:
 def contests(quick: bool) -> list[Contest]:
     """Return the contests; `quick` leaves the long ones out."""
     model = dda_model()
-    found = [dda_contest(10**4, model, 200, 1e-11, 9), dda_contest(10**4, None, 0, 1e-11, 9), opening_contest()]
+    found = [dda_contest(10**4, model, 200, 1e-11, 9), dda_contest(10**4, None, 0, 1e-11, 9)]
     if not quick:
         found += [dda_contest(10**6, model, 500, 1e-9, 3), fem_contest(10**4, 0.25, 60, 1)]
     return [*found, fem_contest(1000, 0.25, 10, 3), fem_contest(1000, 0.0, 80, 2)]
@@ -498,22 +447,6 @@ the last column is the greatest difference of the two answers over the maximum. 
 |---|---|---|---|---|---|---|
 {contests}
 
-## Contact that opens
-
-Constant acceleration. Locked contact has a closed form, contact that opens is stepped; single steps are those of
-`--full`, in all six unknowns and with both corners.
-
-| p | dt [s] | steps | switches | locked [s] | opens [s] | over locked | single steps over it | difference |
-|---|---|---|---|---|---|---|---|---|
-{opening}
-
-Bilinear elements, mu = 0.25, load 0.25 m off the centre, no friction; steps alone on both sides, and the rival, a loop
-with scikit-fem and one factorisation for each set of closed nodes, with its factorisations.
-
-| mesh | dt [s] | steps | steps that switch | locked [s] | opens [s] | over locked | rival over it | difference |
-|---|---|---|---|---|---|---|---|---|
-{elements}
-
 ## Steps that switch
 
 Microseconds of processor time a step of one history with its set-up, the least of some runs; the budget is what a step
@@ -566,8 +499,6 @@ def main() -> None:
         python=platform.python_version(),
         numpy=np.__version__,
         contests="\n".join([*map(compete, contests(quick)), fenicsx_line()]),
-        opening="\n".join(opening_line(*case) for case in OPENING[: 1 if quick else None]),
-        elements="\n".join(opening_elements_line(*case) for case in ELEMENTS[: 1 if quick else None]),
         steps="\n".join([opening_steps(), slipping_steps(), turning_steps(), fem_steps()]),
         accuracy="\n".join(accuracy_lines()),
         growth="\n".join(growth(quick)),

@@ -67,7 +67,6 @@ def test_each_part_of_the_bench_runs():
     code = (
         "import bench; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
         "print(bench.grown('n', [1, 2, 4], lambda n: n**2)); "
-        "print(bench.opening_elements_line(8, 2e-4, 60, 1)); "
         "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1))); "
         "bench.opening_steps(200); bench.slipping_steps(200); bench.turning_steps(100); bench.fem_steps(300, 200); "
         "bench.accuracy_lines([0.02])"
@@ -81,7 +80,6 @@ def test_each_part_of_the_bench_runs():
     assert "A sweep of 2 scenes by `fem` takes" in told.stdout
     assert "| n | 1, 2, 4 | 1, 4, 16 | 2.00 |" in lines
     assert "| numpy loop |" in told.stdout
-    assert "| 8 x 8 | 0.0002 | 60 |" in told.stdout
     for name, steps in (("contact that opens", 200), ("slope under a record", 200), ("rocking with impacts", 100)):
         assert f"| dda, {name} | {steps} |" in told.stdout
     assert "| fem, 16 x 16, bonded, opens | 300 |" in told.stdout and "| 0.02 | " in told.stdout
