@@ -118,9 +118,12 @@ def _problem(path: Path, name: str) -> Problem:
     if name in PROBLEMS:
         return problem(name)
     near = difflib.get_close_matches(name, PROBLEMS, n=1)
-    suggestion = f"; did you mean {near[0]}?" if near else ""
     raise InputError(
-        f"must be among {', '.join(PROBLEMS)}", source=path, field="problem", value=f"{name!r}{suggestion}"
+        f"must be among {', '.join(PROBLEMS)}",
+        source=path,
+        field="problem",
+        value=repr(name),
+        advice=f"did you mean {near[0]}?" if near else None,
     )
 
 
@@ -199,21 +202,21 @@ def _filled(rows: Iterator[list[str]]) -> Iterator[list[str]]:
 def _numbers(path: Path, names: Sequence[str], number: int, row: Sequence[str]) -> list[float]:
     if len(row) != len(names):
         raise InputError(f"row {number}: must have {len(names)} values", source=path, value=len(row))
-    return [_number(f"{path}: row {number}: {name}", cell) for name, cell in zip(names, row, strict=True)]
+    return [_number(path, f"row {number}: {name}", cell) for name, cell in zip(names, row, strict=True)]
 
 
-def _number(where: str, cell: str) -> float:
+def _number(path: Path, field: str, cell: str) -> float:
     try:
         if "_" in cell or not cell.isascii():  # Python's own ways to write a number
             raise ValueError
         value = float(cell)
     except ValueError:
-        hint = "; a decimal comma?" if cell.count(",") == 1 else ""
-        raise InputError("must be a number", field=where, value=f"{cell!r}{hint}") from None
+        advice = "a decimal comma?" if cell.count(",") == 1 else None
+        raise InputError("must be a number", source=path, field=field, value=repr(cell), advice=advice) from None
     if not np.isfinite(value):
-        raise InputError("must be a finite number", field=where, value=cell)
+        raise InputError("must be a finite number", source=path, field=field, value=cell)
     if abs(value) > LARGEST:
-        raise InputError(f"must be at most {LARGEST:g} in size", field=where, value=cell)
+        raise InputError(f"must be at most {LARGEST:g} in size", source=path, field=field, value=cell)
     return value
 
 
@@ -238,8 +241,13 @@ def _check_header(path: Path, names: Sequence[str], posed: Problem, columns: Seq
             )
     for name in unit_by_name:
         if name not in names:
-            hint = "" if name == TIME else f"; not_reported in {FILE} is for what the program cannot report"
-            raise InputError(f"{name}: is required", source=path, field="header", value=f"{', '.join(names)}{hint}")
+            raise InputError(
+                f"{name}: is required",
+                source=path,
+                field="header",
+                value=", ".join(names),
+                advice=None if name == TIME else f"not_reported in {FILE} is for what the program cannot report",
+            )
 
 
 def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:
@@ -256,17 +264,22 @@ def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:
 def _check_times(path: Path, times: Array, instants: Array) -> None:
     step = float(instants[0])
     if len(times) != len(instants):
-        zero = "; the state at t = 0 is left out" if len(times) == len(instants) + 1 and times[0] == 0 else ""
-        raise _miscounted(path, instants, f"{len(times)}{zero}")
+        starts_at_zero = len(times) == len(instants) + 1 and times[0] == 0
+        advice = "the state at t = 0 is left out" if starts_at_zero else None
+        raise _miscounted(path, instants, str(len(times)), advice)
     off = np.flatnonzero(np.abs(times - instants) > SAME_INSTANT * step)
     if len(off):
         n = int(off[0])
         close = np.allclose(times, 1e3 * instants, rtol=1e-6, atol=0)
-        hint = "; milliseconds?" if close else ""
-        raise InputError(f"row {n + 1}: {TIME}: must be {instants[n]:.9g}", source=path, value=f"{times[n]:.9g}{hint}")
+        raise InputError(
+            f"must be {instants[n]:.9g}",
+            source=path,
+            field=f"row {n + 1}: {TIME}",
+            value=f"{times[n]:.9g}",
+            advice="milliseconds?" if close else None,
+        )
 
 
-def _miscounted(path: Path, instants: Array, count: str) -> InputError:
-    return InputError(
-        f"must have {len(instants)} rows, {float(instants[0]):g} s apart", source=path, field=TIME, value=count
-    )
+def _miscounted(path: Path, instants: Array, count: str, advice: str | None = None) -> InputError:
+    rule = f"must have {len(instants)} rows, {float(instants[0]):g} s apart"
+    return InputError(rule, source=path, field=TIME, value=count, advice=advice)
