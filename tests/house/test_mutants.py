@@ -1,16 +1,14 @@
 """The script of `make mutants`: what it changes, that a sample is its seed's, and that a survivor is shown."""
 
-import importlib.util
 import subprocess
 import sys
 from collections.abc import Iterator
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from conftest import script
 
-SCRIPT = Path(__file__).parents[2] / ".ci" / "mutants"
 CODE = """
 def more(x: int | None) -> int | None:
     y: int | None = x
@@ -23,12 +21,7 @@ ASSERTION = "from dda.code import more\n\n\ndef test_more() -> None:\n    assert
 def mutants(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[ModuleType]:
     """Load the script for a repository of one function."""
     pytest.importorskip("cosmic_ray", reason="mutants are NOT RUN: needs cosmic-ray: pip install -e '.[mutants]'")
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    spec = importlib.util.spec_from_loader("mutants", SourceFileLoader("mutants", str(SCRIPT)))
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "mutants", module)  # its dataclass looks itself up there
-    spec.loader.exec_module(module)
+    module = script("mutants", monkeypatch)
     for name in ("dda", "fem_reference", "validation", "tests/dda"):
         (tmp_path / name).mkdir(parents=True)
     (tmp_path / "dda/code.py").write_text(CODE)

@@ -1,26 +1,17 @@
 """The script that does the rounds: what it installs, and that a red round is told, logged and a status."""
 
-import importlib.util
 import sys
 from collections.abc import Iterator
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
 import pytest
-
-SCRIPT = Path(__file__).parents[2] / ".ci" / "portable"
+from conftest import script
 
 
 @pytest.fixture
 def portable(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    spec = importlib.util.spec_from_loader("portable", SourceFileLoader("portable", str(SCRIPT)))
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "portable", module)  # its dataclass looks itself up there
-    spec.loader.exec_module(module)
-    yield module
+    yield script("portable", monkeypatch)
 
 
 def test_the_lowest_versions_are_those_that_are_declared(portable: ModuleType) -> None:
