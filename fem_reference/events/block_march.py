@@ -128,7 +128,8 @@ class March:
         v = [-self.base.vx, arb(velocity) - self.base.vy, *still]
         self.spread = Spread(self.flows)
         self._place(arb_mat(SIZE, 1, [*x, *v, slide, slide, arb(1)]))
-        self.states: States = (OPEN, OPEN) if x[1] > 0 else (STICKS, STICKS)
+        is_open = x[1] > 0 and not self.model.locked  # a base that begins below the block pulls at a locked one
+        self.states: States = (OPEN, OPEN) if is_open else (STICKS, STICKS)
         if self.model.locked and self._steps_left() > STEPS:
             self._stop_for_work()  # before the first step: corners that never change cannot shorten the work
         if not self.model.locked:

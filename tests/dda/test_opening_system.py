@@ -180,11 +180,6 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 4), rel=1e-12)
 
 
-def test_a_repeated_history_is_bitwise_the_same():
-    first, second = (run(replace(PAPER, eccentricity=0.3), (2, 2), steps=60) for _ in range(2))
-    assert np.array_equal(first.normal, second.normal) and np.array_equal(first.gap, second.gap)
-
-
 def test_rules_of_one_block_alone_are_refused():
     with pytest.raises(ValueError, match=r"^rule: sub-blocks take newmark alone, got 'implicit'"):
         run(PAPER, options=UnilateralOptions(rule="implicit"))

@@ -37,10 +37,6 @@ MODELS = {
 EVERY = [
     pytest.param(*model, id=name, marks=[pytest.mark.fenicsx] * (name == "fenicsx")) for name, model in MODELS.items()
 ]
-PRESSED = [
-    *EVERY,
-    *(pytest.param(name, {}, id=name) for name in ("dda-textbook", "bar", "continuum", "dda-60", "bar-60")),
-]
 
 
 def in_turn(*others: object) -> list[object]:
@@ -61,19 +57,6 @@ def scene(scene_file) -> Scene:  # type: ignore[no-untyped-def]
 def columns_of(solver: str, scene: Scene) -> dict[str, Array]:
     history = get_solver(solver).solve(scene).history
     return dict(history.columns)
-
-
-@pytest.mark.parametrize(("solver", "values"), PRESSED)
-def test_a_pull_is_the_negative_of_a_pressure(scene: Scene, solver: str, values: dict[str, object]) -> None:
-    scene = scene.with_values({"run.columns": COLUMNS[:2], "time.steps": 6, **values})
-    push, pull = (columns_of(solver, scene.with_values({"load.pressure": q})) for q in (Q, -Q))
-    for name in COLUMNS[:2]:
-        assert np.abs(push[name]).max() > 0
-        np.testing.assert_allclose(pull[name], -push[name], rtol=1e-13)
-    if not solver.endswith("60"):  # these report no statics
-        static = get_solver(solver).static(scene.with_values({"load.pressure": -Q}))
-        assert static["displacement"] == pytest.approx(0.01, rel=1e-5)  # glue of 1e6 E gives by 1e-6
-        assert static["contact_pressure"] == pytest.approx(-Q, rel=1e-11)
 
 
 @pytest.mark.parametrize(("solver", "values", "g"), in_turn(9.81, -3.0))
@@ -112,17 +95,6 @@ def test_a_record_moves_what_the_pressure_does_not_reach(
         np.testing.assert_allclose(both[name], total, rtol=0, atol=1e-10 * np.abs(total).max(initial=1e-6))
     moved = "horizontal_displacement" if way == "x" else "displacement"
     assert np.abs(alone[1][moved]).max() > 1e-4
-
-
-@pytest.mark.parametrize(("solver", "values"), [*EVERY, pytest.param("bar", {}, id="bar")])
-def test_nothing_acts_and_nothing_moves(scene: Scene, solver: str, values: dict[str, object]) -> None:
-    scene = scene.with_values({"load": {"pressure": 0.0}, "run.columns": COLUMNS[:2], **values})
-    for found in (columns_of(solver, scene), get_solver(solver).static(scene)):
-        assert all(not np.any(found[name]) for name in COLUMNS[:2])
-    if solver in ("dda", "fem", "bar"):
-        pressed = get_solver(solver).modes(scene.with_values({"load.pressure": Q}))
-        modes = get_solver(solver).modes(scene)
-        assert modes[0].frequency == pytest.approx(pressed[0].frequency, rel=1e-12)
 
 
 @pytest.mark.parametrize(("solver", "values", "turn"), in_turn(1, 2, 3))
@@ -169,6 +141,29 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
     assert static["rotation"] == pytest.approx(rotation, rel=2e-6)  # E / p = 1e7 of rigidity
     assert static["displacement"] == pytest.approx(-Q * (A - 2 * abs(e)) / (2 * P), rel=2e-6)
     assert static["horizontal_displacement"] == pytest.approx(tau * A / (2 * P) - A / 2 * rotation, rel=2e-6)
+
+
+@pytest.mark.parametrize("pattern", ["squares", "triangles"])
+@pytest.mark.parametrize(("e", "tau"), [(-0.31, 0.0), (0.31, 0.0), (0.0, -2e5), (0.4, 1e5)])
+@pytest.mark.parametrize("columns", [1, 2, 5])
+def test_a_rigid_block_of_sub_blocks_turns_on_its_springs(pattern: str, e: float, tau: float, columns: int) -> None:
+    """Moment over the springs' rotary stiffness: r = -(q L e + tau a h) / sum(k x^2), u = tau a / 2 p_s - r h / 2.
+
+    The base's springs stand at both ends of every sub-block's base edge of length a / n, p / n each.
+    """
+    a, h, p, ps, q = 2.0, 1.5, 1e9, 4e8, 5e6
+    block = dda.Block.rectangle(a, h, dda.Material(2700.0, 1e16, 0.2))
+    model = dda.TwoBlockModel(block, dda.Contact(p, ps), q, eccentricity=e, traction=tau)
+    static = dda.static_system(dda.subdivided(model, columns, 2, 1e20, pattern))  # type: ignore[arg-type]
+    ends = np.linspace(-a / 2, a / 2, columns + 1)
+    rotary = p / columns * (np.sum(ends[:-1] ** 2) + np.sum(ends[1:] ** 2))
+    pressed = a - 2 * abs(e)
+    rotation = -(q * pressed * e + tau * a * h) / rotary
+    # p / E = 1e-7 of elastic strain is left
+    assert static["rotation"] == pytest.approx(rotation, rel=1e-5)
+    assert static["horizontal_displacement"] == pytest.approx(tau * a / (2 * ps) - h / 2 * rotation, rel=1e-5)
+    assert static["displacement"] == pytest.approx(-q * pressed / (2 * p), rel=1e-5)
+    assert static["contact_pressure"] == pytest.approx(q * pressed / a, rel=1e-9)
 
 
 @pytest.mark.parametrize("e", [0.3, -0.3])

@@ -1,0 +1,272 @@
+"""What holds of every solver of the registry, on every scene that it takes: a new solver is tested by its name alone.
+
+The units of length, mass and time are free; what is asked for later does not change what came before; a linear motion
+goes with its load; to ask again, for less, or without savings gives the same numbers.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.runs.history import Array
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.contract import NotReported
+from validation.solvers.registry import BUILT_IN, get_solver
+
+SQUARE = {"side": 2.0, "density": 2700.0, "young": 1e9}
+SPRINGS = {"stiffness": 1e9}
+OPENS = SPRINGS | {"law": "unilateral"}
+RUBS = OPENS | {"shear_stiffness": 4e8, "friction": 15.0}
+TIME = {"step": 2e-3, "steps": 12}
+USUAL = ("displacement", "contact_pressure")
+ASIDE = (*USUAL, "horizontal_displacement")
+LAYERS = [
+    {"thickness": 2.0, "density": 2000.0, "young": 2e9, "blocks": 4},
+    {"thickness": 1.0, "density": 1800.0, "young": 5e8, "blocks": 4},
+]
+COLUMN = {"motion": "pressure", "layer": LAYERS, "base": "transmitting", "base_density": 2400.0, "base_speed": 900.0}
+RICKER = {"shape": "ricker", "velocity": 0.1, "frequency": 120.0}
+SCENES: dict[str, dict[str, Any]] = {
+    "locked": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL},
+    "lateral": {
+        "block": {"vertices": [[0.3, 0.1], [2.3, 0.4], [1.9, 1.6], [0.5, 1.4]], "density": 2400.0, "young": 2e9,
+                  "poisson": 0.2, "base": 0, "top": 2},
+        "contact": {"stiffness": 3e9, "shear_stiffness": 1e9},
+        "load": {"pressure": 3e6, "traction": 4e5, "gravity": 9.81},
+        "columns": ASIDE,
+    },
+    "sub-blocks": {
+        "block": SQUARE | {"subdivide": [2, 3], "glue_ratio": 20.0, "poisson": 0.25},
+        "contact": SPRINGS, "load": {"pressure": 5e6, "traction": 2e5}, "columns": ASIDE,
+    },
+    "shaken": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 1e6, "base_motion": ""}, "columns": ASIDE},
+    "damped": {
+        "block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL,
+        "damping": {"mass": 20.0, "stiffness": 3e-4},
+    },
+    "adaptive": {
+        "block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL,
+        "damping": {"kinetic": "adaptive", "floor": 0.5},
+    },
+    "opening": {"block": SQUARE, "contact": OPENS, "load": {"pressure": 5e6, "gravity": 9.81}, "columns": USUAL},
+    "opening sub-blocks": {
+        "block": SQUARE | {"subdivide": [1, 2], "glue_ratio": 5.0}, "contact": OPENS, "load": {"pressure": 5e6},
+        "columns": USUAL,
+    },
+    "landing": {
+        "block": SQUARE | {"velocity": -1.0}, "contact": OPENS | {"gap": 5e-3}, "load": {"gravity": 9.81},
+        "columns": USUAL,
+    },
+    "sliding": {"block": SQUARE, "contact": RUBS, "load": {"gravity": 9.81, "slope": 28.9}, "columns": ASIDE},
+    "lagged": {
+        "block": SQUARE, "contact": RUBS | {"rules": "lagged", "band": [1e-3, 1e-6]},
+        "load": {"gravity": 92.6, "slope": 20.0}, "columns": ASIDE,
+    },
+    "turning": {
+        "block": {"width": 2.0, "height": 4.0, "density": 2700.0, "young": 1e12, "tilt": 13.0},
+        "contact": RUBS | {"stiffness": 1e11, "shear_stiffness": 4e10, "friction": 45.0},
+        "load": {"gravity": 9.81}, "columns": (*ASIDE, "rotation"), "geometry": "updated",
+    },
+    "column": {"column": COLUMN, "input": RICKER, "columns": USUAL},
+}  # fmt: skip
+NOT_LINEAR = ("adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning")
+RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
+
+# what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time
+EXPONENTS = {
+    "length": (1, 0, 0), "time": (0, 0, 1), "rate": (0, 0, -1), "velocity": (1, 0, -1), "acceleration": (1, 0, -2),
+    "density": (-2, 1, 0), "stress": (0, 1, -2), "number": (0, 0, 0),  # of a slice of unit thickness
+}  # fmt: skip
+KINDS = {
+    "side": "length", "width": "length", "height": "length", "vertices": "length", "eccentricity": "length",
+    "gap": "length", "band": "length", "thickness": "length", "density": "density", "base_density": "density",
+    "young": "stress", "pressure": "stress", "traction": "stress", "shear_stiffness": "stress",
+    "velocity": "velocity", "base_speed": "velocity", "gravity": "acceleration", "step": "time", "mass": "rate",
+    "frequency": "rate", "contact_pressure": "stress", "displacement": "length", "horizontal_displacement": "length",
+}  # fmt: skip
+STIFFNESS = {"contact": "stress", "damping": "time"}  # N/m of a slice of unit thickness; a1 of the damping tables
+UNITS = (2.0**-9, 2.0**-12, 2.0**-5)  # powers of two round nothing: an absolute tolerance shows, and nothing else does
+
+
+def scaled(kind: str, units: tuple[float, float, float]) -> float:
+    return float(np.prod([unit**exponent for unit, exponent in zip(units, EXPONENTS[kind], strict=True)]))
+
+
+def in_units(table: str, data: Any, units: tuple[float, float, float]) -> Any:
+    """Return a table of a scene with its numbers in other units."""
+    if isinstance(data, list):
+        return [in_units(table, entry, units) for entry in data]
+    other = {}
+    for key, value in data.items():
+        kind = STIFFNESS[table] if key == "stiffness" else KINDS.get(key, "number")
+        if key == "layer":
+            other[key] = in_units(table, value, units)
+        elif kind == "number":
+            other[key] = value
+        else:
+            other[key] = (np.array(value) * scaled(kind, units)).tolist()
+    return other
+
+
+def made(name: str, directory: Path, units: tuple[float, float, float] = (1.0, 1.0, 1.0), load: float = 1.0) -> Scene:
+    """Return a scene of the table, its numbers in other units and its loads multiplied."""
+    tables = {key: value for key, value in SCENES[name].items() if isinstance(value, dict)}
+    data = {key: in_units(key, value, units) for key, value in (tables | {"time": TIME}).items()}
+    drive = data["input"] if "input" in data else data["load"]
+    for key in ("pressure", "traction", "gravity", "velocity"):
+        if key in drive:
+            drive[key] *= load
+    if "base_motion" in drive:
+        factors = (scaled("time", units), *[load * scaled("length", units)] * 2)
+        rows = np.array(RECORD) * factors
+        drive["base_motion"] = str(directory / f"{units[0]}-{load}.csv")
+        np.savetxt(drive["base_motion"], rows, "%.17g", ",", header="time,x,y", comments="")
+    data["run"] = {"columns": list(SCENES[name]["columns"]), "geometry": SCENES[name].get("geometry", "small")}
+    return parse_scene({"name": name, **data, "fem": {"elements": 2}}, name)
+
+
+def mirrored(scene: Scene, directory: Path) -> Scene:
+    """Return a scene seen from behind: what is at the right is at the left."""
+    data = scene.definition()
+    block, load = data["block"], data["load"]
+    if "vertices" in block:  # again anticlockwise from the base on
+        block["vertices"] = [[-x, y] for x, y in np.roll(block["vertices"][::-1], 2, axis=0)]
+    for table, key in ((load, "traction"), (load, "slope"), (block, "tilt")):
+        if key in table:
+            table[key] = -table[key]
+    if "base_motion" in load:
+        load["base_motion"] = str(directory / "mirrored.csv")
+        rows = np.array(RECORD) * (1, -1, 1)
+        np.savetxt(load["base_motion"], rows, "%.17g", ",", header="time,x,y", comments="")
+    return parse_scene(data, "mirrored")
+
+
+def asked(solver: str, scene: Scene) -> Scene:
+    """Return the scene with the columns that a solver has."""
+    own = get_solver(solver).columns()
+    return scene.with_values({"run.columns": [c for c in scene.run.columns if own is None or c in own]})
+
+
+def solved(solver: str, scene: Scene, full: bool = False) -> Mapping[str, Array]:
+    run = get_solver(solver).solve(scene, full=full)
+    assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
+    assert list(run.history.time) == pytest.approx([scene.time.step * n for n in range(1, scene.time.steps + 1)])
+    return run.history.columns
+
+
+def static(solver: str, scene: Scene) -> Mapping[str, Array]:
+    """Return the static solution, nothing where none is reported."""
+    try:
+        return {name: np.array(value) for name, value in get_solver(solver).static(scene).items()}
+    except NotReported:
+        return {}
+
+
+def assert_same(values: Mapping[str, Array], expected: Mapping[str, Array], rounding: float) -> None:
+    """Compare columns, each over its largest value; one that is nothing beside the others may be anything as small."""
+    assert values.keys() == expected.keys()
+    for name, wanted in expected.items():
+        assert np.abs(values[name] - wanted).max() <= rounding * np.abs(wanted).max(), name
+
+
+TAKES = {  # what each solver takes; the other scenes it refuses by name
+    "dda": tuple(SCENES),
+    "dda-textbook": ("locked",),
+    "fem": tuple(name for name in SCENES if name not in ("lagged", "turning")),
+    "fenicsx": ("locked", "lateral", "sub-blocks", "shaken", "opening", "opening sub-blocks", "landing", "sliding"),
+    "bar": ("locked", "damped", "opening", "opening sub-blocks", "landing"),
+    "continuum": ("locked", "damped"),
+    "layers": ("column",),
+    "block-events": ("locked", "shaken", "opening", "landing", "sliding"),
+    "bar-events": ("opening", "landing"),
+    "dda-60": ("locked",),
+    "fem-60": ("locked",),
+    "bar-60": ("locked",),
+}
+
+
+def pairs(solver: str) -> list[Any]:
+    """Return a solver with its scenes; FEniCSx is another program, which is started for its tests alone."""
+    marks = [pytest.mark.fenicsx] if solver == "fenicsx" else []
+    return [pytest.param(solver, name, id=f"{solver}-{name}", marks=marks) for name in TAKES.get(solver, ())]
+
+
+EVERY = pytest.mark.parametrize(("solver", "name"), list(itertools.chain.from_iterable(map(pairs, BUILT_IN))))
+
+
+WITHOUT_SAVINGS = [  # of sixty digits a whole mesh takes long
+    pytest.param(*param.values, id=param.id, marks=[*param.marks, *[pytest.mark.long] * (param.values[0] == "fem-60")])
+    for param in EVERY.args[1]
+]
+LINEAR = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] not in NOT_LINEAR]
+
+OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] != "column"]
+
+
+@pytest.mark.parametrize("solver", BUILT_IN)
+def test_a_solver_takes_its_scenes_and_no_others(solver: str, tmp_path: Path) -> None:
+    adapter = get_solver(solver)
+    assert [name for name in SCENES if adapter.refusal(made(name, tmp_path)) is None] == list(TAKES[solver])
+
+
+@EVERY
+def test_units_are_free(solver: str, name: str, tmp_path: Path) -> None:
+    scene = asked(solver, made(name, tmp_path))
+    columns = solved(solver, scene)
+    other = solved(solver, asked(solver, made(name, tmp_path, UNITS)))
+    expected = {column: values * scaled(KINDS.get(column, "number"), UNITS) for column, values in columns.items()}
+    assert_same(other, expected, 1e-9)
+
+
+@EVERY
+def test_what_comes_later_changes_nothing(solver: str, name: str, tmp_path: Path) -> None:
+    scene = asked(solver, made(name, tmp_path))
+    longer = solved(solver, scene.with_values({"time.steps": 3 * scene.time.steps}))
+    beginning = {column: values[: scene.time.steps] for column, values in longer.items()}
+    assert_same(solved(solver, scene), beginning, 1e-9)
+
+
+@EVERY
+def test_asked_again_for_one_column_it_gives_the_same(solver: str, name: str, tmp_path: Path) -> None:
+    scene = asked(solver, made(name, tmp_path))
+    columns = solved(solver, scene)
+    again = solved(solver, scene)
+    assert all(np.array_equal(again[column], values) for column, values in columns.items())
+    for column in columns:
+        alone = solved(solver, scene.with_values({"run.columns": [column]}))
+        assert_same(alone, {column: columns[column]}, 1e-12)
+
+
+@pytest.mark.parametrize(("solver", "name"), WITHOUT_SAVINGS)
+def test_without_savings_it_gives_the_same(solver: str, name: str, tmp_path: Path) -> None:
+    scene = asked(solver, made(name, tmp_path))
+    assert_same(solved(solver, scene, full=True), solved(solver, scene), 1e-8)
+
+
+@pytest.mark.parametrize(("solver", "name"), LINEAR)
+def test_a_linear_motion_goes_with_its_load(solver: str, name: str, tmp_path: Path) -> None:
+    """The negative of twice the load, the negative of twice the motion and of what it ends at; of no load none."""
+    scene = asked(solver, made(name, tmp_path))
+    other = asked(solver, made(name, tmp_path, load=-2.0))
+    still = asked(solver, made(name, tmp_path, load=0.0))
+    for answer in (solved, static):
+        values = answer(solver, scene)
+        assert all(np.any(values[column]) for column in values.keys() & set(USUAL))
+        assert_same(answer(solver, other), {column: -2 * value for column, value in values.items()}, 1e-11)
+        assert not any(np.any(value) for value in answer(solver, still).values())
+
+
+@pytest.mark.parametrize(("solver", "name"), OF_BLOCKS)
+def test_left_is_the_mirror_image_of_right(solver: str, name: str, tmp_path: Path) -> None:
+    """Even are v and the pressure, odd are u and the rotation."""
+    scene = asked(solver, made(name, tmp_path))
+    other = solved(solver, mirrored(scene, tmp_path))
+    columns = solved(solver, scene)
+    assert_same(other, {column: values if column in USUAL else -values for column, values in columns.items()}, 1e-9)
