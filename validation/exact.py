@@ -219,7 +219,7 @@ def rigid_slide(time: ArrayLike, *, slope: float, friction: float, gravity: floa
 
 
 def rocking_quarter_period(*, width: float, height: float, tilt: float, gravity: float = 9.81) -> float:
-    """Return when a rigid block that is let go from a tilt comes down on its base [s]; it needs scipy.
+    """Return when a rigid block released from a tilt comes down on its base [s]; it needs scipy.
 
     theta'' = -p^2 sin(alpha - theta), p^2 = 3 g / (4 R), alpha = atan(a / h), R half of the diagonal; the time is an
     incomplete elliptic integral. Source: G. W. Housner, Bulletin of the Seismological Society of America 53 (1963).
@@ -244,7 +244,7 @@ def rocking_quarter_period(*, width: float, height: float, tilt: float, gravity:
 
 
 def rocking_tilt(time: ArrayLike, *, width: float, height: float, tilt: float, gravity: float = 9.81) -> Array:
-    """Return the tilt of a rigid block that is let go at rest [rad], impacts with Housner's loss; it needs scipy.
+    """Return the tilt of a rigid block released at rest [rad], impacts with Housner's loss; it needs scipy.
 
     The equation and the parameters of `rocking_quarter_period`; after an impact the block rises on its other corner
     with 1 - 3/2 sin^2(alpha) of the rate and its tilt is negative.

@@ -178,7 +178,7 @@ def test_a_fall_turns_downwards_and_first_order_rotation_grows_in_per_cent() -> 
         for name, area in (("toppling-fall", [1.0] * 4), ("toppling-growth", [1.0, 1.001, 1.003, 1.005])))  # fmt: skip
     found = [replace(fallen, name="toppling-fall"), replace(grown, name="toppling-growth")]
     lines = {line.name: line.y for line in turning.fall_panel(found).lines}
-    assert np.allclose(lines["let go"], [0.05, 0.1, 0.2, 0.3]) and np.isclose(lines["rigid"][-1], 0.3)
+    assert np.allclose(lines["released"], [0.05, 0.1, 0.2, 0.3]) and np.isclose(lines["rigid"][-1], 0.3)
     areas = {line.name: line.y for line in turning.area_panel(found).lines}
     assert np.allclose(areas["exact"], 0) and np.allclose(areas["first-order"], [0, 0.1, 0.3, 0.5])
     product = np.cumprod(1 + np.array([0.05, 0.05, 0.1, 0.1]) ** 2) - 1

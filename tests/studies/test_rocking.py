@@ -196,7 +196,7 @@ def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
     assert "by 0.51 % at dt = 20 ms" in page and growing.time.step == 0.02 and standing == [21.6, 22.0]
     assert toppling.growth(growing) == pytest.approx(0.0051, abs=1e-4)  # DDA's is gated beside it
     upright = growing.with_values({"block.tilt": 0.0})
-    assert "let go on its lower corner with a tilt of 1 deg" in page and growing.block.tilt == -1.0
+    assert "released on its lower corner with a tilt of 1 deg" in page and growing.block.tilt == -1.0
     assert "(0.47 % from no tilt" in page and toppling.growth(upright) == pytest.approx(0.0047, abs=5e-5)
     assert f"tan(b) = a/h at {math.degrees(math.atan(10 / 25)):.2f} deg" in page
 

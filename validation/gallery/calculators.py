@@ -114,7 +114,7 @@ CALCULATORS = (
         (
             Control("frequency", "Frequency F", "Hz", 20.0, 0.01, 10000.0, True),
             Control("side", "Height of a block h", "m", 2.0, 0.001, 100.0, True),
-            Control("wavelengths", "The wave's way", "wavelengths", 10.0, 0.1, 1000.0, True),
+            Control("wavelengths", "The wave's path", "wavelengths", 10.0, 0.1, 1000.0, True),
             *STEPPING,
         ),
         (DENSITY, YOUNG),

@@ -176,7 +176,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     ringing = ChartPanel(title, "p / E", "", radii, y_range=(0.0, 1.05), **axes)
     caption = (
         "Left: the springs' share of v at rest; the stiffer they are, the more the first natural frequency exceeds the "
-        "bar's. Right: share of its amplitude that the contact keeps per step; at 1 it rings for ever. Of "
+        "bar's. Right: share of its amplitude that the contact keeps per step; at 1 the ringing is undamped. Of "
         "the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, whose roots tend to "
         "(δ − 3/2)/(δ + 1/2)."
     )

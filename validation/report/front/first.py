@@ -54,7 +54,7 @@ def tested(paper: Scene) -> list[Block]:
     return [
         Paragraph(
             f"An elastic square A ({block.density:g} kg/m³, E = {short(block.young / 1e9)} GPa, μ = {block.poisson:g}) "
-            "stands on a fixed block B. Springs lock the corners M and N, p [N/m] each way, and a pressure on "
+            "stands on a fixed block B. Springs lock the corners M and N, p [N/m] in each direction, and a pressure on "
             "the top is there from t = 0 on. DDA gives the block six unknowns: u, v and r of its centroid and one "
             "strain εx, εy, γxy. Reported are v of the centroid and the contact pressure on the base."
         ),

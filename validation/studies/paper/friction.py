@@ -69,7 +69,7 @@ ON_SLOPES = (
         beyond,
         tuple(Band(f"over tan(phi) x settlement at dt = {s.time.step:g}", 0.999, 1.001) for s in SLIDES.values()),
         Finding.CONFIRMED,
-        "it is tan(phi) times the settlement on the springs, whatever time step and way",
+        "it is tan(phi) times the settlement on the springs, whatever time step and distance",
     ),
     Claim(
         "C22",

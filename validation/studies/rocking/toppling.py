@@ -154,7 +154,7 @@ def straight(scene: Scene) -> float:
 
 
 def falling_gates() -> Iterator[Gate]:
-    """Yield the gates on towers that are let go on their lower corner, by exact and by first-order rotation."""
+    """Yield the gates on towers released on their lower corner, by exact and by first-order rotation."""
     timed = "rigid block about its lower corner, by quadrature; the corner settles by up to 2 m g / p, seen from psi"
     exact_reason = "exact rotation keeps the outline; band: the strain of four times the weight"
     product = "a step's first-order rotation multiplies the area by 1 + r^2; band: the strain of four times the weight"

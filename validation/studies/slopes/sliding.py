@@ -181,7 +181,7 @@ def energy_gates() -> Iterator[Gate]:
         normal_force = case.block.mass * friction.across(case)
         sliding_resistance = friction.coefficient(case) * normal_force + case.block.mass * friction.adhesion(case)
         lost = sliding_resistance * friction.run_out(case, case.time.duration)
-        why = "tan(phi) m g cos b + c a times the way; band: the swinging of the normal force at first, 1e-3"
+        why = "tan(phi) m g cos b + c a times the distance; band: the oscillation of the normal force at first, 1e-3"
         yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
 
 
@@ -190,7 +190,7 @@ def element_gates() -> Iterator[Gate]:
     for case in cases(SLIDING):
         late = 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration
         why = (
-            "one run-out for both: points of the base begin to slip within a wave's way up, 2 h / (c t) of the run-out"
+            "one run-out for both: points of the base begin to slip within a wave's travel up, 2 h / (c t) of the run-out"
         )
         yield Gate(case.name, ("dda", "fem"), "horizontal.final", -late, late, why)
 

@@ -38,8 +38,8 @@ FALLS = (
     "x − r y, y + r x, multiplies the area by 1 + r² in every step."
 )
 QUANTITIES = {  # metric -> words
-    "moved": "way in the second half, over a sliding block's or the width",
-    "identity": "u + tan φ v less the free motion, over the way",
+    "moved": "distance in the second half, over a sliding block's or the width",
+    "identity": "u + tan φ v less the free motion, over the distance",
     "run-out": "run-out over a rigid block's",
     "time": "time over a rigid block's",
     "turned": "greatest turn [rad]",
@@ -68,7 +68,7 @@ def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> l
     """Return the chapter of `toppling`."""
     groups = case_groups(results, manifest)
     caption = (
-        "Left: turn of a tower of 10 m × 25 m on a slope of 40° (dashed: rigid block, let go on its corner). Right: "
+        "Left: turn of a tower of 10 m × 25 m on a slope of 40° (dashed: rigid block, released on its corner). Right: "
         "its area over that of the start (dashed: the product of 1 + r² over the steps)."
     )
     panels = [fall_panel(groups), area_panel(groups)]
@@ -111,7 +111,7 @@ def swing_table(swings: Sequence[CaseGroup]) -> Table:
             ratio = plain(block.height / block.width, 2)
             rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
     caption = (
-        "Blocks of a = 2 m that are let go. Quarter period over the rigid block's; rate after over before the impact."
+        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the impact."
     )
     return Table(columns("decimal", *titles), tuple(rows), caption)
 
@@ -148,7 +148,7 @@ def fall_table(groups: Sequence[CaseGroup]) -> Table:
 
 
 def swing_panel(group: CaseGroup) -> ChartPanel:
-    """Return tilt over time of blocks that are let go."""
+    """Return tilt over time of blocks released."""
     lines = []
     for case in group.cases:
         if (history := case.histories.get("dda")) is not None:
@@ -157,7 +157,7 @@ def swing_panel(group: CaseGroup) -> ChartPanel:
             x = history.time / block.quarter_period(tilt)
             y = 1 + history.columns["rotation"] / tilt
             lines.append((f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
-    return ChartPanel("Let go", "t / T", "tilt / first tilt", coloured(lines), levels={"": 0.0}, marks={"": 1.0})
+    return ChartPanel("Released", "t / T", "tilt / first tilt", coloured(lines), levels={"": 0.0}, marks={"": 1.0})
 
 
 def pulse_panel(group: CaseGroup) -> ChartPanel:
@@ -181,7 +181,7 @@ def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
 def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
     """Return the turn of falling towers, and that of a rigid one."""
     curves = []
-    for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "let go")):
+    for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "released")):
         for case in finished_cases(groups, name):
             history = case.histories["dda"]
             curves.append((words, history.time, -history.columns["rotation"]))

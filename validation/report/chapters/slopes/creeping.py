@@ -33,7 +33,7 @@ CAPTION = (
     "nine times the weight, and is compared with an established program (circles)."
 )
 EXPLANATION = (
-    "The normal springs ring when the weight comes on. Each cycle unloads the base, friction lets go, and the block "
+    "The normal springs ring when the weight is applied. Each cycle unloads the base, friction is lost, and the block "
     "moves by about g/ωₙ²: undamped it creeps on and on, on this slope by half to twice g/ωₙ = g √(m/2p) per second. "
     "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
     "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the "

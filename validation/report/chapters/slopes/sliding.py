@@ -32,7 +32,7 @@ CAPTION = (
     "rate of the drag: continuous drag (line) and runs (circles)."
 )
 EXPLANATION = (
-    "While every corner slips one way or is open, the centroid's uₜ + uₙ tan φ moves freely under "
+    "While every corner slips in one direction or is open, the centroid's uₜ + uₙ tan φ moves freely under "
     "g (sin β − tan φ cos β) − c a / m, whatever springs, step and scheme, through bounces too. The springs put the "
     "block ahead by tan φ times its settlement, at any step: this is what papers call the penalty error of sliding. "
     "A discount is a drag of −ln(gg)/dt per second, in sliding and in flight alike: gg without dt means nothing."
@@ -78,11 +78,11 @@ def trajectories(free: CaseGroup, braked: CaseGroup, directory: Path) -> FigureB
     rates, shares = np.array(measured).reshape(-1, 2).T
     points = ChartLine("dda", rates, shares, ORANGE, width=0, dots=DOTS, hollow=True)
     panels = (
-        ChartPanel("Way down the incline", "t [s]", "way [m]", traces, names="upper left"),
+        ChartPanel("Distance down the incline", "t [s]", "distance [m]", traces, names="upper left"),
         ChartPanel(
             "What a drag leaves after 1 s",
             "c [1/s]",
-            "share of the way",
+            "share of the distance",
             (curve, points),
             logarithmic=(True, True),
             names="lower left",
