@@ -190,7 +190,7 @@ def element_gates() -> Iterator[Gate]:
     for case in cases(SLIDING):
         late = 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration
         why = (
-            "one run-out for both: points of the base begin to slip within a wave's travel up, 2 h / (c t) of the run-out"
+            "one run-out for both: points of the base begin to slip while a wave travels up, 2 h / (c t) of the run-out"
         )
         yield Gate(case.name, ("dda", "fem"), "horizontal.final", -late, late, why)
 

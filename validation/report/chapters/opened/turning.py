@@ -111,7 +111,7 @@ def swing_table(swings: Sequence[CaseGroup]) -> Table:
             ratio = plain(block.height / block.width, 2)
             rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
     caption = (
-        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the impact."
+        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before impact."
     )
     return Table(columns("decimal", *titles), tuple(rows), caption)
 
