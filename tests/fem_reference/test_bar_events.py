@@ -239,18 +239,6 @@ def test_the_fields_meet_the_base_and_the_top() -> None:
         assert field.stress[2] == pytest.approx(-problem.pressure, rel=1e-14)
 
 
-@pytest.mark.parametrize("seed", [40, 41])
-def test_twice_the_load_moves_twice_as_far_at_the_same_times(seed: int) -> None:
-    problem = random_problem(seed)
-    names = ("pressure", "gravity", "gap", "velocity")
-    twice = replace(problem, **{name: 2 * getattr(problem, name) for name in names})
-    end = 10 * problem.travel
-    once, double = solve(problem, end), solve(twice, end)
-    assert once.switches == double.switches
-    t = np.linspace(0, end, 30)
-    assert 2 * once.at(t).displacement == pytest.approx(double.at(t).displacement, rel=1e-14)
-
-
 def test_tiny_contact_forces_are_resolved() -> None:
     """At p = 100 E what is left of a wave is exp(-400), yet its openings are those of the equations."""
     motion = solve(replace(PAPER, base_stiffness=2e11), 0.04)

@@ -214,42 +214,6 @@ def test_the_velocities_are_the_rates_of_the_unknowns() -> None:
         assert np.abs(differences - rate).max() <= 1e-7 * np.abs(rate).max()
 
 
-@pytest.mark.parametrize("seed", thinned([41, 40], 2))
-def test_twice_the_load_moves_twice_as_far_at_the_same_times(seed: int) -> None:
-    problem = random_problem(seed)
-    names = ("pressure", "traction", "gravity", "gap", "velocity")
-    twice = replace(problem, **{name: 2 * getattr(problem, name) for name in names})
-    end = 10 * travel(problem)
-    once, double = solve(problem, end), solve(twice, end)
-    assert once.switches == double.switches
-    t = np.linspace(0, end, 50)
-    assert np.array_equal(2 * once.at(t).displacement, double.at(t).displacement)
-
-
-@pytest.mark.parametrize("seed", [50, 51])
-def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
-    problem = random_problem(seed)
-    mirrored = replace(problem, eccentricity=-problem.eccentricity, traction=-problem.traction)
-    end = 10 * travel(problem)
-    one, other = solve(problem, end), solve(mirrored, end)
-    swapped = [(s.time, {"M": "N", "N": "M"}[s.corner], s.kind) for s in other.switches]
-    assert [(s.time, s.corner, s.kind) for s in one.switches] == swapped
-    t = np.linspace(0, end, 50)
-    signs = np.array([-1, 1, -1, 1, 1, -1])[:, None]
-    a, b = one.at(t), other.at(t)
-    assert a.displacement == pytest.approx(signs * b.displacement, abs=1e-14 * np.abs(a.displacement).max())
-    assert a.shear_force == pytest.approx(-b.shear_force[::-1], abs=1e-12 * np.abs(a.normal_force).max())
-
-
-@pytest.mark.parametrize("seed", [60, 61, 62])
-def test_a_centred_load_moves_nothing_sideways(seed: int) -> None:
-    problem = replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=1e9)
-    motion = solve(problem, 10 * travel(problem))
-    history = motion.at(np.linspace(0, motion.end, 40))
-    assert not history.displacement[[0, 2, 5]].any()
-    assert switch_times(motion) == switch_times(motion, "N")
-
-
 def test_a_long_flight_keeps_its_digits() -> None:
     """Pulled up for 5000 radians: v = -q t^2 / (2 rho b), ey = -(q / 2E) (1 - cos w t), w = sqrt(12) c / b."""
     problem = replace(OTHER, pressure=-2e6, gap=1.0)

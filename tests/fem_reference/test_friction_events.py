@@ -122,20 +122,6 @@ def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> 
         assert np.abs(moved[(states == STICKS) & (history.states[c, 1:] == STICKS)]).max(initial=0.0) <= 1e-14
 
 
-@pytest.mark.parametrize("seed", thinned([41, 40], 2))
-def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
-    problem = slipping_problem(seed)
-    signs = {name: -getattr(problem, name) for name in ("eccentricity", "traction", "slope")}
-    end = duration(problem, 3)
-    one, other = solve(problem, end), solve(replace(problem, **signs), end)
-    swapped = [(s.time, {"M": "N", "N": "M"}[s.corner], s.kind) for s in other.switches]
-    assert sorted((s.time, s.corner, s.kind) for s in one.switches) == sorted(swapped)
-    t = np.linspace(0, end, 40)
-    a, b = one.at(t), other.at(t)
-    assert np.array_equal(a.states, -np.where(np.abs(b.states) == RIGHT, b.states, -b.states)[::-1])
-    assert a.slide == pytest.approx(-b.slide[::-1], abs=1e-13 * np.abs(a.slide).max())
-
-
 @pytest.mark.long
 def test_without_a_limit_that_is_reached_friction_changes_nothing() -> None:
     glued, rough = solve(replace(OFF_CENTRE, friction=None), 0.03), solve(replace(OFF_CENTRE, friction=89.0), 0.03)
@@ -163,16 +149,6 @@ def test_sliding_obeys_the_law_of_the_inclined_plane() -> None:
     assert rates == pytest.approx(9.81 * (math.sin(b) - tan * math.cos(b)), rel=1e-11)
     assert free.sum() > 20
     assert set(np.unique(history.states[:, free])) <= {RIGHT, OPEN}
-
-
-@pytest.mark.long
-def test_no_friction_at_all_is_the_block_without_shear_springs() -> None:
-    smooth = solve(replace(SIDEWAYS, shear_stiffness=0.0, friction=None), 0.02)
-    slick = solve(replace(SIDEWAYS, friction=0.0), 0.02)
-    times = [[s.time for s in m.switches if s.kind in ("opens", "closes")] for m in (smooth, slick)]
-    assert times[0] == pytest.approx(times[1], rel=1e-14)
-    assert smooth.at([0.02]).displacement == pytest.approx(slick.at([0.02]).displacement, rel=1e-13)
-    assert not slick.at(np.linspace(0, 0.02, 50)).friction.any()
 
 
 @pytest.mark.parametrize("friction", thinned([20.0, 5.0], 2))

@@ -14,7 +14,6 @@ from validation.engine.case import Case
 from validation.metrics.transform import spectrum
 from validation.scenes import drive, features
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.registry import BUILT_IN
 
 SITE = """
 [column]
@@ -194,16 +193,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
-
-
-def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
-    assert features.of(site) == ("column",)
-    assert features.linear(site)
-    for name in set(BUILT_IN) - {"dda", "fem", "layers"}:
-        with pytest.raises(InputError, match="does not handle column"):
-            solve(site, name)
-    with pytest.raises(InputError, match="takes columns only"):
-        solve(load_scene("figures-3-4").expand()[0], "layers")
 
 
 def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:

@@ -15,7 +15,6 @@ from validation import load_scene, solve
 from validation.errors import InputError
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.registry import BUILT_IN, get_solver
 
 RIGID = {"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0}
 
@@ -78,15 +77,6 @@ def test_a_locked_contact_is_never_rigid() -> None:
     data["contact"]["stiffness"] = "inf"
     with pytest.raises(InputError, match='stiffness must be finite with law = "locked"'):
         parse_scene(data, "refused")
-
-
-def test_other_solvers_refuse_it_by_name() -> None:
-    for name in BUILT_IN:
-        refusal = get_solver(name).refusal(scene())
-        assert (refusal is None) == (name == "dda"), name
-        assert name == "dda" or "rigid contact" in str(refusal)
-    parts = scene(**{"block.subdivide": [2, 2]})
-    assert "rigid contact together with sub-blocks" in str(get_solver("dda").refusal(parts))
 
 
 def test_the_page_on_contact_takes_it(tmp_path: Path) -> None:

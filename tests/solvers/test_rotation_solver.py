@@ -11,7 +11,7 @@ from validation.advice.friction import friction_alarms
 from validation.errors import InputError
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.solvers.registry import BUILT_IN, get_solver
+from validation.solvers.registry import get_solver
 
 TOPPLING = """\
 title = "A tower on its corner"
@@ -84,30 +84,6 @@ def test_a_block_that_is_let_go_on_a_corner_does_not_creep(prepared, scene):
     standing = rubbing.with_values({"block.tilt": 0.0, "time.steps": 2000})
     assert not list(friction_alarms(rubbing, {"dda": row}))
     assert [alarm.kind for alarm in friction_alarms(standing, {"dda": row})] == ["creep of a stable block"]
-
-
-def test_rotation_is_the_default_of_no_scene(scene):
-    assert "large rotation" not in load_scene("unlocked").run.model_dump_json()
-    assert load_scene("unlocked").run.geometry == "small"
-
-
-def test_other_solvers_refuse_updated_geometry(scene):
-    for name in BUILT_IN:
-        if name not in ("dda",) and get_solver(name).handles.isdisjoint({"large rotation"}):
-            assert "large rotation" in get_solver(name).refusal(scene)
-
-
-@pytest.mark.parametrize(
-    ("values", "word"),
-    [
-        ({"block.subdivide": [2, 2]}, "sub-blocks together with large rotation"),
-        ({"contact.band": [1e-3, 0.0]}, "dead bands together with large rotation"),
-        ({"contact.rule": "implicit", "time.alpha": 0.25, "time.delta": 0.5}, "implicit contact together with large"),
-    ],
-)
-def test_what_does_not_go_with_updated_geometry_is_refused(scene, values, word):
-    with pytest.raises(InputError, match=word):
-        solve(scene.with_values(values), "dda")
 
 
 def test_a_base_that_moves_goes_with_updated_geometry(scene, tmp_path):

@@ -10,7 +10,7 @@ import fem_reference
 from dda.scheme import viscous
 from fem_reference.scheme import viscous as fem_viscous
 from fem_reference.scheme.eigen import eigenvalues
-from validation import advise, damping, load_scene, response, solve
+from validation import advise, damping, load_scene, solve
 from validation.advice.rayleigh import Rayleigh
 from validation.advice.wave_advice import advise_wave
 from validation.diagnosis.judgement import compare
@@ -149,32 +149,10 @@ def test_the_budget_has_a_viscous_part_that_rayleighs_formula_gives() -> None:
     assert rate == pytest.approx(20.0 + 3e-4 * exact.frequency**2, rel=1e-9)
 
 
-def test_who_does_not_know_viscous_damping_refuses_it() -> None:
-    for solver in ("dda-textbook", "fenicsx", "dda-60", "bar-60"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(BLOCK, solver)
-    opened = {"contact.law": "unilateral"}
-    for solver in ("dda", "fem", "bar"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(BLOCK.with_values(opened), solver)
-    column = load_scene("waves-base").expand()[0].with_values(TABLES)
-    for solver in ("dda", "fem", "layers"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(column, solver)
+def test_who_knows_the_schemes_own_damping_only_refuses_it() -> None:
     for act in (lambda: advise(BLOCK, 0.05), lambda: advise_wave(BLOCK, 5.0, 0.1), lambda: compare(BLOCK, None)):  # type: ignore[arg-type]
         with pytest.raises(InputError, match="damping tables"):
             act()
-
-
-def test_a_moving_base_does_not_go_with_damping_tables(tmp_path) -> None:  # type: ignore[no-untyped-def]
-    record = tmp_path / "base.csv"
-    record.write_text("time,y\n0,0\n1,0.1\n")
-    moving = BLOCK.with_values({"load.base_motion": str(record)})
-    for solver in ("dda", "fem"):
-        with pytest.raises(InputError, match="base motion together with damping tables"):
-            solve(moving, solver)
-        with pytest.raises(InputError, match="base motion together with damping tables"):
-            response(moving, 1.0, solver)
 
 
 def test_numbers_out_of_range_are_refused() -> None:
