@@ -125,24 +125,6 @@ def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], wor
     assert "\n" not in text and ", got " in text
 
 
-POLYGONS = [
-    (SQUARE[::-1], "must run counter-clockwise"),
-    ([SQUARE[0], SQUARE[2], SQUARE[1], SQUARE[3]], "must not cross themselves"),
-    ([[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]], "must not cross themselves"),  # a vertex on another edge
-    ([[0, 0], [2, 0], [1, 0], [1, 2]], "must not cross themselves"),  # an edge folded back on its neighbour
-    ([[0, 0], [0, 0], [2, 0], [2, 2]], "must not repeat"),
-    ([[0, 0], [2, 0]], "must be three or more"),
-]
-
-
-@pytest.mark.parametrize(("vertices", "words"), POLYGONS)
-def test_polygons_that_are_refused(vertices: list[list[float]], words: str) -> None:
-    data = changed(block__vertices=vertices)
-    del data["block"]["side"]
-    with pytest.raises(InputError, match=words):
-        parse_scene(data, "x.toml")
-
-
 def test_edges_of_a_polygon_are_checked() -> None:
     data = changed(block__vertices=SQUARE, block__top=4)
     del data["block"]["side"]

@@ -87,14 +87,6 @@ def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
         assert np.allclose(viscous_.columns[column], kinetic.columns[column], rtol=1e-11, atol=1e-9)
 
 
-def test_a_static_load_is_carried_and_the_steps_know_no_savings_that_are_not_theirs() -> None:
-    for solver in ("dda", "fem", "bar", "continuum"):
-        run = solve(BLOCK.with_values({"time.step": 2e-3, "time.steps": 400}), solver)
-        assert run.displacement[-1] == pytest.approx(-0.01, rel=1e-8)
-        assert not any(word == "blocked" for word in run.notes)
-    assert "stepped: viscous damping" in solve(BLOCK, "dda").notes
-
-
 def test_what_has_not_arrived_is_nothing() -> None:
     run = solve(BLOCK.with_values({"time.step": 1e-4, "time.steps": 40, "damping.stiffness": 0.0}), "bar")
     assert not any("tension" in note for note in run.notes)
@@ -115,13 +107,6 @@ def test_eigenvalues_are_those_of_the_steps_own_operator(frequency: float, gg: f
     sums, products = [sum(pair) for pair in pairs], [pair[0] * pair[1] for pair in pairs]
     assert np.allclose(sums, sums[1], rtol=1e-7, atol=1e-9)
     assert np.allclose(products, products[1], rtol=1e-7, atol=1e-9)
-
-
-def test_without_tables_closed_forms_are_those_without_damping() -> None:
-    own = dda.Scheme(0.4, 0.7, 0.97, 2e-3)
-    for frequency in (20.0, 700.0):
-        expected = dda.spectral.damping_ratio(frequency * 2e-3, 0.4, 0.7, 0.97)
-        assert viscous.damping_ratio(own, frequency) == pytest.approx(float(expected), rel=1e-10)
 
 
 def test_the_operator_of_the_assembled_step_has_the_modes_eigenvalues() -> None:
