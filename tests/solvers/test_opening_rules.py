@@ -1,10 +1,7 @@
 """Rules of contact and sub-blocks through the adapter `dda`: who takes them, what they report, refusals by name."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from conftest import SCENE
 
 from validation import solve
 from validation.errors import InputError
@@ -33,29 +30,6 @@ def test_a_rule_steps_near_the_exact_motion_and_not_as_the_scheme_does(scene: Sc
     off = pair("displacement.l2", ours, exact)
     assert isinstance(off, float) and 1e-9 < off < 5e-2
     assert not np.array_equal(ours.displacement, newmark.displacement)
-
-
-@pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
-def test_scheme_and_rule_that_exclude_each_other_are_refused(scene: Scene, rule: str) -> None:
-    words = f"rule = '{rule}' steps the block by average acceleration: time.alpha must be 0.25 and"
-    with pytest.raises(InputError, match=words):
-        scene.with_values({"time.alpha": 0.5, "time.delta": 0.5, "contact.rule": rule})
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ('rule = "implicit"', 'rule goes with law = "unilateral" only'),
-        ('law = "unilateral"\nrule = "explicit"', "'newmark', 'implicit' or 'energy-conserving', got 'explicit'"),
-        ('law = "unilateral"\nrule = "energy-conserving"\nband = [1e-6, 0.0]', 'band goes with rule = "newmark"'),
-    ],
-)
-def test_a_wrong_rule_is_refused_by_field(tmp_path: Path, line: str, words: str) -> None:
-    path = tmp_path / "wrong.toml"
-    path.write_text(SCENE.replace("stiffness = 1.0e9", f"stiffness = 1.0e9\n{line}"))
-    with pytest.raises(InputError, match=r"wrong\.toml") as told:
-        load_scene(path)
-    assert words in str(told.value)
 
 
 def test_energy_conserving_contact_glued_aside_is_refused(scene: Scene) -> None:

@@ -4,11 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from conftest import SCENE
 
 from validation import load_scene, solve
 from validation.advice.friction import friction_alarms
-from validation.errors import InputError
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver
@@ -92,10 +90,3 @@ def test_a_base_that_moves_goes_with_updated_geometry(scene, tmp_path):
     path.write_text(TOPPLING.replace("gravity = 9.81", 'gravity = 9.81\nbase_motion = "push.csv"').replace("300", "20"))
     still, moved = solve(scene.with_values({"time.steps": 20}), "dda"), solve(load_scene(path), "dda")
     assert not np.allclose(still.history.columns["rotation"], moved.history.columns["rotation"])
-
-
-def test_tilt_without_updated_geometry_is_refused(tmp_path):
-    path = tmp_path / "tilted.toml"
-    path.write_text(SCENE.replace("side = 2.0", "side = 2.0\ntilt = 5.0"))
-    with pytest.raises(InputError, match="tilt goes with run"):
-        load_scene(path)
