@@ -1,18 +1,15 @@
 """The adviser and its inverse: what is advised is what runs, all of it is found, and what is out of reach is."""
 
-import json
 import math
 
 import numpy as np
 import pytest
-from conftest import refused, typed
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from oracles import real_roots
 
 from dda.scheme import spectral
 from validation import InputError, Scene, advise, damping, load_scene
-from validation.advice.advice import expected_errors
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
@@ -175,22 +172,6 @@ def test_no_damping_wanted_of_a_scheme_that_has_none() -> None:
     assert advise(undamped, damping=0.01, solve_for="dt").reachable is False
 
 
-def test_errors_at_the_answer_are_those_of_the_solvers() -> None:
-    from validation import solve
-    from validation.metrics.pairs import relative_l2
-
-    solution = advise(BASE, damping=0.1).solutions[0]
-    errors = expected_errors(BASE, solution)
-    steps = round(0.4 / solution.value)
-    case = BASE.with_values(solution.settings | {"time.steps": steps})
-    assert errors["window"] == pytest.approx(0.4, rel=2e-3)
-    for name in ("fem", "continuum"):
-        want = relative_l2(solve(case, "dda").displacement, solve(case, name).displacement)
-        assert errors[name]["displacement"] == pytest.approx(want, rel=1e-12)
-    soft = expected_errors(BASE.with_values({"block.poisson": 0.3, "fem.elements": 4}), solution)
-    assert "Poisson" in soft["continuum"]["not applicable"] and soft["fem"]["pressure"] > 0
-
-
 @pytest.mark.parametrize(("wanted", "solve_for"), [(-0.1, "dt"), (math.nan, "dt"), (0.1, "p")])
 def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
     with pytest.raises(InputError, match=r"damping: must be|solve_for: must be one of"):
@@ -211,21 +192,3 @@ def test_damping_tells_parts_and_the_mode_that_flips() -> None:
     lateral = damping(BASE.with_values({"block.poisson": 0.3, "contact.stiffness": 1e11}))
     assert sorted(m.name for m in lateral.modes) == ["contact", "first axial", "mode 3"]
     assert max(lateral.modes, key=lambda m: m.frequency).name == "contact"
-
-
-def test_the_commands_answer_in_plain_text_and_json() -> None:
-    case = ("figures-3-4", "--set", "time.step=0.002")
-    told = typed("damping", *case, "--json")
-    found = json.loads(told.stdout)
-    assert {"name", "frequency", "damping", "spectral_radius", "omega_dt"} <= set(found["modes"][0])
-    assert found["modes"][0]["name"] == "first axial" and found["sentence"]
-    assert found["references"]["bar"]["damping"] == pytest.approx(0.15334, abs=1e-5)
-    advised = typed("advise", *case, "--damping", "0.05", "--solve-for", "dt", "--json")
-    answer = json.loads(advised.stdout)
-    assert answer["solve_for"] == "dt" and answer["reachable"] is True
-    assert {"value", "damping", "settling_steps", "settling_seconds"} <= set(answer["solutions"][0])
-    plain = typed("advise", *case, "--damping", "0.35")
-    assert plain.returncode == 0 and plain.stdout.startswith("Set dt = ")
-    assert "differs from continuum by" in plain.stdout
-    assert typed("damping", *case).stdout.startswith("At dt = 0.002 s the first axial mode")
-    assert "time.step" in refused("advise", "figures-3-4", "--damping", "0.05")

@@ -172,14 +172,6 @@ def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
         assert -np.log(1 - loss) == pytest.approx(a0 / 2 * 100 / SPEED, rel=(w * dt) ** 2)
 
 
-def test_the_command_advises_for_a_wave() -> None:
-    words = ["advise", "figures-3-4", "--set", "time.step=0.01", "--fmax", "5", "--wavelengths", "4"]
-    done = CliRunner().invoke(app, words)
-    assert done.exit_code == 0
-    assert "7.846 %" in done.output and "advised" in done.output
-    assert '"limits_step": "loss"' in CliRunner().invoke(app, [*words, "--json"]).output
-
-
 def test_the_command_lists_blocks_step_loss_and_delay_of_both() -> None:
     words = ["advise", "figures-3-4", "--set", "time.step=0.01", "--fmax", "5", "--wavelengths", "4"]
     found = json.loads(CliRunner().invoke(app, [*words, "--json"]).output)

@@ -125,11 +125,6 @@ def test_verdicts_that_are_no_text_are_told_as_such(tmp_path: Path) -> None:
     assert "verdicts.json: must be UTF-8 text" in refused("diff", tmp_path, tmp_path)
 
 
-def test_a_step_beyond_the_limit_is_refused_with_the_limit(scene_file: Path) -> None:
-    explicit = ["solve", scene_file, "--set", "time.alpha=0", "--set", "time.delta=0.5"]
-    assert "time.step: must not exceed 0.0015" in refused(*explicit)
-
-
 def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_file: Path, tmp_path: Path) -> None:
     done = typed("solve", scene_file, *OVERFLOW, "--csv", tmp_path / "h.csv")
     assert done.returncode == 3 and not (tmp_path / "h.csv").exists()

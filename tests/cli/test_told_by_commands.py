@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import typer
 from conftest import typed
-from oracles.made_cases import made_row
 from rich.console import Console
 
 from validation import load_scene, response
@@ -19,7 +18,6 @@ from validation.advice.rayleigh import scheme_of
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
 from validation.cli.printing import numbers, scene_page, tables
-from validation.engine import measure
 from validation.gates.changes import changes
 from validation.problems import pack as problems_pack
 from validation.report.figures import response as figures
@@ -45,15 +43,6 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
         cli_judge._completed_history(Run(outcome, notes=("so it was",)), "locked", "mine")
     assert ended.value.exit_code == 3
     assert capsys.readouterr().out == f"locked mine: {outcome}: {outcome.sentence} so it was\n"
-
-
-def test_exact_motions_do_not_stand_for_a_run_of_dda_that_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def ended(case: Any, key: str, study: str) -> tuple[Any, None]:
-        outcome = Outcome.OVERFLOW if case.solver == "dda" else Outcome.COMPLETED
-        return made_row(case.solver, {}, case.scene.name, outcome=outcome), None
-
-    monkeypatch.setattr(measure, "execute", ended)
-    assert typed("contact", "unlocked-constant", *SHORT).returncode == 3
 
 
 # ---- counts and colours -------------------------------------------------------------------------------------------
@@ -82,12 +71,6 @@ def test_what_got_worse_is_red_and_what_got_better_green(monkeypatch: pytest.Mon
                 for name, word in (("a", a), ("b", b))] for a, b in (("PASS", "FAIL"), ("FAIL", "PASS"))]  # fmt: skip
     tables.print_changes(changes(*records))  # type: ignore[arg-type]
     assert "\x1b[1;31mworse" in told.getvalue() and "\x1b[32mbetter" in told.getvalue()
-
-
-def test_one_solver_on_several_cases_is_told_to_name_another() -> None:
-    alone = {(scene, "dda"): Outcome.COMPLETED for scene in ("a", "b")}
-    assert tables._without_comparison(alone).startswith("next: name two solvers or more")
-    assert "1 of 2 did" in tables._without_comparison({("a", "dda"): Outcome.COMPLETED, ("a", "bar"): Outcome.OVERFLOW})
 
 
 # ---- show ---------------------------------------------------------------------------------------------------------

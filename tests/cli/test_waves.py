@@ -7,7 +7,6 @@ import pytest
 from conftest import refused, typed
 
 from validation import load_scene, response
-from validation.advice.response import Response
 
 CASE = ["figures-3-4", "--set", "time.step=0.002"]
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
@@ -43,12 +42,6 @@ def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_not
     assert not [line for line in lines if line.startswith("note")]
     (note,) = [line for line in said("response", *CASE, "--to", "251", "--points", "2").splitlines() if "note" in line]
     assert "above 250 Hz, 1 / (2 dt)" in note
-
-
-def test_peaks_are_told_from_the_highest_on() -> None:
-    sizes = np.array([0.0, 2.0, 0.0, 5.0, 0.0, 3.0, 0.0]) + 0j
-    found = Response("s", "dda", False, False, np.arange(7.0), {"displacement": 1j * sizes})
-    assert found.peaks("displacement") == [(3.0, 5.0), (5.0, 3.0), (1.0, 2.0)]
 
 
 def test_the_least_ratio_of_a_step_is_told_in_per_cent_at_its_frequency_in_hertz() -> None:

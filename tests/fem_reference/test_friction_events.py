@@ -10,7 +10,6 @@ from oracles.friction_oracle import Slipping, slipping_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockProblem
-from fem_reference.problem.motion import Motion
 
 HALF = math.degrees(math.atan(0.5))  # tan(phi) = 0.5
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6, shear_stiffness=1e9)
@@ -122,57 +121,8 @@ def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> 
         assert np.abs(moved[(states == STICKS) & (history.states[c, 1:] == STICKS)]).max(initial=0.0) <= 1e-14
 
 
-@pytest.mark.parametrize("seed", thinned([41, 40], 2))
-def test_a_mirrored_problem_swaps_the_corners(seed: int) -> None:
-    problem = slipping_problem(seed)
-    signs = {name: -getattr(problem, name) for name in ("eccentricity", "traction", "slope")}
-    end = duration(problem, 3)
-    one, other = solve(problem, end), solve(replace(problem, **signs), end)
-    swapped = [(s.time, {"M": "N", "N": "M"}[s.corner], s.kind) for s in other.switches]
-    assert sorted((s.time, s.corner, s.kind) for s in one.switches) == sorted(swapped)
-    t = np.linspace(0, end, 40)
-    a, b = one.at(t), other.at(t)
-    assert np.array_equal(a.states, -np.where(np.abs(b.states) == RIGHT, b.states, -b.states)[::-1])
-    assert a.slide == pytest.approx(-b.slide[::-1], abs=1e-13 * np.abs(a.slide).max())
-
-
-@pytest.mark.long
-def test_without_a_limit_that_is_reached_friction_changes_nothing() -> None:
-    glued, rough = solve(replace(OFF_CENTRE, friction=None), 0.03), solve(replace(OFF_CENTRE, friction=89.0), 0.03)
-    held = solve(replace(OFF_CENTRE, friction=0.0, cohesion=1e9), 0.03)
-    assert [s.time for s in held.switches] == [s.time for s in glued.switches]
-    assert {s.kind for s in glued.switches} == {"opens", "closes"}
-    assert held.at([0.03]).displacement == pytest.approx(glued.at([0.03]).displacement, rel=1e-13)
-    assert "slips" in {s.kind for s in rough.switches}  # without cohesion nothing sticks up to N = 0
-
-
 def both(motion: BlockMotion, kind: str) -> list[list[float]]:
     return [[s.time for s in motion.switches if s.corner == corner and s.kind == kind] for corner in "MN"]
-
-
-def test_sliding_obeys_the_law_of_the_inclined_plane() -> None:
-    """While every corner slips or is open, u'' + tan(phi) v'' = g (sin b - tan(phi) cos b) whatever the springs do."""
-    steep = replace(INCLINE, slope=28.9, friction=15.0)
-    motion = solve(steep, 0.1)
-    t = np.linspace(0, 0.1, 31)
-    history, tan, b = motion.at(t), math.tan(math.radians(15.0)), math.radians(28.9)
-    fine = np.linspace(0, 0.1, 3001)
-    free = t > fine[(motion.at(fine).states == STICKS).any(axis=0)].max() + 0.001
-    v = history.velocity[0] + tan * history.velocity[1]
-    rates = np.diff(v[free]) / np.diff(t[free])
-    assert rates == pytest.approx(9.81 * (math.sin(b) - tan * math.cos(b)), rel=1e-11)
-    assert free.sum() > 20
-    assert set(np.unique(history.states[:, free])) <= {RIGHT, OPEN}
-
-
-@pytest.mark.long
-def test_no_friction_at_all_is_the_block_without_shear_springs() -> None:
-    smooth = solve(replace(SIDEWAYS, shear_stiffness=0.0, friction=None), 0.02)
-    slick = solve(replace(SIDEWAYS, friction=0.0), 0.02)
-    times = [[s.time for s in m.switches if s.kind in ("opens", "closes")] for m in (smooth, slick)]
-    assert times[0] == pytest.approx(times[1], rel=1e-14)
-    assert smooth.at([0.02]).displacement == pytest.approx(slick.at([0.02]).displacement, rel=1e-13)
-    assert not slick.at(np.linspace(0, 0.02, 50)).friction.any()
 
 
 @pytest.mark.parametrize("friction", thinned([20.0, 5.0], 2))
@@ -186,17 +136,6 @@ def test_corners_that_switch_together(friction: float) -> None:
     history = motion.at(np.linspace(0, 0.05, 100))
     assert not history.displacement[[0, 2, 5]].any()
     assert history.slide[0] == pytest.approx(-history.slide[1], rel=1e-14, abs=1e-18)
-
-
-def test_a_base_that_carries_the_block_along() -> None:
-    """Seen from a base in uniform motion the block starts with the opposite velocity, and falls the same."""
-    drift = Motion((0.0, 1.0), (0.0, 0.0), (0.0, 0.3))
-    onto = replace(PAPER, gap=1e-3, friction=20.0, traction=1e5)
-    moved, still = solve(replace(onto, base=drift), 0.02), solve(replace(onto, velocity=-0.3), 0.02)
-    assert [s.time for s in moved.switches] == pytest.approx([s.time for s in still.switches], rel=1e-13)
-    t = np.linspace(0, 0.02, 9)
-    assert moved.at(t).gap == pytest.approx(still.at(t).gap, abs=1e-15)
-    assert moved.at(t).displacement[1] - 0.3 * t == pytest.approx(still.at(t).displacement[1], abs=1e-15)
 
 
 def test_starts_at_rest() -> None:

@@ -25,7 +25,6 @@ def history(
     start=None,
     discounts=1,
     alpha=None,
-    twelfth=True,
     inertia_height=None,
 ):
     """Return (displacement, contact pressure) of a scene; a keyword is what a slip has in its place."""
@@ -48,7 +47,7 @@ def history(
 
     mass = density * block.density * area
     sides_of_inertia = (width, height if inertia_height is None else inertia_height(width, height))
-    ix, iy = (mass * side**2 / (12 if twelfth else 1) for side in sides_of_inertia)
+    ix, iy = (mass * side**2 / 12 for side in sides_of_inertia)
     M = np.diag([mass, mass, ix + iy, ix, iy, (ix + iy) / 4])
     M[2, 5] = M[5, 2] = (ix - iy) / 2
     K = np.zeros((6, 6))
@@ -108,10 +107,6 @@ def without_shear(scene):
 
 def central(scene):
     return history(scene, eccentricity=0.0)
-
-
-def untwelfthed(scene):
-    return history(scene, twelfth=False)
 
 
 def delta_missing(scene):

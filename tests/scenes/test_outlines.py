@@ -33,6 +33,10 @@ def test_a_record_that_goes_back_is_named_by_its_instants(tmp_path: Path) -> Non
         (((0, 0), (1, 0), (2, 0)), "cross themselves"),
         (((0, 0), (0, 2), (1, 2), (1, 0)), "must run counter-clockwise"),
         (((0, 0), (4, 0), (4, 2), (2, 0), (0, 2)), "cross themselves"),  # a corner touches the base
+        (((0, 0), (2, 2), (2, 0), (0, 2)), "cross themselves"),
+        (((0, 0), (2, 0), (1, 0), (1, 2)), "cross themselves"),  # an edge folded back on its neighbour
+        (((0, 0), (0, 0), (2, 0), (2, 2)), "must not repeat"),
+        (((0, 0), (2, 0)), "must be three or more"),
     ],
 )
 def test_outlines_that_are_none(vertices: tuple[tuple[float, float], ...], words: str) -> None:

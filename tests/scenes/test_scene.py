@@ -32,6 +32,7 @@ def parse(**changes: object) -> Scene:
 UNLOCKED = {"contact__law": "unilateral"}
 SLIDING = UNLOCKED | {"contact__friction": 30.0}
 AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
+RIGID = UNLOCKED | {"contact__stiffness": math.inf, "contact__shear_stiffness": 0.0}
 REFUSED = [
     ({"block__young": -1.0}, "block.young: must be greater than 0, got -1.0"),
     ({"block__young": 0}, "block.young: must be greater than 0, got 0"),
@@ -72,6 +73,33 @@ REFUSED = [
         SLIDING | AVERAGE | {"contact__rule": "implicit", "contact__rules": "lagged"},
         'contact: rules = "lagged" goes with rule = "newmark" only, got it with \'implicit\'',
     ),
+    ({"contact__gap": 0.01}, 'contact: gap goes with law = "unilateral" only, got'),
+    (UNLOCKED | {"contact__gap": -1.0}, "contact.gap: must be greater than or equal to 0, got -1.0"),
+    ({"contact__shear_stiffness": 0.0}, "contact: shear_stiffness must be greater than 0"),
+    ({"block__velocity": -1.0}, 'block: velocity goes with contact.law = "unilateral" only'),
+    ({"contact__law": "open"}, "contact.law: must be 'locked' or 'unilateral', got 'open'"),
+    ({"contact__rule": "implicit"}, 'contact: rule goes with law = "unilateral" only'),
+    (UNLOCKED | {"contact__rule": "explicit"}, "'newmark', 'implicit' or 'energy-conserving', got 'explicit'"),
+    (
+        UNLOCKED | AVERAGE | {"contact__rule": "energy-conserving", "contact__band": [1e-6, 0.0]},
+        'contact: band goes with rule = "newmark"',
+    ),
+    *(
+        (
+            UNLOCKED | {"time__alpha": 0.5, "time__delta": 0.5, "contact__rule": rule},
+            f"rule = '{rule}' steps the block by average acceleration: time.alpha must be 0.25 and",
+        )
+        for rule in ("implicit", "energy-conserving")
+    ),
+    (RIGID | {"contact__law": "locked"}, 'stiffness must be finite with law = "locked"'),
+    (UNLOCKED | {"contact__stiffness": math.inf}, "shear_stiffness is required where stiffness = inf"),
+    (RIGID | {"contact__band": [0.0, 1e-6]}, "band must open at once"),
+    (
+        RIGID | AVERAGE | {"contact__rule": "energy-conserving"},
+        'stiffness must be finite with rule = "energy-conserving"',
+    ),
+    (RIGID | {"contact__stiffness": -math.inf}, "contact.stiffness: must be a finite number"),
+    (RIGID | {"contact__stiffness": math.nan}, "contact.stiffness: must be a finite number"),
     ({"run__geometry": "updated"}, 'run: geometry = "updated" goes with contact.law = "unilateral" only'),
     (UNLOCKED | {"block__tilt": 1.0}, 'block: tilt goes with run.geometry = "updated" only, got 1'),
     (UNLOCKED | {"run__rotation": "first-order"}, 'run: rotation goes with geometry = "updated" only'),
@@ -123,24 +151,6 @@ def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], wor
     assert text.startswith("x.toml: ")
     assert words in text
     assert "\n" not in text and ", got " in text
-
-
-POLYGONS = [
-    (SQUARE[::-1], "must run counter-clockwise"),
-    ([SQUARE[0], SQUARE[2], SQUARE[1], SQUARE[3]], "must not cross themselves"),
-    ([[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]], "must not cross themselves"),  # a vertex on another edge
-    ([[0, 0], [2, 0], [1, 0], [1, 2]], "must not cross themselves"),  # an edge folded back on its neighbour
-    ([[0, 0], [0, 0], [2, 0], [2, 2]], "must not repeat"),
-    ([[0, 0], [2, 0]], "must be three or more"),
-]
-
-
-@pytest.mark.parametrize(("vertices", "words"), POLYGONS)
-def test_polygons_that_are_refused(vertices: list[list[float]], words: str) -> None:
-    data = changed(block__vertices=vertices)
-    del data["block"]["side"]
-    with pytest.raises(InputError, match=words):
-        parse_scene(data, "x.toml")
 
 
 def test_edges_of_a_polygon_are_checked() -> None:

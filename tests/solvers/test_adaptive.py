@@ -13,9 +13,8 @@ from validation.advice.wave_advice import advise_wave
 from validation.diagnosis.judgement import compare
 from validation.errors import InputError
 from validation.scenes.scene import Scene
-from validation.solvers.dda import model_of, scheme_of
+from validation.solvers.dda import model_of
 from validation.solvers.fem import problem_of
-from validation.solvers.fem import scheme_of as fem_scheme_of
 from validation.solvers.registry import get_solver
 
 COLUMNS = ("displacement", "contact_pressure", "discount", "kinetic_damping_loss")
@@ -83,26 +82,6 @@ def test_rest_is_the_static_solution(solver: str) -> None:
         assert np.max(np.abs(undamped[column][last] - static[column])) > 0.5 * abs(static[column])
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
-def test_with_floor_one_nothing_is_damped(solver: str) -> None:
-    free = columns(PLAIN.with_values({"run.columns": COLUMNS[:2]}), solver)
-    found = columns(BLOCK.with_values({"damping.floor": 1.0}), solver)
-    for column in COLUMNS[:2]:
-        assert np.max(np.abs(found[column] - free[column])) <= 1e-10 * np.max(np.abs(free[column]))
-    assert np.all(found["discount"] == 1) and np.all(found["kinetic_damping_loss"] == 0)
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_twice_the_load_is_twice_the_history_but_loads_do_not_superpose(solver: str) -> None:
-    scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2})
-    one, two = (columns(scene.with_values({"load.pressure": q}), solver) for q in (5e6, 1e7))
-    for column, power in zip(COLUMNS, (1, 1, 0, 2), strict=True):
-        assert np.allclose(two[column], 2**power * one[column], rtol=1e-12, atol=0)
-    sides = [{}, {"load.traction": 3e6}, {"load.traction": 3e6, "load.pressure": 0.0}]
-    pressed, both, pushed = (columns(scene.with_values(side), solver)["contact_pressure"] for side in sides)
-    assert np.max(np.abs(both - pressed - pushed)) > 1e-3 * np.max(np.abs(both))
-
-
 def test_a_fall_takes_about_as_many_steps_as_the_docs_say_and_ends_nearer_to_rest_with_smaller_steps() -> None:
     ends = []
     for omega in (0.01, 0.001):
@@ -127,19 +106,7 @@ def test_the_steps_of_a_fall_follow_the_power_law_at_small_steps_only(omega: flo
     assert abs(found.modes[0, first[-1]] - 1) == pytest.approx(left, abs=0.03)
 
 
-def test_savings_change_nothing() -> None:
-    scene = BLOCK.with_values({"block.poisson": 0.2, "fem.elements": 2, "time.steps": 60})
-    steps, found = scene.time.steps, columns(scene, "fem")
-    model, problem = model_of(scene), problem_of(scene)
-    every = dda.solve_adaptive(model, scheme_of(scene), steps, COLUMNS, full=True).columns
-    whole = fem_reference.solve_adaptive(problem, fem_scheme_of(scene), steps, COLUMNS, full=True).columns
-    own = columns(scene, "dda")
-    for column in COLUMNS:
-        assert np.allclose(every[column], own[column], rtol=1e-8, atol=1e-8 * np.max(np.abs(own[column])))
-        assert np.allclose(whole[column], found[column], rtol=1e-8, atol=1e-8 * np.max(np.abs(found[column])))
-
-
-def test_who_needs_a_linear_motion_refuses_it(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_who_needs_a_linear_motion_refuses_it() -> None:
     asks = (
         lambda: damping(BLOCK),
         lambda: response(BLOCK, [1.0], "fem"),
@@ -150,18 +117,6 @@ def test_who_needs_a_linear_motion_refuses_it(tmp_path) -> None:  # type: ignore
     for ask in asks:
         with pytest.raises(InputError, match="self-adaptive damping"):
             ask()
-    for solver in ("dda-textbook", "bar", "continuum", "fenicsx", "dda-60", "fem-60"):
-        with pytest.raises(InputError, match="self-adaptive damping"):
-            solve(BLOCK, solver)
-    record = tmp_path / "base.csv"
-    record.write_text("time,y\n0,0\n1,0.1\n")
-    apart = {"contact.law": "unilateral"}, {"damping.mass": 1.0}, {"load.base_motion": str(record)}
-    for values in apart:
-        for solver in ("dda", "fem"):
-            with pytest.raises(InputError, match="together with self-adaptive damping"):
-                solve(BLOCK.with_values(values), solver)
-    with pytest.raises(InputError, match="sub-blocks together with self-adaptive damping"):
-        solve(BLOCK.with_values({"block.subdivide": (2, 1)}), "dda")
 
 
 def test_settings_that_do_not_go_together_are_refused() -> None:

@@ -11,10 +11,8 @@ from validation.advice.spectra import damping
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.engine.case import Case
-from validation.metrics.transform import spectrum
 from validation.scenes import drive, features
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.registry import BUILT_IN
 
 SITE = """
 [column]
@@ -150,35 +148,6 @@ def test_pulses_are_derivatives_of_each_other(shape: str) -> None:
 # ---- vibrations -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("solver", ["dda", pytest.param("fem", marks=pytest.mark.long)])
-@pytest.mark.parametrize("base", BASES)
-def test_a_vibration_is_what_the_steps_make_of_it(site: Scene, base: str, solver: str) -> None:
-    """The spectrum of a stepped pulse that damping has taken, over that of its drive."""
-    scheme = {"time.alpha": 0.6, "time.delta": 1.1, "time.gg": 0.97, "time.step": 8e-3, "time.steps": 1500}
-    scene = standing(site, base).with_values(scheme | {"run.columns": ["displacement", "contact_pressure"]})
-    scene = scene.with_values({"column.glue": 3e9}) if solver == "dda" else scene
-    frequency, time = np.array([1.1, 3.0, 7.0]), 8e-3 * np.arange(1501)
-    moved = spectrum(time, drive.motion_at(scene, time).displacement, 2 * np.pi * frequency)
-    history = solve(scene, solver).history
-    for name, values in response(scene, frequency, solver).columns.items():
-        seen = spectrum(history.time, history.columns[name], 2 * np.pi * frequency) / moved
-        assert np.abs(seen - values).max() < 1e-10 * np.abs(values).max(), name
-
-
-@pytest.mark.parametrize("solver", ["dda", "fem"])
-def test_a_pressure_that_vibrates_on_the_top(site: Scene, solver: str) -> None:
-    given = {"at": "top", "shape": "ricker", "pressure": 1e5, "frequency": 4.0}
-    scene = parse_scene(site.definition() | {"input": given}, "top").with_values({"time.steps": 1500})
-    time = scene.time.step * np.arange(1501)
-    pressed = spectrum(time, drive.motion_at(scene, time).pressure, 2 * np.pi * 5.0)
-    history = solve(scene, solver).history
-    found = response(scene, 5.0, solver)
-    assert not found.base
-    for name, values in found.columns.items():
-        seen = 1e5 * spectrum(history.time, history.columns[name], 2 * np.pi * 5.0) / pressed
-        assert abs(seen - values[0]) < 1e-8 * abs(values[0]), name
-
-
 @pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
 def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: bool) -> None:
     layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
@@ -194,16 +163,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
-
-
-def test_solvers_without_columns_refuse_them_by_name(site: Scene) -> None:
-    assert features.of(site) == ("column",)
-    assert features.linear(site)
-    for name in set(BUILT_IN) - {"dda", "fem", "layers"}:
-        with pytest.raises(InputError, match="does not handle column"):
-            solve(site, name)
-    with pytest.raises(InputError, match="takes columns only"):
-        solve(load_scene("figures-3-4").expand()[0], "layers")
 
 
 def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:

@@ -62,17 +62,7 @@ def test_a_block_at_rest_on_its_incline_bears_its_weight_in_two_parts(scene: Sce
     assert shear == pytest.approx(-weight * np.sin(angle), rel=1e-6)
 
 
-def test_what_elements_do_not_take_is_refused_by_name(scene: Scene) -> None:
-    turning = scene.with_values({"run.geometry": "updated"})
-    for name in ("fem", "fenicsx"):
-        with pytest.raises(InputError, match="does not handle lagged friction"):
-            solve(scene.with_values({"contact.rules": "lagged"}), name)
-        with pytest.raises(InputError, match="does not handle large rotation"):
-            solve(turning, name)
-    locked = scene.with_values({"contact": {"stiffness": 1e9}, "load": {"gravity": 9.81, "slope": 5.0}})
-    for name in ("bar", "continuum"):
-        with pytest.raises(InputError, match=r"does not handle .*slope"):
-            solve(locked, name)
+def test_a_column_that_elements_do_not_have_is_refused(scene: Scene) -> None:
     with pytest.raises(InputError, match="must be among"):
         solve(scene.with_values({"run.columns": ["slide_m"]}), "fem")
 

@@ -58,8 +58,6 @@ def test_lagged_friction_and_its_bands_are_taken():
     assert not np.array_equal(record(lagged)[0]["displacement"], record(scene())[0]["displacement"])
     with pytest.raises(InputError, match="is frictional under lagged rules only"):
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
-    with pytest.raises(InputError, match="lagged friction together with sub-blocks"):
-        DDA().build(scene({"rules": "lagged"}, block={"subdivide": [2, 1]}), False)
 
 
 def test_a_slope_is_a_turned_weight_on_locked_springs_too():

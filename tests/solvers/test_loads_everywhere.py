@@ -59,44 +59,6 @@ def columns_of(solver: str, scene: Scene) -> dict[str, Array]:
     return dict(history.columns)
 
 
-@pytest.mark.parametrize(("solver", "values", "g"), in_turn(9.81, -3.0))
-def test_weight_alone_is_carried(scene: Scene, solver: str, values: dict[str, object], g: float) -> None:
-    """Pressure rho g h; v = -rho g h W / 2 p - (strain from 0 at the top to rho g h / E at the base over h / 2).
-
-    The DDA block has one strain for its whole height, rho g h / 2 E, and n glued ones have n.
-    """
-    scene, E, rho = scene.with_values({"load": {"gravity": g}, **values}), 1e9, 2700.0
-    static = get_solver(solver).static(scene)
-    strain = rho * g * A / E
-    mean = {"dda": 0.5, "glued": 0.75}["glued" if values == GLUED else "dda"] if solver == "dda" else 0.75
-    expected = -rho * g * A * A / (2 * P) - mean * strain * A / 2
-    assert static["contact_pressure"] == pytest.approx(rho * g * A, rel=1e-9)
-    assert static["displacement"] == pytest.approx(expected, rel=1e-5)  # the glue
-    run = columns_of(solver, scene.with_values({"time.step": 0.01, "time.steps": 400, "time.gg": 0.9}))
-    assert run["contact_pressure"][-1] == pytest.approx(rho * g * A, rel=1e-8)
-    assert run["displacement"][-1] == pytest.approx(static["displacement"], rel=1e-8)
-
-
-@pytest.mark.parametrize(("solver", "values", "way"), in_turn("x", "y"))
-def test_a_record_moves_what_the_pressure_does_not_reach(
-    scene: Scene,
-    tmp_path,
-    solver: str,
-    values: dict[str, object],
-    way: str,  # type: ignore[no-untyped-def]
-) -> None:
-    """Both together are the sum of each alone, also where the pressure by itself moves v only."""
-    (tmp_path / "quake.csv").write_text(f"time,{way}\n0,0\n0.01,1e-3\n0.5,0\n")
-    loads = ({"pressure": Q}, {"base_motion": str(tmp_path / "quake.csv")})
-    alone = [columns_of(solver, scene.with_values({"load": load, **values})) for load in loads]
-    both = columns_of(solver, scene.with_values({"load": loads[0] | loads[1], **values}))
-    for name in COLUMNS:
-        total = alone[0][name] + alone[1][name]
-        np.testing.assert_allclose(both[name], total, rtol=0, atol=1e-10 * np.abs(total).max(initial=1e-6))
-    moved = "horizontal_displacement" if way == "x" else "displacement"
-    assert np.abs(alone[1][moved]).max() > 1e-4
-
-
 @pytest.mark.parametrize(("solver", "values", "turn"), in_turn(1, 2, 3))
 def test_it_does_not_matter_where_the_outline_begins(
     scene: Scene, solver: str, values: dict[str, object], turn: int

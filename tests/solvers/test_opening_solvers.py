@@ -44,7 +44,7 @@ def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -
     assert both == pytest.approx(2.0 * history.contact_pressure, rel=1e-15)
 
 
-def test_elements_take_implicit_contact_and_refuse_what_they_do_not_take(scene: Scene) -> None:
+def test_elements_take_implicit_contact(scene: Scene) -> None:
     average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "contact.stiffness": 1e11}
     energies = []
     for rule in ("implicit", "newmark"):
@@ -57,10 +57,6 @@ def test_elements_take_implicit_contact_and_refuse_what_they_do_not_take(scene: 
         assert gained == pytest.approx(record.impulse, rel=1e-9, abs=1e-9 * record.impulse[-1])
     size = np.abs(energies[0]).max()
     assert np.diff(energies[0]).max() <= 1e-12 * size and np.diff(energies[1]).max() > 1e-3 * size
-    other = scene.with_values(average | {"contact.rule": "energy-conserving", "contact.shear_stiffness": 0.0})
-    for name in ("fem", "fenicsx", "bar"):
-        with pytest.raises(InputError, match="does not handle energy-conserving contact"):
-            solve(other, name)
 
 
 @pytest.mark.parametrize(
@@ -93,6 +89,3 @@ def test_the_bar_refuses_what_is_no_bar(scene: Scene) -> None:
             solve(scene.with_values(values), "bar")
     with pytest.raises(InputError, match=r"run\.columns"):
         solve(scene.with_values({"run.columns": ["rotation"]}), "bar")
-    for name in ("continuum", "bar-60", "fem-60"):
-        with pytest.raises(InputError, match="does not handle own weight, unilateral contact"):
-            solve(scene, name)

@@ -12,10 +12,8 @@ import pytest
 from conftest import typed
 
 from validation import load_scene, solve
-from validation.errors import InputError
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.registry import BUILT_IN, get_solver
 
 RIGID = {"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0}
 
@@ -46,47 +44,6 @@ def test_a_scene_keeps_a_rigid_contact_through_plain_data() -> None:
 
 
 SPRING = {"contact.stiffness": 1e9}
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ({"contact.law": "locked"}, "goes with law"),
-        ({"contact.shear_stiffness": None}, "shear_stiffness is required where stiffness = inf"),
-        ({"contact.band": [0.0, 1e-6]}, "band must open at once"),
-        (
-            {"contact.rule": "energy-conserving", "time.alpha": 0.25, "time.delta": 0.5},
-            'stiffness must be finite with rule = "energy-conserving"',
-        ),
-        ({"contact.stiffness": -math.inf}, "must be a finite number"),
-        ({"contact.stiffness": math.nan}, "must be a finite number"),
-    ],
-)
-def test_what_a_rigid_contact_does_not_go_with_is_refused_by_field(values: dict[str, Any], words: str) -> None:
-    data = scene().definition()
-    for key, value in values.items():
-        section, _, name = key.partition(".")
-        data[section][name] = value
-        if value is None:
-            del data[section][name]
-    with pytest.raises(InputError, match=words):
-        parse_scene(data, "refused")
-
-
-def test_a_locked_contact_is_never_rigid() -> None:
-    data = load_scene("figures-3-4").expand()[0].definition()
-    data["contact"]["stiffness"] = "inf"
-    with pytest.raises(InputError, match='stiffness must be finite with law = "locked"'):
-        parse_scene(data, "refused")
-
-
-def test_other_solvers_refuse_it_by_name() -> None:
-    for name in BUILT_IN:
-        refusal = get_solver(name).refusal(scene())
-        assert (refusal is None) == (name == "dda"), name
-        assert name == "dda" or "rigid contact" in str(refusal)
-    parts = scene(**{"block.subdivide": [2, 2]})
-    assert "rigid contact together with sub-blocks" in str(get_solver("dda").refusal(parts))
 
 
 def test_the_page_on_contact_takes_it(tmp_path: Path) -> None:

@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import SCENE
 
 from validation import load_scene, solve
 from validation.advice.friction import friction_alarms
-from validation.errors import InputError
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.solvers.registry import BUILT_IN, get_solver
+from validation.solvers.registry import get_solver
 
 TOPPLING = """\
 title = "A tower on its corner"
@@ -86,40 +84,9 @@ def test_a_block_that_is_let_go_on_a_corner_does_not_creep(prepared, scene):
     assert [alarm.kind for alarm in friction_alarms(standing, {"dda": row})] == ["creep of a stable block"]
 
 
-def test_rotation_is_the_default_of_no_scene(scene):
-    assert "large rotation" not in load_scene("unlocked").run.model_dump_json()
-    assert load_scene("unlocked").run.geometry == "small"
-
-
-def test_other_solvers_refuse_updated_geometry(scene):
-    for name in BUILT_IN:
-        if name not in ("dda",) and get_solver(name).handles.isdisjoint({"large rotation"}):
-            assert "large rotation" in get_solver(name).refusal(scene)
-
-
-@pytest.mark.parametrize(
-    ("values", "word"),
-    [
-        ({"block.subdivide": [2, 2]}, "sub-blocks together with large rotation"),
-        ({"contact.band": [1e-3, 0.0]}, "dead bands together with large rotation"),
-        ({"contact.rule": "implicit", "time.alpha": 0.25, "time.delta": 0.5}, "implicit contact together with large"),
-    ],
-)
-def test_what_does_not_go_with_updated_geometry_is_refused(scene, values, word):
-    with pytest.raises(InputError, match=word):
-        solve(scene.with_values(values), "dda")
-
-
 def test_a_base_that_moves_goes_with_updated_geometry(scene, tmp_path):
     (tmp_path / "push.csv").write_text("time,x\n0,0\n0.1,0.02\n")
     path = tmp_path / "pushed.toml"
     path.write_text(TOPPLING.replace("gravity = 9.81", 'gravity = 9.81\nbase_motion = "push.csv"').replace("300", "20"))
     still, moved = solve(scene.with_values({"time.steps": 20}), "dda"), solve(load_scene(path), "dda")
     assert not np.allclose(still.history.columns["rotation"], moved.history.columns["rotation"])
-
-
-def test_tilt_without_updated_geometry_is_refused(tmp_path):
-    path = tmp_path / "tilted.toml"
-    path.write_text(SCENE.replace("side = 2.0", "side = 2.0\ntilt = 5.0"))
-    with pytest.raises(InputError, match="tilt goes with run"):
-        load_scene(path)

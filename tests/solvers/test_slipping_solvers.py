@@ -131,8 +131,3 @@ def test_a_base_that_moves_and_its_work(tmp_path: Path) -> None:
     scale = np.abs(energies["load"]).max()
     assert sum(energies.values()) == pytest.approx(np.zeros(len(energies["load"])), abs=1e-12 * scale)
     assert scale > 0
-
-
-@pytest.mark.parametrize("name", ["bar-events", "bar", "continuum"])
-def test_who_knows_no_friction_refuses_it_by_name(tmp_path: Path, name: str) -> None:
-    assert "friction" in str(get_solver(name).refusal(scene(tmp_path)))

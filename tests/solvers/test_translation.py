@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from conftest import scene_of
-from scipy.linalg import eigh
 
 from fem_reference.exact.bar import applicable
-from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.modes import contact_index
 from validation.scenes.scene import Scene
@@ -80,14 +77,3 @@ def test_modes_of_the_block_say_what_contact_pressure_they_carry() -> None:
     assert sum(m.contact_share or 0.0 for m in modes) == pytest.approx(1.0, rel=1e-12)
     assert sum(m.share for m in modes) == pytest.approx(1.0, rel=1e-12)
     assert contact_index(modes) == 1
-
-
-def test_the_step_limit_is_that_of_the_highest_mode() -> None:
-    """Central differences: 2 / w2 of the block's second mode, from det K / det M = w1^2 w2^2."""
-    a, p, E, m = 2.0, 1e9, 1e9, 2700.0 * 4
-    K = np.array([[2 * p, -p * a], [-p * a, E * a * a + p * a * a / 2]])
-    limit = 2 / math.sqrt(eigh(K, m * np.diag([1, a * a / 12]), eigvals_only=True)[-1])
-    below, above = (scene_of(time__alpha=0.0, time__delta=0.5, time__step=limit * f) for f in (0.999, 1.001))
-    assert get_solver("dda").solve(below).history is not None
-    with pytest.raises(InputError, match=r"time\.step: must not exceed"):
-        get_solver("dda").solve(above)

@@ -42,11 +42,6 @@ ANSWERS = [  # of a process that stays
     ("with_step_zero", Outcome.WRONG_SHAPE, "step 0, the state at rest, is not reported"),
     ("late", Outcome.WRONG_SHAPE, "time begins [0.004 0.006], not [0.002 0.004] s"),
     ("pressure_only", Outcome.WRONG_SHAPE, "no column displacement, got contact_pressure"),
-    ("millimetres", Outcome.WRONG_UNITS, "displacement is 1000 times what is expected in SI, mm?"),
-    ("megapascals", Outcome.WRONG_UNITS, "contact_pressure is 1e-06 times what is expected in SI, MPa?"),
-    ("force", Outcome.WRONG_UNITS, "2 times what is expected, the length of the base: a force?"),
-    ("upwards", Outcome.WRONG_UNITS, "wrong sign: displacement is the negative"),
-    ("milliseconds", Outcome.WRONG_UNITS, "time is 1000 times what is expected in SI, milliseconds?"),
 ]
 ENDS = [
     ("crashes", Outcome.RAISED, "crashed: the process ended with status 139: segmentation fault"),
@@ -60,14 +55,6 @@ def test_what_a_solver_does_is_named(scene: Scene) -> None:
         run = completed(get_solver("named:Named"), scene.with_values({"title": f"my_solver:{attribute}"}))
         assert run.outcome is outcome, (attribute, run.notes)
         assert words in "; ".join(run.notes), attribute
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("attribute", "outcome", "words"), [*ANSWERS, *ENDS])
-def test_what_a_solver_does_by_itself_is_named(scene: Scene, attribute: str, outcome: Outcome, words: str) -> None:
-    run = completed(get_solver(f"my_solver:{attribute}"), scene)
-    assert run.outcome is outcome, run.notes
-    assert words in "; ".join(run.notes)
 
 
 def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene: Scene, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import fem_reference
 from dda.scheme import viscous
 from fem_reference.scheme import viscous as fem_viscous
 from fem_reference.scheme.eigen import eigenvalues
-from validation import advise, damping, load_scene, response, solve
+from validation import advise, damping, load_scene, solve
 from validation.advice.rayleigh import Rayleigh
 from validation.advice.wave_advice import advise_wave
 from validation.diagnosis.judgement import compare
@@ -87,14 +87,6 @@ def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
         assert np.allclose(viscous_.columns[column], kinetic.columns[column], rtol=1e-11, atol=1e-9)
 
 
-def test_a_static_load_is_carried_and_the_steps_know_no_savings_that_are_not_theirs() -> None:
-    for solver in ("dda", "fem", "bar", "continuum"):
-        run = solve(BLOCK.with_values({"time.step": 2e-3, "time.steps": 400}), solver)
-        assert run.displacement[-1] == pytest.approx(-0.01, rel=1e-8)
-        assert not any(word == "blocked" for word in run.notes)
-    assert "stepped: viscous damping" in solve(BLOCK, "dda").notes
-
-
 def test_what_has_not_arrived_is_nothing() -> None:
     run = solve(BLOCK.with_values({"time.step": 1e-4, "time.steps": 40, "damping.stiffness": 0.0}), "bar")
     assert not any("tension" in note for note in run.notes)
@@ -115,13 +107,6 @@ def test_eigenvalues_are_those_of_the_steps_own_operator(frequency: float, gg: f
     sums, products = [sum(pair) for pair in pairs], [pair[0] * pair[1] for pair in pairs]
     assert np.allclose(sums, sums[1], rtol=1e-7, atol=1e-9)
     assert np.allclose(products, products[1], rtol=1e-7, atol=1e-9)
-
-
-def test_without_tables_closed_forms_are_those_without_damping() -> None:
-    own = dda.Scheme(0.4, 0.7, 0.97, 2e-3)
-    for frequency in (20.0, 700.0):
-        expected = dda.spectral.damping_ratio(frequency * 2e-3, 0.4, 0.7, 0.97)
-        assert viscous.damping_ratio(own, frequency) == pytest.approx(float(expected), rel=1e-10)
 
 
 def test_the_operator_of_the_assembled_step_has_the_modes_eigenvalues() -> None:
@@ -149,32 +134,10 @@ def test_the_budget_has_a_viscous_part_that_rayleighs_formula_gives() -> None:
     assert rate == pytest.approx(20.0 + 3e-4 * exact.frequency**2, rel=1e-9)
 
 
-def test_who_does_not_know_viscous_damping_refuses_it() -> None:
-    for solver in ("dda-textbook", "fenicsx", "dda-60", "bar-60"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(BLOCK, solver)
-    opened = {"contact.law": "unilateral"}
-    for solver in ("dda", "fem", "bar"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(BLOCK.with_values(opened), solver)
-    column = load_scene("waves-base").expand()[0].with_values(TABLES)
-    for solver in ("dda", "fem", "layers"):
-        with pytest.raises(InputError, match="damping tables"):
-            solve(column, solver)
+def test_who_knows_the_schemes_own_damping_only_refuses_it() -> None:
     for act in (lambda: advise(BLOCK, 0.05), lambda: advise_wave(BLOCK, 5.0, 0.1), lambda: compare(BLOCK, None)):  # type: ignore[arg-type]
         with pytest.raises(InputError, match="damping tables"):
             act()
-
-
-def test_a_moving_base_does_not_go_with_damping_tables(tmp_path) -> None:  # type: ignore[no-untyped-def]
-    record = tmp_path / "base.csv"
-    record.write_text("time,y\n0,0\n1,0.1\n")
-    moving = BLOCK.with_values({"load.base_motion": str(record)})
-    for solver in ("dda", "fem"):
-        with pytest.raises(InputError, match="base motion together with damping tables"):
-            solve(moving, solver)
-        with pytest.raises(InputError, match="base motion together with damping tables"):
-            response(moving, 1.0, solver)
 
 
 def test_numbers_out_of_range_are_refused() -> None:

@@ -17,7 +17,6 @@ from fem_reference import Scheme as FemScheme
 from fem_reference.mesh.model import Model, build
 from fem_reference.scheme.newmark import State, Stepper
 from validation import Scene, load_scene, solve
-from validation.advice.spectra import damping
 from validation.metrics.columns import settling_step
 from validation.metrics.poles import poles
 from validation.solvers.registry import get_solver
@@ -37,12 +36,6 @@ def settles(scene: Scene, tolerance: float) -> tuple[object, object]:
 def test_a_stiff_contact_rings_long_after_the_block_rests() -> None:
     assert settles(STIFF, 1e-4) == (41, 157)
     assert settles(STIFF, 1e-2) == (21, 24)
-
-
-def test_constant_acceleration_never_uses_the_initial_acceleration() -> None:
-    case = load_scene("figures-3-4").with_values({"time.step": 0.001})
-    zero, consistent = (solve(case.with_values({"time.start": start}), "dda") for start in ("zero", "consistent"))
-    np.testing.assert_array_equal(zero.displacement, consistent.displacement)
 
 
 def exact(scene: Scene, time: np.ndarray, rate: float) -> np.ndarray:
@@ -86,33 +79,6 @@ def test_an_initial_acceleration_of_zero_costs_an_order_and_a_rate_converges(
     start: str, rate: float, expected: float
 ) -> None:
     assert order(start, rate) == pytest.approx(expected, abs=0.03)
-
-
-def test_at_a_fixed_discount_refining_dt_does_not_converge() -> None:
-    ends = []
-    for dt in (1e-3, 5e-4, 2.5e-4, 1.25e-4):
-        case = LIGHT.with_values({"time.gg": 0.98, "time.step": dt, "time.steps": round(0.01 / dt)})
-        ends.append(solve(case, "dda").displacement[-1])
-    assert abs(ends[3] - ends[2]) > 0.5 * abs(ends[2] - ends[1]) > 1e-4  # m; a convergent step would quarter it
-
-
-def test_a_rate_gives_the_ratio_c_over_two_w() -> None:
-    first = damping(LIGHT.with_values({"time.gg_rate": 60.0, "time.step": 1e-6})).modes[0]
-    assert first.damping == pytest.approx(60.0 / (2 * first.frequency), rel=1e-6)
-
-
-def test_the_first_step_from_rest_does_not_feel_the_discount() -> None:
-    free, held = (solve(LIGHT.with_values({"time.gg": gg, "time.steps": 2}), "dda") for gg in (1.0, 0.5))
-    assert free.displacement[0] == held.displacement[0]
-    assert free.displacement[1] != held.displacement[1]
-
-
-def test_kinetic_damping_over_the_step() -> None:
-    def first(dt: float) -> float | None:
-        return damping(LIGHT.with_values({"time.gg": 0.98, "time.step": dt})).modes[0].damping
-
-    assert [first(dt) for dt in (2e-3, 1e-3, 1e-4)] == pytest.approx([0.0152, 0.0296, 0.293], rel=2e-3)
-    assert first(2.93e-5 * 0.99) > 1 > first(2.93e-5 * 1.01)
 
 
 @pytest.mark.parametrize("stiffness", [1e9, 1e10, 1e11])

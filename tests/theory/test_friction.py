@@ -130,19 +130,6 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: f
         assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)
 
 
-@pytest.mark.parametrize("gg", [0.98, 0.9, 0.5])
-def test_a_discount_brings_a_body_to_its_terminal_speed_with_the_time_constant_of_its_drag(gg: float) -> None:
-    """The speed is a dt (1 - gg^n) / (1 - gg): terminal speed a dt / (1 - gg), time constant -dt / ln(gg)."""
-    case = scene(time__gg=gg, time__start="consistent", time__steps=2000)
-    t = case.time
-    _, speed = friction.free_motion(case, 1.0)
-    terminal = friction.time_constant(case)
-    decay = -np.polyfit(t.step * np.arange(1, 11), np.log(1 - speed[:10] / terminal), 1)[0]
-    assert decay == pytest.approx(friction.drag_rate(case), rel=1e-9)
-    assert terminal * friction.drag_rate(case) == pytest.approx(-np.log(gg) / (1 - gg), rel=1e-12)  # above 1: shorter
-    assert speed[-1] == pytest.approx(terminal, rel=1e-6)
-
-
 @pytest.mark.parametrize(("cohesion", "bounces", "holds"), [(0.0, True, True), (1e4, False, True), (1e4, True, False)])
 def test_a_sliding_block_moves_freely_through_bounces_unless_cohesion_is_lost_in_them(
     cohesion: float, bounces: bool, holds: bool

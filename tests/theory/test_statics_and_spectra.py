@@ -50,17 +50,6 @@ def test_static_displacement_is_the_printed_formula_corrected(p: float) -> None:
     assert statics.static_displacement(s) == pytest.approx(printed, rel=1e-14)
 
 
-@pytest.mark.parametrize("values", DATA[:2])
-def test_frequencies_satisfy_their_equations(values: dict[str, object]) -> None:
-    s = scene(values | {"block.poisson": 0.0})
-    E, (w, h) = s.block.young, statics.size(s)
-    p, m, f = s.contact.stiffness, s.block.density * w * h, spectra.dda_frequency(s)
-    K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
-    assert np.linalg.det(K / m - f * f * np.diag([1, h * h / 12])) == pytest.approx(0, abs=1e-9 * np.linalg.det(K / m))
-    b = spectra.bar_frequency(s) * h / math.sqrt(E / s.block.density)
-    assert b * math.tan(b) == pytest.approx(2 * p * h / (E * w), rel=1e-12)
-
-
 def test_numbers_of_the_independent_computation() -> None:
     cases = load_scene("figures-5-6").expand()
     assert [round(spectra.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]

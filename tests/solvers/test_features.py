@@ -1,0 +1,125 @@
+"""What each solver takes and refuses by name: one table of features, and one of those that do not go together."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from validation import response, solve
+from validation.errors import InputError
+from validation.scenes import features
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import BUILT_IN, get_solver
+
+LOCKED = load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.steps": 3, "fem.elements": 2})
+OPEN = {"contact.law": "unilateral", "contact.shear_stiffness": 4e8}
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+VISCOUS = {"damping.mass": 20.0, "damping.stiffness": 3e-4}
+KINETIC = {"damping.kinetic": "adaptive"}
+RECORD = "base.csv"  # written for the time of a test
+MOVED = {"load.base_motion": RECORD}
+FRICTION = OPEN | {"contact.friction": 30.0}
+TURNING = OPEN | {"run.geometry": "updated"}
+IMPLICIT = OPEN | AVERAGE | {"contact.rule": "implicit"}
+CONSERVING = OPEN | AVERAGE | {"contact.rule": "energy-conserving", "contact.shear_stiffness": 0.0}
+RIGID = OPEN | {"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0}
+LAGGED = FRICTION | {"contact.rules": "lagged"}
+SUB_BLOCKS = {"block.subdivide": [2, 1]}
+
+SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few others as may be
+    features.SUB_BLOCKS: SUB_BLOCKS,
+    features.OFF_CENTRE: {"load.traction": 1e5},
+    features.WEIGHT: {"load.gravity": 9.81},
+    features.BASE_MOTION: MOVED,
+    features.UNILATERAL: OPEN,
+    features.DEAD_BAND: OPEN | {"contact.band": [1e-3, 0.0]},
+    features.RIGID: RIGID,
+    features.FRICTION: FRICTION,
+    features.LAGGED: LAGGED,
+    features.SLOPE: {"load.gravity": 9.81, "load.slope": 5.0},
+    features.ROTATION: TURNING,
+    features.DAMPING: VISCOUS,
+    features.ADAPTIVE: KINETIC,
+    features.IMPLICIT: IMPLICIT,
+    features.CONSERVING: CONSERVING,
+}
+TAKES: dict[str, set[str]] = {
+    features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum", "fem-60", "bar-60"},
+    features.OFF_CENTRE: {"dda", "fem", "fenicsx", "block-events"},
+    features.WEIGHT: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
+    features.BASE_MOTION: {"dda", "fem", "fenicsx", "block-events"},
+    features.UNILATERAL: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
+    features.DEAD_BAND: {"dda"},
+    features.RIGID: {"dda"},
+    features.FRICTION: {"dda", "fem", "fenicsx", "block-events"},
+    features.LAGGED: {"dda"},
+    features.SLOPE: {"dda", "fem", "fenicsx", "block-events"},
+    features.ROTATION: {"dda"},
+    features.COLUMN: {"dda", "fem", "layers"},
+    features.DAMPING: {"dda", "fem", "bar", "continuum"},
+    features.ADAPTIVE: {"dda", "fem"},
+    features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
+    features.CONSERVING: {"dda", "block-events", "bar-events"},
+}
+APART = [  # what a solver takes each by itself: solver, values, the two that are named
+    ("dda", SUB_BLOCKS | KINETIC, features.SUB_BLOCKS, features.ADAPTIVE),
+    ("dda", SUB_BLOCKS | RIGID, features.RIGID, features.SUB_BLOCKS),
+    ("dda", SUB_BLOCKS | IMPLICIT, features.IMPLICIT, features.SUB_BLOCKS),
+    ("dda", SUB_BLOCKS | CONSERVING, features.CONSERVING, features.SUB_BLOCKS),
+    ("dda", SUB_BLOCKS | LAGGED, features.LAGGED, features.SUB_BLOCKS),
+    ("dda", SUB_BLOCKS | TURNING, features.SUB_BLOCKS, features.ROTATION),
+    ("dda", TURNING | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.ROTATION),
+    ("dda", TURNING | IMPLICIT, features.IMPLICIT, features.ROTATION),
+    ("dda", MOVED | CONSERVING, features.BASE_MOTION, features.CONSERVING),
+    *((solver, MOVED | VISCOUS, features.BASE_MOTION, features.DAMPING) for solver in ("dda", "fem")),
+    *((solver, OPEN | VISCOUS, features.UNILATERAL, features.DAMPING) for solver in ("dda", "fem", "bar")),
+    *((solver, MOVED | KINETIC, features.BASE_MOTION, features.ADAPTIVE) for solver in ("dda", "fem")),
+    *((solver, OPEN | KINETIC, features.UNILATERAL, features.ADAPTIVE) for solver in ("dda", "fem")),
+    *((solver, VISCOUS | KINETIC, features.DAMPING, features.ADAPTIVE) for solver in ("dda", "fem")),
+]
+
+
+def scene_with(values: dict[str, Any], directory: Path) -> Scene:
+    """Return the locked block with other values; a record of its base stands in the directory."""
+    record = directory / RECORD
+    record.write_text("time,x,y\n0,0,0\n0.01,1e-3,2e-4\n0.5,0,0\n")
+    return LOCKED.with_values({key: str(record) if value == RECORD else value for key, value in values.items()})
+
+
+def scene_of(feature: str, directory: Path) -> Scene:
+    if feature == features.COLUMN:
+        return load_scene("waves-base").expand()[0]
+    return scene_with(SCENES[feature], directory)
+
+
+@pytest.mark.parametrize("feature", [feature.name for feature in features.FEATURES])
+def test_a_feature_is_refused_by_name_by_all_solvers_but_some(feature: str, tmp_path: Path) -> None:
+    scene = scene_of(feature, tmp_path)
+    assert feature in features.of(scene)
+    for name in BUILT_IN:
+        refusal = get_solver(name).refusal(scene)
+        assert (refusal is not None and feature in refusal) == (name not in TAKES[feature]), (name, refusal)
+        if refusal is not None:
+            with pytest.raises(InputError) as refused:
+                solve(scene, name)
+            assert refusal in str(refused.value)
+
+
+@pytest.mark.parametrize(("solver", "values", "first", "second"), APART)
+def test_what_does_not_go_together_is_refused_by_both_names(
+    solver: str, values: dict[str, Any], first: str, second: str, tmp_path: Path
+) -> None:
+    scene = scene_with(values, tmp_path)
+    with pytest.raises(InputError, match=rf"{first}.* together with {second}"):
+        solve(scene, solver)
+    if features.linear(scene):
+        with pytest.raises(InputError, match=rf"{first}.* together with {second}"):
+            response(scene, 1.0, solver)
+
+
+def test_a_solver_of_columns_takes_no_block() -> None:
+    with pytest.raises(InputError, match="takes columns only"):
+        solve(LOCKED, "layers")
