@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
-from validation.report.blocks import Block, Heading, Table, TableColumn, columns
-from validation.report.chapters.data import CaseGroup, labels_of
+from validation.report.blocks import Blocks, Heading, TableColumn, table
+from validation.report.chapters.data import Groups, labels_of
 from validation.report.chapters.text import percent, plain, short
 from validation.runs.records import AlarmRecord
 from validation.solvers.contract import Role
@@ -18,7 +18,7 @@ Alarms = Sequence[AlarmRecord]
 MOST_SCENES = 7  # of a kind that get a row each
 
 
-def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
+def alarm_table(groups: Groups) -> Blocks:
     """Return the alarms by kind, scenes beyond the first few by name alone; nothing where none was raised."""
     kinds: dict[str, dict[str, list[AlarmRecord]]] = {}  # by kind and scene
     labels = labels_of(groups.values())
@@ -35,9 +35,9 @@ def alarm_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
             others = dict(itertools.islice(scenes.items(), most, None))
             count = sum(map(len, others.values()))
             rows.append((kind, f"{len(others)} more", str(count), f"{', '.join(others)}."))
-    titles = (*columns("text", "Alarm", "Scene", "Cases"), TableColumn("The worst of them", "fill"))
+    titles = ("Alarm", "Scene", "Cases", TableColumn("The worst of them", "fill"))
     caption = "Results that look better than they are, as the runs raised them."
-    return [Heading("Alarms", 2), Table(titles, tuple(rows), caption)] if rows else []
+    return [Heading("Alarms", 2), table(titles, rows, caption)] if rows else []
 
 
 def remark(alarms: Alarms, labels: Mapping[str, str]) -> str:

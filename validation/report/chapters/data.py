@@ -86,6 +86,9 @@ class CaseGroup:
         return float(value) if isinstance(value, int | float) else None
 
 
+Groups = Mapping[str, CaseGroup]  # scenes by their names
+
+
 def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[CaseGroup]:
     """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
     rows = results.rows()
@@ -97,7 +100,7 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
     return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
 
 
-def groups_by_name(results: Results, manifest: Manifest) -> dict[str, CaseGroup]:
+def groups_by_name(results: Results, manifest: Manifest) -> Groups:
     """Return the scenes of a study with their histories, by the scenes' names."""
     return {group.name: group for group in case_groups(results, manifest)}
 

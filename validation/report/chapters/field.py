@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
-from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
@@ -46,7 +46,7 @@ UNEXPLAINED_NOTE = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the table, the causes of failures, what has no verdict, the programs."""
     field = read(results)
     if field is None:
@@ -81,17 +81,12 @@ def counted(field: Field) -> str:
     )
 
 
-def _part(title: str, table: Table) -> list[Block]:
+def _part(title: str, table: Table) -> Blocks:
     return [Heading(title, 3), table] if table.rows else []
 
 
 def by_problem(field: Field) -> Table:
     """Return the table of programs by problems."""
-    titles = (
-        TableColumn("Program"),
-        *(TableColumn(problem.name, "outcome") for problem in field.problems),
-        TableColumn("Time [s]", "decimal"),
-    )
     installed = installed_programs(field)
     rows = [("allowed [%]", *(allowed(field, problem.name) for problem in field.problems), "")]
     rows += [(program.title, *_outcomes(field, program), seconds(field, program)) for program in installed]
@@ -99,7 +94,12 @@ def by_problem(field: Field) -> Table:
     missing = [program.title for program in field.programs if program not in installed]
     if missing:
         notes.append(f"Not installed: {', '.join(missing)}.")
-    return Table(titles, tuple(rows), "Programs and problems.", tuple(notes))
+    return table(
+        ("Program", *(TableColumn(problem.name, "outcome") for problem in field.problems), "Time [s]"),
+        rows,
+        "Programs and problems.",
+        tuple(notes),
+    )
 
 
 def installed_programs(field: Field) -> list[ProgramLine]:
@@ -150,7 +150,7 @@ def seconds(field: Field, program: ProgramLine) -> str:
 
 def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
-    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Cause", "fill"))
+    titles = ("Program", "Problems", TableColumn("Cause", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_cause: dict[str, list[str]] = {}
@@ -160,7 +160,7 @@ def failures(field: Field) -> Table:
         rows += _lines(field, program, problems_by_cause)
     is_unexplained = any(row[-1] == NOT_EXPLAINED for row in rows)
     notes = (UNEXPLAINED_NOTE,) if is_unexplained else ()
-    return Table(titles, tuple(rows), notes=notes)
+    return table(titles, rows, notes=notes)
 
 
 def _right_until(cell: Cell) -> str:
@@ -172,7 +172,7 @@ def _right_until(cell: Cell) -> str:
 
 def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Reason", "fill"))
+    titles = ("Program", "Problems", TableColumn("Reason", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_reason: dict[str, list[str]] = {}
@@ -183,7 +183,7 @@ def absent(field: Field) -> Table:
                     reason = f"no answer: {reason}"
                 problems_by_reason.setdefault(reason, []).append(cell.problem)
         rows += _lines(field, program, problems_by_reason)
-    return Table(titles, tuple(rows))
+    return table(titles, rows)
 
 
 def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
@@ -199,7 +199,7 @@ def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[
 
 def programs(field: Field) -> Table:
     """Return what each program says of itself."""
-    titles = (*columns("text", "Program", "Version"), *columns("fill", "Model", "Settings"))
+    titles = ("Program", "Version", TableColumn("Model", "fill"), TableColumn("Settings", "fill"))
     rows: list[tuple[str, str, str, str]] = []
     previous: Mapping[str, str] = {}
     for program in installed_programs(field):
@@ -212,4 +212,4 @@ def programs(field: Field) -> Table:
                 model = "the same"
         rows.append((program.title, version, model, about.get("settings", "")))
         previous = about
-    return Table(titles, tuple(rows))
+    return table(titles, rows)

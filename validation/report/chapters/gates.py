@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validation.metrics.catalogue import is_count
-from validation.report.blocks import Block, Callout, Heading, Table, TableColumn
+from validation.report.blocks import Blocks, Callout, Heading, TableColumn, table
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -49,22 +49,17 @@ def reason(v: VerdictRecord) -> str:
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
 
 
-def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
+def not_passed(verdicts: Sequence[VerdictRecord]) -> Blocks:
     """Return the gates that failed or did not run, with value, band and reason; nothing where all passed."""
     bad = sorted((v for v in verdicts if v["verdict"] != "PASS"), key=lambda v: ORDER[v["verdict"]])
     if not bad:
         return []
-    blocks: list[Block] = [Heading("Gates that did not pass", 2)]
+    blocks: Blocks = [Heading("Gates that did not pass", 2)]
     failures = sum(v["verdict"] == "FAIL" for v in bad)
     if failures:
         text = "One gate fails." if failures == 1 else f"{failures} gates fail."
         blocks.append(Callout(text, "fail"))
-    titles = (
-        TableColumn("Verdict", "verdict"),
-        TableColumn("Gate", "id"),
-        TableColumn("Value", "decimal"),
-        TableColumn("Band"),
-    )
+    titles = (TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band")
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
         row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
@@ -72,4 +67,4 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
-    return [*blocks, Table(titles, tuple(lines), ruled=False)]
+    return [*blocks, table(titles, lines, ruled=False)]

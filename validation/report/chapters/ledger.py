@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph
+from validation.report.blocks import Blocks, Heading, Paragraph
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import percent, span
 from validation.report.figures import histories
@@ -52,9 +52,9 @@ def with_entries(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str
     return compared_groups
 
 
-def ledger_blocks(groups: Sequence[CaseGroup], name: str, directory: Path) -> list[Block]:
+def ledger_blocks(groups: Sequence[CaseGroup], name: str, directory: Path) -> Blocks:
     """Return the ledger of a study's scenes as a figure and a sentence; nothing where fewer than two cases have one."""
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for parts in (PARTS, OPENING_PARTS):
         compared = with_entries(groups, parts)
         if sum(len(group.cases) for group in compared) > 1:

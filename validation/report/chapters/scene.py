@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, Paragraph
+from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.damping import budget_blocks, damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
@@ -42,7 +42,7 @@ CALM = 1.5  # times the time in which the slowest line settles
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
-def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of a study: its question, then a section for each scene."""
     groups = case_groups(results, manifest)
     blocks = opening(manifest)
@@ -54,9 +54,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def opening(
-    manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", remark: str = ""
-) -> list[Block]:
+def opening(manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", remark: str = "") -> Blocks:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
@@ -71,7 +69,7 @@ def scene_section(
     columns: Sequence[str] | None = None,
     apart: bool = False,
     without: Sequence[str] = (),
-) -> list[Block]:
+) -> Blocks:
     """Return the section of one scene: its finding in words, the figure that shows it, the numbers that matter.
 
     Parameters
@@ -87,7 +85,7 @@ def scene_section(
     without
         Solvers that are left out of the figure.
     """
-    blocks: list[Block] = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
+    blocks: Blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, apart, without))
@@ -193,14 +191,14 @@ def _damped_agreement(group: CaseGroup) -> str:
     return f"{trend}: both are damped, which is no sign of accuracy"
 
 
-def outcomes(group: CaseGroup) -> list[Block]:
+def outcomes(group: CaseGroup) -> Blocks:
     """Name every outcome other than completed, with its sentence; cases that share it share a line."""
     labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
             if row.outcome is not Outcome.COMPLETED:
                 labels_by_outcome.setdefault((solver, row.outcome, row.notes), []).append(case.label)
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for (solver, outcome, notes), labels in labels_by_outcome.items():
         where = "" if labels == [AS_STATED] else f" at {'; '.join(labels)}"
         blocks.append(Callout(f"{solver}{where}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn"))
@@ -360,7 +358,7 @@ def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[C
     )
 
 
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> Blocks:
     panel, sentence = drift_panel(group, drift)
     caption = "Displacement at rest on corner point springs over the mesh."
     return [

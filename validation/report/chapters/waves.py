@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
 from validation.report.chapters.data import (
     CaseGroup,
     CaseResults,
     DerivedRows,
+    Groups,
     derived_rows,
     groups_by_name,
     verdicts_of,
@@ -48,7 +49,7 @@ class TravelledWaves:
     amplitude: Array  # after ten wavelengths, over that at the start [-]
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: waves in blocks, joints and base, the site."""
     groups = groups_by_name(results, manifest)
     rows = derived_rows(manifest)
@@ -94,7 +95,7 @@ def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int,
     return waves
 
 
-def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[TravelledWaves]:
+def travels(groups: Groups, rows: DerivedRows) -> list[TravelledWaves]:
     """Return the waves measured in welded blocks, by case."""
     group = groups.get("waves-blocks")
     measured = []
@@ -150,7 +151,7 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
     ]
 
 
-def _others(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _others(groups: Groups, rows: DerivedRows) -> Table:
     """Return the waves in glued blocks, under kinetic damping, and in shear."""
     lines = []
     for name in ("waves-glue", "waves-discount", "waves-shear"):
@@ -167,17 +168,14 @@ def _others(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
             for count, wave in _waves(case, rows, "wave.left"):
                 numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
                 lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
-    titles = (
-        *columns("text", "Motion"), *columns("decimal", "kg h / E"), *columns("text", "α, δ, gg"),
-        *columns("decimal", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
-    )  # fmt: skip
-    return Table(titles, tuple(lines), "Glue of finite stiffness, kinetic damping, and shear waves, as measured")
+    titles = ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10")
+    return table(titles, lines, "Glue of finite stiffness, kinetic damping, and shear waves, as measured")
 
 
 # ---- joints and base ------------------------------------------------------------------------------------------------
 
 
-def _joints(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _joints(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a joint of kj = rho c w lets through."""
     lines = []
     for name, group in groups.items():
@@ -186,12 +184,12 @@ def _joints(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
                 parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
                 scheme = SCHEMES.get(case.scene.time.delta, DASH)
                 lines.append((scheme, str(count), f"{_courant(case.scene):g}", *parts))
-    titles = (*columns("text", "α, δ"), *columns("decimal", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"))
+    titles = ("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²")
     caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
-    return Table(titles, tuple(lines), caption)
+    return table(titles, lines, caption)
 
 
-def _base(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _base(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a transmitting base of the column's own impedance sends back."""
     lines = []
     counts: list[int] = []
@@ -201,19 +199,15 @@ def _base(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
         scheme = SCHEMES.get(case.scene.time.delta, DASH)
         reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
         lines.append((scheme, f"{_courant(case.scene):g}", *reflected))
-    titles = (
-        *columns("text", "α, δ"),
-        *columns("decimal", "c dt/h"),
-        *columns("decimal", *map(str, counts), group="|R| [%] by blocks a wavelength"),
-    )
+    titles = ("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts)))
     caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
-    return Table(titles, tuple(lines), caption)
+    return table(titles, lines, caption)
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------
 
 
-def _site(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
+def _site(groups: Groups, directory: Path) -> Blocks:
     """Return the page of the layered site: surface and base under two schemes and exactly."""
     groups_of_site = [groups[name] for name in ("waves-site", "waves-site-usual") if name in groups]
     traces: dict[str, list[ChartLine]] = {DISPLACEMENT: [], PRESSURE: []}

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
@@ -20,7 +20,7 @@ MESHED = {method for (solver, _), method in METHODS.items() if solver == "fem"}
 TARGET_ERRORS = (0.1, 0.01, 0.001)
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter."""
     verdicts = results.verdicts(manifest["study"])
     blocks = opening(manifest)
@@ -30,7 +30,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return [*blocks, order_table(verdicts)]
 
 
-def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Path) -> list[Block]:
+def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Path) -> Blocks:
     """Return the figure and the sentences of one scheme."""
     if not runs:
         return [Heading(title, 2), Paragraph("No run completed.")]
@@ -96,9 +96,9 @@ def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
     rows = []
     for name, orders in orders_by_name.items():
         rows.append((name, orders.get("displacement", DASH), orders.get("pressure", DASH)))
-    titles = (TableColumn("Refined", "code"), *columns("decimal", "displacement", "pressure", group="Order"))
+    titles = (TableColumn("Refined", "code"), ("Order", "displacement", "pressure"))
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
         "grid-convergence index as its uncertainty."
     )
-    return Table(titles, tuple(rows), notes=(note,))
+    return table(titles, rows, notes=(note,))

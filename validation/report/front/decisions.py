@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, Heading, PageBreak, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table, table
+from validation.report.chapters.data import Groups
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
-from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
 
@@ -37,9 +38,9 @@ SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
 
-def decisions(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the three pages."""
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for page in (step_page, spring_page, discount_page):
         blocks += [PageBreak(), *page(groups, paper, directory)]
     return blocks
@@ -52,7 +53,7 @@ def _rule(text: str) -> Callout:
 # ---- which time step ----------------------------------------------------------------------------------------------
 
 
-def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the time step."""
     scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
@@ -102,14 +103,11 @@ def step_table(scenes: Sequence[Scene]) -> Table:
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
-    titles = (
-        TableColumn("Wanted ξ"),
-        *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
-    )
-    return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
+    titles = ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(s):g}E" for s in scenes)))
+    return table(titles, rows, "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
 
 
-def _as_run(groups: Groups) -> list[Block]:
+def _as_run(groups: Groups) -> Blocks:
     """Return what the runs over one fixed time had: damping, errors, hidden tension."""
     group = groups.get("model-form")
     if group is None:
@@ -132,15 +130,15 @@ def _as_run(groups: Groups) -> list[Block]:
     if not rows:
         return []
     titles = (
-        *columns("decimal", "dt [ms]"), *columns("text", "ξ₁"),
-        *columns("text", "first peak", "displ.", "pressure", group="DDA − bar: model"),
-        *columns("text", "displ.", "pressure", group="bar − continuum: time"),
-        *columns("decimal", "Pull of the contact [MPa]"),
+        "dt [ms]", "ξ₁",
+        ("DDA − bar: model", "first peak", "displ.", "pressure"),
+        ("bar − continuum: time", "displ.", "pressure"),
+        "Pull of the contact [MPa]",
     )  # fmt: skip
     return [
-        Table(
+        table(
             titles,
-            tuple(rows),
+            rows,
             "What each step cost at p = 1E, as run: first peak of the pressure, and relative L2 over 0.2 s.",
         ),
         Paragraph(
@@ -154,7 +152,7 @@ def _as_run(groups: Groups) -> list[Block]:
 # ---- which springs ------------------------------------------------------------------------------------------------
 
 
-def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the stiffness of the springs."""
     base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
@@ -230,21 +228,25 @@ def spring_table(groups: Groups, base: Scene) -> Table:
         )
         settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
         rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
-    titles = (
-        TableColumn("p"),
-        *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
-        *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
-        *heads(SETTLING + FINE_SETTLING),
-    )  # fmt: skip
-    return Table(
-        titles, tuple(rows), f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run."
+    return table(
+        (
+            "p",
+            "v at rest [mm]",
+            "springs [mm]",
+            "ξ₁",
+            "|λ| contact",
+            "4/ω contact [ms]",
+            *heads(SETTLING + FINE_SETTLING),
+        ),
+        rows,
+        f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run.",
     )
 
 
 # ---- which discount -----------------------------------------------------------------------------------------------
 
 
-def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the discount."""
     base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
@@ -310,14 +312,15 @@ def discount_table(base: Scene) -> Table:
         rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
         rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))
     titles = (
-        *columns("decimal", "gg"),
-        *columns("text", *(f"dt = {milliseconds(step)}" for step in STEPS[1:]), group="ξ₁, average acceleration"),
-        *columns("decimal", "overdamped below dt [ms]", "c at dt = 1 ms [1/s]"),
+        "gg",
+        ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:])),
+        "overdamped below dt [ms]",
+        "c at dt = 1 ms [1/s]",
     )
-    return Table(titles, tuple(rows), "What a discount per step damps at p = 1E, in closed form.")
+    return table(titles, rows, "What a discount per step damps at p = 1E, in closed form.")
 
 
-def _measured(groups: Groups) -> list[Block]:
+def _measured(groups: Groups) -> Blocks:
     """Return how the runs of Figure 9 were damped, as measured on their histories."""
     group = groups.get("figure-9")
     if group is None:

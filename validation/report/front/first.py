@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
-from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Part, Points
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups
 from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
@@ -19,7 +19,7 @@ from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, 
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed
-from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import PAPER, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
@@ -48,7 +48,7 @@ def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], 
     ]
 
 
-def tested(paper: Scene) -> list[Block]:
+def tested(paper: Scene) -> Blocks:
     """Return what stands beside the drawing."""
     block = paper.block
     return [

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import PageBreak, Paragraph, Part
+from validation.report.chapters.data import Groups
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
-from validation.report.front.groups import Groups, paper_scene
+from validation.report.front.groups import paper_scene
 from validation.runs.records import VerdictRecord
 
 

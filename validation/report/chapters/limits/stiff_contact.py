@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, plain, short
@@ -22,10 +22,10 @@ SCHEMES = {0.5: "(1/2, 1)", 0.5625: "(9/16, 1)"}
 QUANTITIES = ("displacement", "pressure")
 
 
-def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: what rings, for how long, and what does not."""
     (group,) = case_groups(results, manifest)
-    table = by_ratio(group)
+    cases_by_ratio = by_ratio(group)
     longest = float(max(case.scene.time.steps for case in group.cases))
     caption = (
         "Steps until displacement and contact pressure stay within 10⁻⁴ of their static values, dda; a hollow mark has "
@@ -35,7 +35,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "",
         "p / E",
         "Steps to settle within $10^{-4}$",
-        curves(table, longest),
+        curves(cases_by_ratio, longest),
         y_range=(10.0, 1.6 * longest),
         logarithmic=(True, True),
     )
@@ -45,8 +45,8 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "settle in between, and beyond, a ringing too small to see never ends."
     )
     return [
-        *opening(manifest, lead=conclusion(table)),
-        settling_table(table),
+        *opening(manifest, lead=conclusion(cases_by_ratio)),
+        settling_table(cases_by_ratio),
         histories.saved(figure, directory, f"{group.slug}-settling.svg", caption, group.name),
         Paragraph(f"{ring} {gate_count(group.verdicts).capitalize()}."),
     ]
@@ -68,13 +68,13 @@ def _steps(case: CaseResults | None, quantity: str) -> float | None:
     return None if case is None else case.number("dda", f"{quantity}.fine_settling_step")
 
 
-def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
+def curves(cases_by_ratio: CasesByRatio, longest: float) -> list[ChartLine]:
     """Return steps to settle over p/E; a hollow dot at the longest run has not settled within it."""
-    ratios = np.array(list(table))
+    ratios = np.array(list(cases_by_ratio))
     lines: list[ChartLine] = []
     for (alpha, scheme), quantity in itertools.product(SCHEMES.items(), QUANTITIES):
         color = COLORS[len(lines) // 3]
-        settling = np.array([_steps(row.get(alpha), quantity) for row in table.values()], dtype=float)
+        settling = np.array([_steps(row.get(alpha), quantity) for row in cases_by_ratio.values()], dtype=float)
         settles = np.isfinite(settling)
         steps = np.where(settles, settling, longest)
         lines += [
@@ -85,12 +85,12 @@ def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
     return lines
 
 
-def conclusion(table: CasesByRatio) -> str:
+def conclusion(cases_by_ratio: CasesByRatio) -> str:
     """Say in one sentence how long the pressure takes under either scheme."""
     parts = []
     for alpha, name in SCHEMES.items():
         settling: list[tuple[float, float]] = []
-        for ratio, row in table.items():
+        for ratio, row in cases_by_ratio.items():
             steps = _steps(row.get(alpha), "pressure")
             if steps is not None:
                 settling.append((steps, -ratio))
@@ -103,13 +103,12 @@ def conclusion(table: CasesByRatio) -> str:
     )
 
 
-def settling_table(table: CasesByRatio) -> Table:
+def settling_table(cases_by_ratio: CasesByRatio) -> Table:
     """Return steps to settle and the contact mode's root by p/E."""
-    titles = columns("decimal", "p / E")
-    for name in SCHEMES.values():
-        titles += columns("decimal", "displ.", "press.", "|λ| of the contact", group=f"α, δ = {name}")
+    of_scheme = ("displ.", "press.", "|λ| of the contact")
+    titles = ("p / E", *((f"α, δ = {name}", *of_scheme) for name in SCHEMES.values()))
     rows = []
-    for ratio, row in table.items():
+    for ratio, row in cases_by_ratio.items():
         cells = [short(ratio)]
         for alpha in SCHEMES:
             case = row.get(alpha)
@@ -118,4 +117,4 @@ def settling_table(table: CasesByRatio) -> Table:
             radius = None if case is None else case.number("dda", "contact.spectral_radius")
             cells.append(DASH if radius is None else plain(radius, 8))
         rows.append(tuple(cells))
-    return Table(titles, tuple(rows), "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.")
+    return table(titles, rows, "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
@@ -52,7 +52,7 @@ BUDGET = (
 BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: restitution, then energy, switches and solves."""
     groups = case_groups(results, manifest)
     impacts = [group for group in groups if group.name.startswith(IMPACT)]
@@ -67,7 +67,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
 # ---- restitution --------------------------------------------------------------------------------------------------
 
 
-def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> list[Block]:
+def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> Blocks:
     """Return the restitution map as a figure, and what it is on a rigid contact."""
     omega = np.array(data["omega"])
     top = 1.05 * max(max(rows["high"]) for rows in data["schemes"].values())
@@ -170,7 +170,7 @@ def conclusion(maps: Sequence[CaseGroup]) -> str:
     return f"{text[:1].upper()}{text[1:]}: a step too large for the contact spoils the motion, not the iteration."
 
 
-def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
+def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], directory: Path) -> Blocks:
     """Return the maps over dt and p, and the budget of energy as a table."""
     if not maps:
         return []
@@ -247,7 +247,7 @@ def _number(value: float) -> str:
 
 def budget_table(maps: Sequence[CaseGroup]) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
-    titles = columns("text", "Scheme", "p", "dt [ms]") + columns("decimal", "scheme", group=LOST) + heads(BUDGET)
+    titles: tuple[Head, ...] = ("Scheme", "p", TableColumn("dt [ms]"), (LOST, "scheme"), *heads(BUDGET))
     rows = []
     for group in maps:
         name = kind(group)
@@ -255,7 +255,7 @@ def budget_table(maps: Sequence[CaseGroup]) -> Table:
         for case in sorted(cases, key=lambda c: (ratio(c), -c.scene.time.step)):
             rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
             name = ""
-    return Table(titles, tuple(rows), "Budget of the cases of two time steps, dda.", ruled=False)
+    return table(titles, rows, "Budget of the cases of two time steps, dda.", ruled=False)
 
 
 def budget_cells(case: CaseResults) -> tuple[str, ...]:

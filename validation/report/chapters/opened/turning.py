@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
@@ -48,7 +48,7 @@ QUANTITIES = {  # metric -> words
 }
 
 
-def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of `rocking`."""
     groups = case_groups(results, manifest)
     swings = [group for group in groups if group.name in LET_GO]
@@ -64,7 +64,7 @@ def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> li
     return [*blocks, *drawn(panels, directory, "rocking.svg", caption)]
 
 
-def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of `toppling`."""
     groups = case_groups(results, manifest)
     caption = (
@@ -76,7 +76,7 @@ def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> l
     return [*blocks, *drawn(panels, directory, "toppling.svg", caption)]
 
 
-def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> list[Block]:
+def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> Blocks:
     """Return the figure of the panels that have lines, nothing where no case finished."""
     filled = [panel for panel in panels if panel.lines]
     margins = Margins(13.0, 20.0, 6.0, 10.0, 33.0)
@@ -111,9 +111,10 @@ def swing_table(swings: Sequence[CaseGroup]) -> Table:
             ratio = plain(block.height / block.width, 2)
             rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
     caption = (
-        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the impact."
+        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the "
+        "impact."
     )
-    return Table(columns("decimal", *titles), tuple(rows), caption)
+    return table(titles, rows, caption)
 
 
 def size(case: CaseResults) -> float:
@@ -128,13 +129,13 @@ def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
     for group in pulses:
         for case in group.cases:
             rows.append((plain(size(case), 3), judged(group, case, "peak"), judged(group, case, "time")))
-    titles = columns("decimal", "pulse / threshold", "peak tilt", "time of tipping")
-    return Table(titles, tuple(rows), "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
+    titles = ("pulse / threshold", "peak tilt", "time of tipping")
+    return table(titles, rows, "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
 
 
 def fall_table(groups: Sequence[CaseGroup]) -> Table:
     """Return what the gates of blocks on slopes measured, with their bands."""
-    titles = (*columns("text", "Scene", "Quantity"), *columns("decimal", "DDA", "from", "to"))
+    titles = ("Scene", "Quantity", "DDA", "from", "to")
     rows = []
     for group in groups:
         for case in group.cases:
@@ -144,7 +145,7 @@ def fall_table(groups: Sequence[CaseGroup]) -> Table:
                 edges = (short(edge, 7) for edge in verdict["band"])
                 rows.append((label, words, judged(group, case, verdict["metric"]), *edges))
                 label = ""
-    return Table(titles, tuple(rows))
+    return table(titles, rows)
 
 
 def swing_panel(group: CaseGroup) -> ChartPanel:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, FigureBlock, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
+from validation.report.blocks import Blocks, FigureBlock, Paragraph, Table, table
+from validation.report.chapters.data import CaseResults, Groups, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import cell, plain
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
@@ -42,7 +41,7 @@ EXPLANATION = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the figure and the table by steps."""
     groups = groups_by_name(results, manifest)
     blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
@@ -52,7 +51,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return blocks
 
 
-def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> FigureBlock:
+def over_time_and_step(groups: Groups, directory: Path) -> FigureBlock:
     """Return the figure of slides over time and of slip over the step."""
     exact = [case for case in cases(groups, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
@@ -78,7 +77,7 @@ def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> Figu
     return saved(chart_figure(panels, margins=BESIDE), directory, "creep.svg", CAPTION)
 
 
-def cases(groups: Mapping[str, CaseGroup], name: str) -> list[CaseResults]:
+def cases(groups: Groups, name: str) -> list[CaseResults]:
     """Return the cases of a scene."""
     return list(groups[name].cases) if name in groups else []
 
@@ -96,7 +95,7 @@ def at(case: CaseResults, step: float) -> bool:
     return abs(case.scene.time.step / step - 1) < 1e-9
 
 
-def lagged(groups: Mapping[str, CaseGroup]) -> list[CaseResults]:
+def lagged(groups: Groups) -> list[CaseResults]:
     """Return the cases of lagged friction on the scene's own springs."""
     return [case for case in cases(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
 
@@ -133,7 +132,7 @@ def across(case: CaseResults) -> ChartLine:
     return ChartLine("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
 
 
-def by_step(groups: Mapping[str, CaseGroup]) -> Table:
+def by_step(groups: Groups) -> Table:
     """Return the slip in a second by step and rule."""
     steps = cases(groups, study.STEPS)
     rows = []
@@ -142,14 +141,12 @@ def by_step(groups: Mapping[str, CaseGroup]) -> Table:
         slips.append(next((slip(c) for c in lagged(groups) if at(c, step)), None))
         rows.append(tuple(cell(value, 1e3, 3) for value in (step, *slips, program_slip)))
     scale = friction.creep_scale(steps[0].scene)
-    titles = columns(
-        "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"
-    )
+    titles = ("dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]")
     caption = f"Slip per second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
-    return Table(titles, tuple(rows), caption)
+    return table(titles, rows, caption)
 
 
-def by_stiffness(groups: Mapping[str, CaseGroup]) -> list[Block]:
+def by_stiffness(groups: Groups) -> Blocks:
     """Return the table of the creep on springs of any stiffness, where a run has it."""
     damped = cases(groups, study.DAMPED)
     rows = []
@@ -166,14 +163,12 @@ def by_stiffness(groups: Mapping[str, CaseGroup]) -> list[Block]:
             by_discount,
         )
         rows.append((plain(p / case.scene.block.young, 3), *(cell(value, 1e3, 3) for value in numbers)))
-    titles = columns(
-        "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
-    )
+    titles = ("p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]")
     caption = (
         "Springs of other stiffness, with steps to match: mean speed over seven cycles, and the slide at which the "
         "block stops under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 per step (ω_n dt = 0.17)."
     )
-    return [Table(titles, tuple(rows), caption)] if rows else []
+    return [table(titles, rows, caption)] if rows else []
 
 
 def speed(case: CaseResults, solver: str) -> float | None:
