@@ -86,10 +86,13 @@ def _evidence(answer: Answer) -> Blocks:
 
 
 def _ranking(answer: Answer) -> Table:
-    titles = (TableColumn("Model", "code"), TableColumn("Scheme", "fill"), "Misfit [%]", "Compliance [%]")
     rows = []
     for row in answer.ranking[:LINES]:
         scheme = "exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}"
         softer = DASH if row["compliance"] is None else short(100 * row["compliance"], 3)
         rows.append((str(row["model"]), str(row["name"] or scheme), short(100 * row["misfit"], 3), softer))
-    return table(titles, rows, "Relative L2 of what each model leaves, at its best compliance of the springs.")
+    return table(
+        (TableColumn("Model", "code"), TableColumn("Scheme", "fill"), "Misfit [%]", "Compliance [%]"),
+        rows,
+        "Relative L2 of what each model leaves, at its best compliance of the springs.",
+    )

@@ -150,7 +150,6 @@ def seconds(field: Field, program: ProgramLine) -> str:
 
 def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
-    titles = ("Program", "Problems", TableColumn("Cause", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_cause: dict[str, list[str]] = {}
@@ -160,7 +159,7 @@ def failures(field: Field) -> Table:
         rows += _lines(field, program, problems_by_cause)
     is_unexplained = any(row[-1] == NOT_EXPLAINED for row in rows)
     notes = (UNEXPLAINED_NOTE,) if is_unexplained else ()
-    return table(titles, rows, notes=notes)
+    return table(("Program", "Problems", TableColumn("Cause", "fill")), rows, notes=notes)
 
 
 def _right_until(cell: Cell) -> str:
@@ -172,7 +171,6 @@ def _right_until(cell: Cell) -> str:
 
 def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    titles = ("Program", "Problems", TableColumn("Reason", "fill"))
     rows = []
     for program in installed_programs(field):
         problems_by_reason: dict[str, list[str]] = {}
@@ -183,7 +181,7 @@ def absent(field: Field) -> Table:
                     reason = f"no answer: {reason}"
                 problems_by_reason.setdefault(reason, []).append(cell.problem)
         rows += _lines(field, program, problems_by_reason)
-    return table(titles, rows)
+    return table(("Program", "Problems", TableColumn("Reason", "fill")), rows)
 
 
 def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
@@ -199,7 +197,6 @@ def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[
 
 def programs(field: Field) -> Table:
     """Return what each program says of itself."""
-    titles = ("Program", "Version", TableColumn("Model", "fill"), TableColumn("Settings", "fill"))
     rows: list[tuple[str, str, str, str]] = []
     previous: Mapping[str, str] = {}
     for program in installed_programs(field):
@@ -212,4 +209,4 @@ def programs(field: Field) -> Table:
                 model = "the same"
         rows.append((program.title, version, model, about.get("settings", "")))
         previous = about
-    return table(titles, rows)
+    return table(("Program", "Version", TableColumn("Model", "fill"), TableColumn("Settings", "fill")), rows)

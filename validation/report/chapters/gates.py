@@ -59,7 +59,6 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> Blocks:
     if failures:
         text = "One gate fails." if failures == 1 else f"{failures} gates fail."
         blocks.append(Callout(text, "fail"))
-    titles = (TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band")
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
         row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
@@ -67,4 +66,7 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> Blocks:
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
-    return [*blocks, table(titles, lines, ruled=False)]
+    return [
+        *blocks,
+        table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band"), lines, ruled=False),
+    ]

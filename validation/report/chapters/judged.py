@@ -114,7 +114,6 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
 
 
 def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
-    titles = ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]")
     rows = []
     notes = [ALLOWED]
     for column in columns_of_answer:
@@ -123,7 +122,12 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
         rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
         if column.band is None:
             notes.append(f"{name}: {column.reason}.")
-    return table(titles, rows, "Relative L2 error of each column.", tuple(notes))
+    return table(
+        ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]"),
+        rows,
+        "Relative L2 error of each column.",
+        tuple(notes),
+    )
 
 
 def datum(column: Column, standard: Standard) -> str:
@@ -133,9 +137,10 @@ def datum(column: Column, standard: Standard) -> str:
 
 
 def _further_numbers(numbers: Sequence[Quantity]) -> Table:
-    titles = (TableColumn("Number", "fill"), "Answer", "Exact", "Unit")
     rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
-    return table(titles, rows, "Further numbers, which are not judged.")
+    return table(
+        (TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, "Further numbers, which are not judged."
+    )
 
 
 def _number_cell(number: Quantity, value: float | None) -> str:

@@ -95,14 +95,16 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         statement = f"{claim['says']} ({claim['place']})"
         why = f"{claim['why'][:1].upper()}{claim['why'][1:]}.{condition}"
         lines.append((claim["id"], word, statement, why, measured))
-    titles = (
-        "Id",
-        "Verdict",
-        TableColumn("The paper says", "fill"),
-        TableColumn("Why", "fill"),
-        TableColumn("Measured", "fill"),
+    return table(
+        (
+            "Id",
+            "Verdict",
+            TableColumn("The paper says", "fill"),
+            TableColumn("Why", "fill"),
+            TableColumn("Measured", "fill"),
+        ),
+        lines,
     )
-    return table(titles, lines)
 
 
 def _number(value: object) -> str:

@@ -135,8 +135,11 @@ def _patterns(group: CaseGroup) -> Table:
         errors = (_percent(_frequency_error(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
         cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
         rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
-    titles = ("Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms")
-    return table(titles, rows, f"{group.title}, against quadratic elements")
+    return table(
+        ("Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms"),
+        rows,
+        f"{group.title}, against quadratic elements",
+    )
 
 
 def _growth(groups: Groups) -> Blocks:
@@ -162,8 +165,11 @@ def _glue(group: CaseGroup) -> Table:
         errors_by_motion = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
         errors_by_motion[bool(case.scene.load.traction)] = _percent(_frequency_error(case))
     rows = tuple((short(ratio), *errors_by_motion.values()) for ratio, errors_by_motion in errors.items())
-    titles = ("glue_ratio", "Axial ω₁", "Rocking ω₁")
-    return table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
+    return table(
+        ("glue_ratio", "Axial ω₁", "Rocking ω₁"),
+        rows,
+        "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue",
+    )
 
 
 def _rocking(group: CaseGroup) -> Table:
@@ -176,5 +182,8 @@ def _rocking(group: CaseGroup) -> Table:
             cells += [DASH if value is None else short(value) for value in values]
         width = case.scene.fem.patch_width or case.scene.block.base_length
         rows.append((short(width), *cells, _percent(_frequency_error(case))))
-    titles = ("Patch width [m]", ("ω₁ [rad/s]", "dda", "fem"), ("ξ₁ [1]", "dda", "fem"), "Block above elements")
-    return table(titles, rows, "First rocking mode on springs of equal total stiffness")
+    return table(
+        ("Patch width [m]", ("ω₁ [rad/s]", "dda", "fem"), ("ξ₁ [1]", "dda", "fem"), "Block above elements"),
+        rows,
+        "First rocking mode on springs of equal total stiffness",
+    )

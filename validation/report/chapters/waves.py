@@ -168,8 +168,11 @@ def _others(groups: Groups, rows: DerivedRows) -> Table:
             for count, wave in _waves(case, rows, "wave.left"):
                 numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
                 lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
-    titles = ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10")
-    return table(titles, lines, "Glue of finite stiffness, kinetic damping, and shear waves, as measured")
+    return table(
+        ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
+        lines,
+        "Glue of finite stiffness, kinetic damping, and shear waves, as measured",
+    )
 
 
 # ---- joints and base ------------------------------------------------------------------------------------------------
@@ -184,9 +187,8 @@ def _joints(groups: Groups, rows: DerivedRows) -> Table:
                 parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
                 scheme = SCHEMES.get(case.scene.time.delta, DASH)
                 lines.append((scheme, str(count), f"{_courant(case.scene):g}", *parts))
-    titles = ("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²")
     caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
-    return table(titles, lines, caption)
+    return table(("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"), lines, caption)
 
 
 def _base(groups: Groups, rows: DerivedRows) -> Table:
@@ -199,9 +201,8 @@ def _base(groups: Groups, rows: DerivedRows) -> Table:
         scheme = SCHEMES.get(case.scene.time.delta, DASH)
         reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
         lines.append((scheme, f"{_courant(case.scene):g}", *reflected))
-    titles = ("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts)))
     caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
-    return table(titles, lines, caption)
+    return table(("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts))), lines, caption)
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------

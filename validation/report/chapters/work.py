@@ -96,9 +96,8 @@ def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
     rows = []
     for name, orders in orders_by_name.items():
         rows.append((name, orders.get("displacement", DASH), orders.get("pressure", DASH)))
-    titles = (TableColumn("Refined", "code"), ("Order", "displacement", "pressure"))
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
         "grid-convergence index as its uncertainty."
     )
-    return table(titles, rows, notes=(note,))
+    return table((TableColumn("Refined", "code"), ("Order", "displacement", "pressure")), rows, notes=(note,))

@@ -1,4 +1,4 @@
-"""The drawing of the two-block model: block, springs, load and unknowns, whose lines and words stand in `model.json`."""
+"""The drawing of the two-block model: block, springs, load and unknowns; its lines and words stand in `model.json`."""
 
 from __future__ import annotations
 

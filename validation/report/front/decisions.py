@@ -103,8 +103,11 @@ def step_table(scenes: Sequence[Scene]) -> Table:
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
-    titles = ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(s):g}E" for s in scenes)))
-    return table(titles, rows, "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
+    return table(
+        ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(s):g}E" for s in scenes))),
+        rows,
+        "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.",
+    )
 
 
 def _as_run(groups: Groups) -> Blocks:
@@ -129,15 +132,15 @@ def _as_run(groups: Groups) -> Blocks:
         rows.append((f"{1e3 * case.scene.time.step:g}", damping, peak, *error_cells, tension))
     if not rows:
         return []
-    titles = (
-        "dt [ms]", "ξ₁",
-        ("DDA − bar: model", "first peak", "displ.", "pressure"),
-        ("bar − continuum: time", "displ.", "pressure"),
-        "Pull of the contact [MPa]",
-    )  # fmt: skip
     return [
         table(
-            titles,
+            (
+                "dt [ms]",
+                "ξ₁",
+                ("DDA − bar: model", "first peak", "displ.", "pressure"),
+                ("bar − continuum: time", "displ.", "pressure"),
+                "Pull of the contact [MPa]",
+            ),
             rows,
             "What each step cost at p = 1E, as run: first peak of the pressure, and relative L2 over 0.2 s.",
         ),
@@ -311,13 +314,16 @@ def discount_table(base: Scene) -> Table:
         step = DASH if overdamped_below is None else f"{1e3 * overdamped_below:.3g}"
         rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
         rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))
-    titles = (
-        "gg",
-        ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:])),
-        "overdamped below dt [ms]",
-        "c at dt = 1 ms [1/s]",
+    return table(
+        (
+            "gg",
+            ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:])),
+            "overdamped below dt [ms]",
+            "c at dt = 1 ms [1/s]",
+        ),
+        rows,
+        "What a discount per step damps at p = 1E, in closed form.",
     )
-    return table(titles, rows, "What a discount per step damps at p = 1E, in closed form.")
 
 
 def _measured(groups: Groups) -> Blocks:

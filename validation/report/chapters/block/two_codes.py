@@ -39,5 +39,8 @@ def apart(groups: list[CaseGroup]) -> Table:
             cells.append(DASH if worst is None else bounded(worst, power(worst)))
         if set(cells) != {DASH}:
             rows.append((group.title, str(len(group.cases)), *cells))
-    titles = ("Scene", "Cases", ("Displacement", "L2", "largest"), ("Pressure", "L2", "largest"))
-    return table(titles, rows, "Two programs on one mesh: relative differences, the largest over the cases.")
+    return table(
+        ("Scene", "Cases", ("Displacement", "L2", "largest"), ("Pressure", "L2", "largest")),
+        rows,
+        "Two programs on one mesh: relative differences, the largest over the cases.",
+    )

@@ -78,8 +78,11 @@ def locking_table(group: CaseGroup) -> Table:
         cells = [DASH if v is None else f"{1e3 * v:.4f}".replace("-", "−") for v in (linear, quadratic)]
         share = DASH if not linear or not quadratic else percent(linear / quadratic)
         rows.append((f"{poisson:g}", *cells, share))
-    titles = ("μ", "linear", "quadratic", "linear over quadratic")
-    return table(titles, rows, f"v at rest [mm], plane strain, {_coarsest(group)} elements a side.")
+    return table(
+        ("μ", "linear", "quadratic", "linear over quadratic"),
+        rows,
+        f"v at rest [mm], plane strain, {_coarsest(group)} elements a side.",
+    )
 
 
 def locked_sentence(group: CaseGroup) -> str:

@@ -175,12 +175,19 @@ def factor_tables(runs: Sequence[ExtremeRun]) -> Blocks:
         fewest = sorted(rows, key=lambda row: _fewest(by_key.get((row[0], "dda"))))[:MOST_ROWS]
         rows = [row for row in rows if row in fewest]
         caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
-    titles = (
-        TableColumn("Scene", "id"),
-        ("dda", "|λ|", "condition", "residual"),
-        ("Digits of displacement / pressure", "dda", "dda-textbook", "fem"),
-    )
-    return [Heading("One datum at its extremes", 3), table(titles, rows, caption, ruled=False)]
+    return [
+        Heading("One datum at its extremes", 3),
+        table(
+            (
+                TableColumn("Scene", "id"),
+                ("dda", "|λ|", "condition", "residual"),
+                ("Digits of displacement / pressure", "dda", "dda-textbook", "fem"),
+            ),
+            rows,
+            caption,
+            ruled=False,
+        ),
+    ]
 
 
 def _factor_row(scene: str, runs: Mapping[tuple[str, str], ExtremeRun]) -> tuple[str, ...]:

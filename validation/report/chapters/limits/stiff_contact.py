@@ -106,7 +106,6 @@ def conclusion(cases_by_ratio: CasesByRatio) -> str:
 def settling_table(cases_by_ratio: CasesByRatio) -> Table:
     """Return steps to settle and the contact mode's root by p/E."""
     of_scheme = ("displ.", "press.", "|λ| of the contact")
-    titles = ("p / E", *((f"α, δ = {name}", *of_scheme) for name in SCHEMES.values()))
     rows = []
     for ratio, row in cases_by_ratio.items():
         cells = [short(ratio)]
@@ -117,4 +116,8 @@ def settling_table(cases_by_ratio: CasesByRatio) -> Table:
             radius = None if case is None else case.number("dda", "contact.spectral_radius")
             cells.append(DASH if radius is None else plain(radius, 8))
         rows.append(tuple(cells))
-    return table(titles, rows, "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.")
+    return table(
+        ("p / E", *((f"α, δ = {name}", *of_scheme) for name in SCHEMES.values())),
+        rows,
+        "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.",
+    )

@@ -101,7 +101,6 @@ def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
 
 def swing_table(swings: Sequence[CaseGroup]) -> Table:
     """Return quarter periods and rate ratios."""
-    titles = ("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner")
     rows = []
     for group in swings:
         for case in group.cases:
@@ -114,7 +113,7 @@ def swing_table(swings: Sequence[CaseGroup]) -> Table:
         "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the "
         "impact."
     )
-    return table(titles, rows, caption)
+    return table(("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner"), rows, caption)
 
 
 def size(case: CaseResults) -> float:
@@ -129,13 +128,15 @@ def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
     for group in pulses:
         for case in group.cases:
             rows.append((plain(size(case), 3), judged(group, case, "peak"), judged(group, case, "time")))
-    titles = ("pulse / threshold", "peak tilt", "time of tipping")
-    return table(titles, rows, "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
+    return table(
+        ("pulse / threshold", "peak tilt", "time of tipping"),
+        rows,
+        "Towers of 4 m on a base that accelerates; DDA over the rigid block.",
+    )
 
 
 def fall_table(groups: Sequence[CaseGroup]) -> Table:
     """Return what the gates of blocks on slopes measured, with their bands."""
-    titles = ("Scene", "Quantity", "DDA", "from", "to")
     rows = []
     for group in groups:
         for case in group.cases:
@@ -145,7 +146,7 @@ def fall_table(groups: Sequence[CaseGroup]) -> Table:
                 edges = (short(edge, 7) for edge in verdict["band"])
                 rows.append((label, words, judged(group, case, verdict["metric"]), *edges))
                 label = ""
-    return table(titles, rows)
+    return table(("Scene", "Quantity", "DDA", "from", "to"), rows)
 
 
 def swing_panel(group: CaseGroup) -> ChartPanel:

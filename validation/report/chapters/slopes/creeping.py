@@ -141,9 +141,12 @@ def by_step(groups: Groups) -> Table:
         slips.append(next((slip(c) for c in lagged(groups) if at(c, step)), None))
         rows.append(tuple(cell(value, 1e3, 3) for value in (step, *slips, program_slip)))
     scale = friction.creep_scale(steps[0].scene)
-    titles = ("dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]")
     caption = f"Slip per second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
-    return table(titles, rows, caption)
+    return table(
+        ("dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"),
+        rows,
+        caption,
+    )
 
 
 def by_stiffness(groups: Groups) -> Blocks:

@@ -106,23 +106,26 @@ def share(case: CaseResults) -> tuple[float, float] | None:
 
 def run_outs(cases: Sequence[CaseResults]) -> Table:
     """Return the displacements of all runs beside the closed form."""
-    titles = (
-        "dt [ms]",
-        "α",
-        "δ",
-        "gg",
-        "c [1/s]",
-        "cohesion [Pa]",
-        "closed form [m]",
-        "dda [m]",
-        "ahead [µm]",
-        "fem [m]",
-    )
     caption = (
         "Distance after a second at 28.9 degrees under 15 degrees of friction. Ahead: the run beyond the closed form; "
         "18.64 µm is tan φ times the settlement; under average acceleration the block is still in the air."
     )
-    return table(titles, tuple(_run_out(case) for case in cases), caption)
+    return table(
+        (
+            "dt [ms]",
+            "α",
+            "δ",
+            "gg",
+            "c [1/s]",
+            "cohesion [Pa]",
+            "closed form [m]",
+            "dda [m]",
+            "ahead [µm]",
+            "fem [m]",
+        ),
+        tuple(_run_out(case) for case in cases),
+        caption,
+    )
 
 
 def _run_out(case: CaseResults) -> tuple[str, ...]:
@@ -144,7 +147,6 @@ def _run_out(case: CaseResults) -> tuple[str, ...]:
 
 def thresholds(cases: Sequence[CaseResults]) -> Iterator[Block]:
     """Yield the accelerations about the angle of friction."""
-    titles = ("slope [°]", "friction [°]", "a, closed form [m/s²]", "a, dda [m/s²]", "slip a second [mm/s]")
     rows = []
     for case in cases:
         history = case.histories.get(DDA)
@@ -170,7 +172,11 @@ def thresholds(cases: Sequence[CaseResults]) -> Iterator[Block]:
         "Gravity is switched on, so that a block begins to slide on every slope and loses or gains speed by "
         "g (sin β − tan φ cos β): the slope at which that passes through zero is the angle of friction."
     )
-    yield table(titles, rows, "Acceleration over the second half of each run.")
+    yield table(
+        ("slope [°]", "friction [°]", "a, closed form [m/s²]", "a, dda [m/s²]", "slip a second [mm/s]"),
+        rows,
+        "Acceleration over the second half of each run.",
+    )
 
 
 ShakenCase = tuple[CaseResults, dict[str, VerdictRecord]]
@@ -188,15 +194,6 @@ def judged(group: CaseGroup) -> list[ShakenCase]:
 
 def shaking(cases: Sequence[ShakenCase]) -> Iterator[Block]:
     """Yield the slides over a base that shakes, beside those of a rigid mass."""
-    titles = (
-        "base",
-        "slope [deg]",
-        "p [GN/m]",
-        "slide, rigid [mm]",
-        "slide, dda [mm]",
-        "largest difference [mm]",
-        "allowed [mm]",
-    )
     rows = []
     for case, verdicts in cases:
         low, high = verdicts["slide"]["band"]
@@ -209,7 +206,15 @@ def shaking(cases: Sequence[ShakenCase]) -> Iterator[Block]:
     if rows:
         yield Heading("A base that shakes", 2)
         yield table(
-            titles,
+            (
+                "base",
+                "slope [deg]",
+                "p [GN/m]",
+                "slide, rigid [mm]",
+                "slide, dda [mm]",
+                "largest difference [mm]",
+                "allowed [mm]",
+            ),
             rows,
             "Slide over a base that shakes, at 2 Hz or by a record of three frequencies: Newmark's sliding block.",
         )

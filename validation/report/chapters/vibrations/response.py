@@ -77,9 +77,10 @@ def amplitudes(rows: DerivedRows) -> Table:
             cells += [plain(factor * value, DIGITS) if isinstance(value, float) else DASH for value in values]
         if set(cells) != {DASH}:
             lines.append((ANSWERS[scene], f"{frequency:g}", *cells))
-    titles = ("Answer", "f [Hz]", ("Displacement [mm]", *SOLVERS), ("Contact pressure [MPa]", *SOLVERS))
     caption = "Amplitudes under the pressure; fem: eight linear elements, whose error against the bar is known"
-    return table(titles, lines, caption)
+    return table(
+        ("Answer", "f [Hz]", ("Displacement [mm]", *SOLVERS), ("Contact pressure [MPa]", *SOLVERS)), lines, caption
+    )
 
 
 def hidden(rows: DerivedRows) -> str:
