@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -65,7 +65,7 @@ class Table:
 
 # A title, a column with its kind, or a shared title and those below it.
 Head = str | TableColumn | Sequence[str]
-NUMBER = re.compile("[−+]?[0-9][0-9.]*(×10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?")
+NUMBER = re.compile("<?[−+]?[0-9][0-9.]*(×10)?[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]*( / [0-9]+)?")  # or a bound, or two counts
 
 
 def table(
@@ -82,19 +82,22 @@ def table(
     >>> [column.kind for column in table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns]
     ['text', 'decimal', 'text']
     """
-    columns: list[TableColumn] = []
+    titles: list[tuple[str, str] | TableColumn] = []  # of a column and of its group
     for head in heads:
-        if isinstance(head, str):
-            columns.append(TableColumn(head))
-        elif isinstance(head, TableColumn):
-            columns.append(head)
+        if isinstance(head, TableColumn):
+            titles.append(head)
+        elif isinstance(head, str):
+            titles.append((head, ""))
         else:
-            columns += [TableColumn(title, group=head[0]) for title in head[1:]]
+            titles += [(title, head[0]) for title in head[1:]]
     lines = [tuple(row) for row in rows]
-    full = [line for line in lines if len(line) == len(columns)]
-    for place, column in enumerate(columns):
-        if column.kind == "text" and _are_numbers([line[place] for line in full]):
-            columns[place] = replace(column, kind="decimal")
+    columns = []
+    for place, title in enumerate(titles):
+        if isinstance(title, TableColumn):
+            columns.append(title)
+        else:
+            cells = [line[place] for line in lines if len(line) == len(titles)]
+            columns.append(TableColumn(title[0], "decimal" if _are_numbers(cells) else "text", title[1]))
     return Table(tuple(columns), tuple(lines), caption, tuple(notes), ruled)
 
 

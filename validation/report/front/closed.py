@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
+from validation.advice.spectra import damping_ratio
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -33,23 +33,9 @@ def ratio_of(scene: Scene) -> float:
     return scene.contact.stiffness / scene.block.young
 
 
-def damping(scene: Scene, frequency: float) -> float:
-    """Return the damping ratio xi of a mode [-], at least 1 where it does not swing; NaN where a root is not positive.
-
-    A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
-    """
-    first, second = spectra.roots(scene, frequency)
-    if first.imag:
-        return spectra.damping_ratio(scene, frequency)
-    if min(first.real, second.real) <= 0:
-        return math.nan
-    logs = math.log(first.real), math.log(second.real)
-    return -sum(logs) / (2 * math.sqrt(logs[0] * logs[1])) if logs[0] * logs[1] > 0 else math.nan
-
-
 def first_damping(scene: Scene) -> float:
-    """Return xi of the DDA block's first axial mode."""
-    return damping(scene, spectra.dda_frequency(scene))
+    """Return xi of the DDA block's first axial mode [-], at least 1 where it creeps; NaN beyond its real roots."""
+    return damping_ratio(scene, spectra.dda_frequency(scene))
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
@@ -91,12 +77,7 @@ def overdamped_below(scene: Scene) -> float | None:
         return None
     # w dt of two equal roots lies near (1 - gg) / 2
     middle = (1 - scene.time.discount) / 2 / spectra.dda_frequency(scene)
-
-    def swings(step: float) -> float:
-        first, second = spectra.roots(timed(scene, step=step), spectra.dda_frequency(scene))
-        return abs((first - second).imag) - abs((first - second).real)
-
-    return float(brentq(swings, middle / 4, 4 * middle))
+    return float(brentq(lambda step: first_damping(timed(scene, step=step)) - 1, middle / 4, 4 * middle))
 
 
 def contact_radius(scene: Scene) -> float:
