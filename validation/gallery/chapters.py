@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from validation.gallery.cases import GalleryScene, GalleryStudy, readable
 from validation.gallery.svg import Sheet
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Table
 from validation.report.chapters.registry import chapter_of
-from validation.report.names import Readable, escaped, unescaped
+from validation.report.names import Readable, escaped, unescaped, with_texts
 from validation.runs.results import Results
 from validation.runs.text import printable
 
@@ -86,7 +86,7 @@ def placed(block: Block, directory: Path, sheet: Sheet) -> dict[str, Any]:
 
 def _record(block: Block) -> dict[str, Any]:
     """Return the name of a block's kind and its data."""
-    return {"block": type(block).__name__, **_plain(vars(block))}
+    return {"block": type(block).__name__, **with_texts(asdict(block), lambda text: readable(unescaped(text)))}
 
 
 def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:
@@ -117,14 +117,3 @@ def _without_empty_headings(blocks: Sequence[dict[str, Any]]) -> list[dict[str, 
                 continue
         reversed_blocks.append(block)
     return reversed_blocks[::-1]
-
-
-def _plain(value: Any) -> Any:
-    """Return data of a block in which every text can be shown."""
-    if isinstance(value, str):
-        return readable(unescaped(value))
-    if isinstance(value, Mapping):
-        return {key: _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    return _plain(vars(value)) if hasattr(value, "__dataclass_fields__") else value

@@ -9,12 +9,11 @@ from validation.report.appendix.gates import gate_pages
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Heading, Part
-from validation.report.chapters.data import Groups
-from validation.runs.records import VerdictRecord
+from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
-def appendix(results: Results, groups: Groups, verdicts: Sequence[VerdictRecord], studies: Sequence[str]) -> list[Part]:
+def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> list[Part]:
     """Return words, alarms, parameters, provenance and gates."""
     return [
         Heading("Appendix"),

@@ -19,6 +19,7 @@ from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
+Verdicts = Sequence[VerdictRecord]
 DerivedRows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene or case, name) -> metrics
 
 
@@ -87,6 +88,7 @@ class CaseGroup:
 
 
 Groups = Mapping[str, CaseGroup]  # scenes by their names
+CaseGroups = Sequence[CaseGroup]
 
 
 def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[CaseGroup]:
@@ -139,7 +141,7 @@ def _group(
     manifest: Manifest,
     base: str,
     entries: Mapping[str, Sequence[CaseRecord]],
-    verdicts: Sequence[VerdictRecord],
+    verdicts: Verdicts,
 ) -> CaseGroup:
     scenes = [parse_scene(of_case[0]["definition"], name) for name, of_case in entries.items()]
     labels = case_labels(list(entries), scenes)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from validation.metrics.catalogue import is_count
 from validation.report.blocks import Blocks, Callout, Heading, TableColumn, table
+from validation.report.chapters.data import Verdicts
 from validation.report.chapters.text import bounded, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -49,7 +48,7 @@ def reason(v: VerdictRecord) -> str:
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
 
 
-def not_passed(verdicts: Sequence[VerdictRecord]) -> Blocks:
+def not_passed(verdicts: Verdicts) -> Blocks:
     """Return the gates that failed or did not run, with value, band and reason; nothing where all passed."""
     bad = sorted((v for v in verdicts if v["verdict"] != "PASS"), key=lambda v: ORDER[v["verdict"]])
     if not bad:

@@ -13,7 +13,7 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.damping import budget_blocks, damping_table
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
     AS_STATED,
@@ -27,9 +27,9 @@ from validation.report.chapters.text import (
 )
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
-from validation.report.figures.curves import COLUMNS, HistoryPanel, differences
+from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -54,7 +54,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def opening(manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", remark: str = "") -> Blocks:
+def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
@@ -141,7 +141,7 @@ def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     return f" over {short(low)}\u00a0s" if high <= low * 1.001 else f", {short(low)} to {short(high)}\u00a0s"
 
 
-def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
+def gate_count(verdicts: Verdicts) -> str:
     """Return how many gates pass, fail or did not run, as part of a sentence."""
     count = Counter(v["verdict"] for v in verdicts)
     if not verdicts:
@@ -260,7 +260,7 @@ def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without
     return CALM * latest
 
 
-def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]:
+def _on_one(panels: HistoryPanels, columns: Sequence[str]) -> list[str]:
     """Name the lines that lie on one another, and how far off they are at most."""
     parts = []
     for name, others in motion.twins(panels, columns).items():
@@ -268,7 +268,7 @@ def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]
     return [f"{', '.join(parts)}."] if parts else []
 
 
-def _reading(panels: Sequence[HistoryPanel], columns: Sequence[str], apart: bool) -> list[str]:
+def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
     sentences = []
     if start := motion.start_of(panels, columns[0]):

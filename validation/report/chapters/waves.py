@@ -12,7 +12,7 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
 from validation.report.chapters.data import (
-    CaseGroup,
+    CaseGroups,
     CaseResults,
     DerivedRows,
     Groups,
@@ -249,7 +249,7 @@ def site_panel(title: str, unit: str, traces: Sequence[ChartLine], x_label: str)
     return ChartPanel(f"{title} [{unit}]", x_label, "", lines, (0.0, float(traces[0].x[-1])), names="beside")
 
 
-def _site_sentence(site: Sequence[CaseGroup]) -> str:
+def _site_sentence(site: CaseGroups) -> str:
     """Say how far DDA is from the exact layers, case by case."""
     parts = []
     for group in site:

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.data import Verdicts
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.cost import work_figure
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.work.points import METHODS, Point, cheapest, floor, points
 
@@ -87,7 +88,7 @@ def floor_sentence(runs: Sequence[Point]) -> str:
     )
 
 
-def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
+def order_table(verdicts: Verdicts) -> Table:
     """Return the orders that were fitted: what was refined, and the order of each quantity."""
     orders_by_name: dict[str, dict[str, str]] = {}
     for v, quantity in itertools.product(verdicts, ("displacement", "pressure")):

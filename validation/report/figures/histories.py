@@ -17,7 +17,6 @@ from matplotlib.figure import Figure
 from validation.report.blocks import FigureBlock
 from validation.report.figures.curves import (
     HAIR,
-    HOUSE_STYLE,
     dash_style,
     nudge,
     style_of,
@@ -25,6 +24,7 @@ from validation.report.figures.curves import (
 from validation.runs.files import write_atomically
 from validation.runs.history import Array
 
+HOUSE_STYLE = mpl.rc_params_from_file(str(Path(__file__).with_name("house.mplstyle")), use_default_template=False)
 P = TypeVar("P", bound=Any)  # a dataclass with a title
 WIDTH = 166.0  # mm, text width of the report
 LABEL_GAP = 3.0  # mm between the names of two lines
@@ -37,7 +37,7 @@ TITLE_LINE = 3.2  # mm, height of a line of it, amply
 @contextmanager
 def house_style() -> Iterator[None]:
     """Apply the house style for the time of a drawing or saving."""
-    with mpl.rc_context(HOUSE_STYLE):  # type: ignore[arg-type]
+    with mpl.rc_context(HOUSE_STYLE):
         yield
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import cmath
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Part, Points
-from validation.report.chapters.data import CaseGroup, CaseResults, Groups
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, Verdicts
 from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
@@ -21,7 +21,6 @@ from validation.report.figures.model import model_figure
 from validation.report.front import closed
 from validation.report.front.groups import PAPER, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
-from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
 from validation.theory import spectra
 
@@ -33,7 +32,7 @@ DISCOUNT = 0.98
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
 
 
-def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Part]:
+def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path) -> list[Part]:
     """Return the blocks of the first page."""
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
@@ -309,7 +308,7 @@ def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     )
 
 
-def verdict_line(verdicts: Sequence[VerdictRecord]) -> Callout:
+def verdict_line(verdicts: Verdicts) -> Callout:
     """Return the one line of verdicts."""
     if not verdicts:
         return Callout("No gate was judged.", "warn")

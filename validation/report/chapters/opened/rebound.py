@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, TableColumn, table
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, Verdicts, case_groups, verdicts_of
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, cell, short
@@ -19,7 +19,7 @@ from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.theory import landing
 
@@ -67,7 +67,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
 # ---- restitution --------------------------------------------------------------------------------------------------
 
 
-def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> Blocks:
+def restitution_blocks(data: dict[str, Any], impacts: CaseGroups, directory: Path) -> Blocks:
     """Return the restitution map as a figure, and what it is on a rigid contact."""
     omega = np.array(data["omega"])
     top = 1.05 * max(max(rows["high"]) for rows in data["schemes"].values())
@@ -144,7 +144,7 @@ def ratio(case: CaseResults) -> float:
     return case.scene.contact.stiffness / case.scene.block.young
 
 
-def exact_switches(maps: Sequence[CaseGroup]) -> dict[float, float]:
+def exact_switches(maps: CaseGroups) -> dict[float, float]:
     """Return the switches of the exact block by p/E."""
     switches = {}
     for group in maps:
@@ -155,7 +155,7 @@ def exact_switches(maps: Sequence[CaseGroup]) -> dict[float, float]:
     return switches
 
 
-def conclusion(maps: Sequence[CaseGroup]) -> str:
+def conclusion(maps: CaseGroups) -> str:
     """Say in one or two sentences what was gained, and how many solves it took."""
     parts = []
     for group in maps:
@@ -170,7 +170,7 @@ def conclusion(maps: Sequence[CaseGroup]) -> str:
     return f"{text[:1].upper()}{text[1:]}: a step too large for the contact spoils the motion, not the iteration."
 
 
-def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], directory: Path) -> Blocks:
+def map_blocks(maps: CaseGroups, verdicts: Verdicts, directory: Path) -> Blocks:
     """Return the maps over dt and p, and the budget of energy as a table."""
     if not maps:
         return []
@@ -245,7 +245,7 @@ def _number(value: float) -> str:
     return short(value, 3) if value < 100 else f"{value:.0f}"
 
 
-def budget_table(maps: Sequence[CaseGroup]) -> Table:
+def budget_table(maps: CaseGroups) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
     titles: tuple[Head, ...] = ("Scheme", "p", TableColumn("dt [ms]"), (LOST, "scheme"), *heads(BUDGET))
     rows = []

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.report.blocks import Blocks, Paragraph, Table, table
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
@@ -99,7 +99,7 @@ def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
     return short(values[0]) if values and isinstance(values[0], int | float) else DASH
 
 
-def swing_table(swings: Sequence[CaseGroup]) -> Table:
+def swing_table(swings: CaseGroups) -> Table:
     """Return quarter periods and rate ratios."""
     rows = []
     for group in swings:
@@ -122,7 +122,7 @@ def size(case: CaseResults) -> float:
     return PUSH / block.gravity / block.pulse_threshold(DURATION)
 
 
-def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
+def pulse_table(pulses: CaseGroups) -> Table:
     """Return peaks, and times of tipping, after pulses."""
     rows = []
     for group in pulses:
@@ -135,7 +135,7 @@ def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
     )
 
 
-def fall_table(groups: Sequence[CaseGroup]) -> Table:
+def fall_table(groups: CaseGroups) -> Table:
     """Return what the gates of blocks on slopes measured, with their bands."""
     rows = []
     for group in groups:
@@ -174,13 +174,13 @@ def pulse_panel(group: CaseGroup) -> ChartPanel:
     return ChartPanel(title, "t [s]", y_label, coloured(lines), levels={"": 1.0}, marks={"": DURATION})
 
 
-def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
+def finished_cases(groups: CaseGroups, name: str) -> list[CaseResults]:
     """Return the cases of a scene that have a history of DDA."""
     cases = itertools.chain.from_iterable(group.cases for group in groups if group.name == name)
     return [case for case in cases if "dda" in case.histories]
 
 
-def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
+def fall_panel(groups: CaseGroups) -> ChartPanel:
     """Return the turn of falling towers, and that of a rigid one."""
     curves = []
     for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "released")):
@@ -195,7 +195,7 @@ def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
     return ChartPanel("Toppling", "t [s]", "turn [rad]", lines)
 
 
-def area_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
+def area_panel(groups: CaseGroups) -> ChartPanel:
     """Return the area of towers by exact and by first-order rotation."""
     curves = []
     for name, words in (("toppling-fall", "exact"), ("toppling-growth", "first-order")):
