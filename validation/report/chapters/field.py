@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
@@ -150,13 +150,7 @@ def seconds(field: Field, program: ProgramLine) -> str:
 
 def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
-    rows = []
-    for program in installed_programs(field):
-        problems_by_cause: dict[str, list[str]] = {}
-        for cell in _cells(field, program):
-            if cell.verdict == FAIL:
-                problems_by_cause.setdefault(cell.cause, []).append(cell.problem + _right_until(cell))
-        rows += _lines(field, program, problems_by_cause)
+    rows = _lines(field, (FAIL,), lambda cell: cell.cause, _right_until)
     is_unexplained = any(row[-1] == NOT_EXPLAINED for row in rows)
     notes = (UNEXPLAINED_NOTE,) if is_unexplained else ()
     return table(("Program", "Problems", TableColumn("Cause", "fill")), rows, notes=notes)
@@ -171,27 +165,34 @@ def _right_until(cell: Cell) -> str:
 
 def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    rows = []
-    for program in installed_programs(field):
-        problems_by_reason: dict[str, list[str]] = {}
-        for cell in _cells(field, program):
-            if cell.verdict in (NOT_APPLICABLE, NOT_RUN):
-                reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
-                if cell.verdict == NOT_RUN:
-                    reason = f"no answer: {reason}"
-                problems_by_reason.setdefault(reason, []).append(cell.problem)
-        rows += _lines(field, program, problems_by_reason)
+    rows = _lines(field, (NOT_APPLICABLE, NOT_RUN), _reason)
     return table(("Program", "Problems", TableColumn("Reason", "fill")), rows)
 
 
-def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
-    """Return a line for each text, with the problems that it applies to; the first line names the program."""
-    lines: list[tuple[str, ...]] = []
-    title = program.title
-    for text, problems in problems_by_text.items():
-        names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)
-        lines.append((title, names, text))
-        title = ""
+def _reason(cell: Cell) -> str:
+    """Return why a problem has no verdict."""
+    reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
+    return f"no answer: {reason}" if cell.verdict == NOT_RUN else reason
+
+
+def _lines(
+    field: Field,
+    verdicts: Collection[str],
+    text_of: Callable[[Cell], str],
+    remark: Callable[[Cell], str] = lambda cell: "",
+) -> list[tuple[str, str, str]]:
+    """Return of each program a line for each text, with the problems of these verdicts that it applies to."""
+    lines = []
+    for program in installed_programs(field):
+        problems_by_text: dict[str, list[str]] = {}
+        for cell in _cells(field, program):
+            if cell.verdict in verdicts:
+                problems_by_text.setdefault(text_of(cell), []).append(cell.problem + remark(cell))
+        title = program.title
+        for text, problems in problems_by_text.items():
+            names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)
+            lines.append((title, names, text))
+            title = ""
     return lines
 
 

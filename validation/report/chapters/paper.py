@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table, TableColumn, table
-from validation.report.chapters.data import CaseGroup, CaseResults, Groups, groups_by_name
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
 from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
@@ -116,7 +116,7 @@ def figure_1(manifest: Manifest, groups: Groups, directory: Path) -> Blocks:
     data = manifest.get("data", {})
     if "schemes" not in data:
         return []
-    cases = groups["damping-map"].cases if "damping-map" in groups else ()
+    cases = cases_of(groups, "damping-map")
     caption = (
         "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
         "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."

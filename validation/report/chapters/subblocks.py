@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
-from validation.report.chapters.data import CaseGroup, CaseResults, Groups, groups_by_name
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
@@ -95,7 +96,7 @@ def _time_figures(groups: Groups, directory: Path) -> Blocks:
         group = groups.get(f"subblocks-{kind}")
         if group is None:
             continue
-        lines = [_line(name, group, _of_pattern(group, name), "fem", metric) for name in ("squares", "triangles")]
+        lines = [_line(name, group, _of_pattern(group.cases, name), "fem", metric) for name in ("squares", "triangles")]
         column = groups.get("subblocks-column")
         if kind == "axial" and column is not None:
             lines.append(_line("columns, μ = 0", column, list(column.cases), "bar", metric))
@@ -110,8 +111,8 @@ def _time_figures(groups: Groups, directory: Path) -> Blocks:
     return blocks
 
 
-def _of_pattern(group: CaseGroup, pattern: str) -> list[CaseResults]:
-    return [case for case in group.cases if case.scene.block.pattern == pattern]
+def _of_pattern(cases: Iterable[CaseResults], pattern: str) -> list[CaseResults]:
+    return [case for case in cases if case.scene.block.pattern == pattern]
 
 
 def _frequency_error(case: CaseResults) -> float | None:
@@ -145,11 +146,10 @@ def _patterns(group: CaseGroup) -> Table:
 def _growth(groups: Groups) -> Blocks:
     """Return one sentence on how the seconds of a step grow with the number of squares."""
     points = []
-    for name in ("subblocks-rocking", "subblocks-locking"):
-        for case in _of_pattern(groups[name], "squares") if name in groups else ():
-            row = case.rows.get("dda")
-            if row is not None and row.work.get("unknowns", 0) > 300:
-                points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
+    for case in _of_pattern(cases_of(groups, "subblocks-rocking", "subblocks-locking"), "squares"):
+        row = case.rows.get("dda")
+        if row is not None and row.work.get("unknowns", 0) > 300:
+            points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
     if len(dict(points)) < 2:
         return []
     unknowns, seconds = np.array(points).T

@@ -16,6 +16,7 @@ from validation.report.chapters.data import (
     CaseResults,
     DerivedRows,
     Groups,
+    cases_of,
     derived_rows,
     groups_by_name,
     verdicts_of,
@@ -85,6 +86,10 @@ def _courant(scene: Scene) -> float:
     return round(speed * scene.time.step * layer.blocks / layer.thickness, 6)
 
 
+def _scheme(case: CaseResults) -> str:
+    return SCHEMES.get(case.scene.time.delta, DASH)
+
+
 def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
     """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
     waves = []
@@ -97,9 +102,8 @@ def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int,
 
 def travels(groups: Groups, rows: DerivedRows) -> list[TravelledWaves]:
     """Return the waves measured in welded blocks, by case."""
-    group = groups.get("waves-blocks")
     measured = []
-    for case in group.cases if group else ():
+    for case in cases_of(groups, "waves-blocks"):
         waves = _waves(case, rows, "wave.left")
         if waves and case.scene.time.delta in SCHEMES:
             parts = (np.array([wave[f"wave.{part}"] for _, wave in waves]) for part in ("speed_error", "left"))
@@ -140,9 +144,8 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
     axes: dict[str, Any] = {"x_range": (7.0, 115.0), "logarithmic": (True, False)}
     axes["x_ticks"] = {float(blocks): str(blocks) for blocks in BLOCKS}
     label = "blocks a wavelength"
-    shares = {
-        share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)
-    }  # a zero would meet the other axis' last tick
+    # A zero would meet the other axis' last tick.
+    shares = {share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)}
     return [
         ChartPanel("Error of the phase speed [%]", label, "", speeds, y_range=(-3.0, 4.0), levels={"": 0.0}, **axes),
         ChartPanel(
@@ -154,20 +157,19 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
 def _others(groups: Groups, rows: DerivedRows) -> Table:
     """Return the waves in glued blocks, under kinetic damping, and in shear."""
     lines = []
-    for name in ("waves-glue", "waves-discount", "waves-shear"):
-        for case in groups[name].cases if name in groups else ():
-            column = case.scene.column
-            if column is None:
-                continue
-            layer = column.layer[0]
-            glue = DASH
-            if column.glue is not None:
-                glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
-            time = case.scene.time
-            scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
-            for count, wave in _waves(case, rows, "wave.left"):
-                numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
-                lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
+    for case in cases_of(groups, "waves-glue", "waves-discount", "waves-shear"):
+        column = case.scene.column
+        if column is None:
+            continue
+        layer = column.layer[0]
+        glue = DASH
+        if column.glue is not None:
+            glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
+        time = case.scene.time
+        scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
+        for count, wave in _waves(case, rows, "wave.left"):
+            numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
+            lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
     return table(
         ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
         lines,
@@ -181,12 +183,10 @@ def _others(groups: Groups, rows: DerivedRows) -> Table:
 def _joints(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a joint of kj = rho c w lets through."""
     lines = []
-    for name, group in groups.items():
-        for case in group.cases if name.startswith("waves-joint") else ():
-            for count, wave in _waves(case, rows, "joint.transmitted"):
-                parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
-                scheme = SCHEMES.get(case.scene.time.delta, DASH)
-                lines.append((scheme, str(count), f"{_courant(case.scene):g}", *parts))
+    for case in cases_of(groups, *(name for name in groups if name.startswith("waves-joint"))):
+        for count, wave in _waves(case, rows, "joint.transmitted"):
+            parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
+            lines.append((_scheme(case), str(count), f"{_courant(case.scene):g}", *parts))
     caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
     return table(("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"), lines, caption)
 
@@ -195,12 +195,11 @@ def _base(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a transmitting base of the column's own impedance sends back."""
     lines = []
     counts: list[int] = []
-    for case in groups["waves-base"].cases if "waves-base" in groups else ():
+    for case in cases_of(groups, "waves-base"):
         waves = _waves(case, rows, "base.reflected")
         counts = [count for count, _ in waves]
-        scheme = SCHEMES.get(case.scene.time.delta, DASH)
         reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
-        lines.append((scheme, f"{_courant(case.scene):g}", *reflected))
+        lines.append((_scheme(case), f"{_courant(case.scene):g}", *reflected))
     caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
     return table(("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts))), lines, caption)
 

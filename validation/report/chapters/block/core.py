@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Table, table
-from validation.report.chapters.data import Groups, groups_by_name
+from validation.report.chapters.data import Groups, cases_of, groups_by_name
 from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import drift_panel, drift_values, opening, scene_section
@@ -100,8 +100,7 @@ def mesh_errors(groups: Groups) -> tuple[np.ndarray, np.ndarray] | None:
 def lateral_table(groups: Groups) -> Table:
     """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
     rows = []
-    group = groups.get("poisson-statics")
-    for case in group.cases if group else ():
+    for case in cases_of(groups, "poisson-statics"):
         dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
         ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
         rows.append((case.label, short(case.scene.block.poisson), *cells(AT_REST, case), ratio))

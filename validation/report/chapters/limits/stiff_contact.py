@@ -9,8 +9,9 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.chapters.measures import MetricColumn, cells
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, plain, short
+from validation.report.chapters.text import short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
@@ -20,6 +21,11 @@ from validation.runs.results import Results
 COLORS = ("#0072b2", "#d55e00", "#56b4e9", "#8c6d1f")  # of quantities and schemes, which are no solvers
 SCHEMES = {0.5: "(1/2, 1)", 0.5625: "(9/16, 1)"}
 QUANTITIES = ("displacement", "pressure")
+SETTLING = (
+    MetricColumn("displacement.fine_settling_step", 1.0, "displ.", decimals=0),
+    MetricColumn("pressure.fine_settling_step", 1.0, "press.", decimals=0),
+    MetricColumn("contact.spectral_radius", 1.0, "|λ| of the contact", digits=8),
+)
 
 
 def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
@@ -105,17 +111,11 @@ def conclusion(cases_by_ratio: CasesByRatio) -> str:
 
 def settling_table(cases_by_ratio: CasesByRatio) -> Table:
     """Return steps to settle and the contact mode's root by p/E."""
-    of_scheme = ("displ.", "press.", "|λ| of the contact")
+    of_scheme = [measure.title for measure in SETTLING]
     rows = []
     for ratio, row in cases_by_ratio.items():
-        cells = [short(ratio)]
-        for alpha in SCHEMES:
-            case = row.get(alpha)
-            steps = [_steps(case, quantity) for quantity in QUANTITIES]
-            cells += [DASH if n is None else f"{n:.0f}" for n in steps]
-            radius = None if case is None else case.number("dda", "contact.spectral_radius")
-            cells.append(DASH if radius is None else plain(radius, 8))
-        rows.append(tuple(cells))
+        measured = [cells(SETTLING, row.get(alpha)) for alpha in SCHEMES]
+        rows.append((short(ratio), *itertools.chain(*measured)))
     return table(
         ("p / E", *((f"α, δ = {name}", *of_scheme) for name in SCHEMES.values())),
         rows,

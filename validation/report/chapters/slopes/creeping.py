@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.report.blocks import Blocks, FigureBlock, Paragraph, Table, table
-from validation.report.chapters.data import CaseResults, Groups, groups_by_name, verdicts_of
+from validation.report.chapters.data import CaseResults, Groups, cases_of, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import cell, plain
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
@@ -53,9 +53,9 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
 
 def over_time_and_step(groups: Groups, directory: Path) -> FigureBlock:
     """Return the figure of slides over time and of slip over the step."""
-    exact = [case for case in cases(groups, study.EXACT) if case.scene.contact.friction == 30]
+    exact = [case for case in cases_of(groups, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
-    steps = cases(groups, study.STEPS)
+    steps = cases_of(groups, study.STEPS)
     for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, AMBER)):
         lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
     lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
@@ -77,11 +77,6 @@ def over_time_and_step(groups: Groups, directory: Path) -> FigureBlock:
     return saved(chart_figure(panels, margins=BESIDE), directory, "creep.svg", CAPTION)
 
 
-def cases(groups: Groups, name: str) -> list[CaseResults]:
-    """Return the cases of a scene."""
-    return list(groups[name].cases) if name in groups else []
-
-
 def of(case: CaseResults, kind: str) -> bool:
     """Whether a case is of a scheme from the usual start, without a discount."""
     t = case.scene.time
@@ -97,7 +92,7 @@ def at(case: CaseResults, step: float) -> bool:
 
 def lagged(groups: Groups) -> list[CaseResults]:
     """Return the cases of lagged friction on the scene's own springs."""
-    return [case for case in cases(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
+    return [case for case in cases_of(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
 
 
 def trace(words: str, case: CaseResults, solver: str, color: str) -> ChartLine:
@@ -134,7 +129,7 @@ def across(case: CaseResults) -> ChartLine:
 
 def by_step(groups: Groups) -> Table:
     """Return the slip in a second by step and rule."""
-    steps = cases(groups, study.STEPS)
+    steps = cases_of(groups, study.STEPS)
     rows = []
     for step, program_slip in study.PROGRAM.items():
         slips = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
@@ -151,9 +146,9 @@ def by_step(groups: Groups) -> Table:
 
 def by_stiffness(groups: Groups) -> Blocks:
     """Return the table of the creep on springs of any stiffness, where a run has it."""
-    damped = cases(groups, study.DAMPED)
+    damped = cases_of(groups, study.DAMPED)
     rows = []
-    for case in sorted(cases(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
+    for case in sorted(cases_of(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
         p = case.scene.contact.stiffness
         stopping = [one for one in damped if one.scene.contact.stiffness == p]
         by_step_alone = next((slip(one) for one in stopping if one.scene.time.discount == 1), None)

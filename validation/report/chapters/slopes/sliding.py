@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from validation.report.blocks import Block, Blocks, FigureBlock, Heading, Paragraph, Table, table
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
+from validation.report.chapters.data import CaseGroup, CaseResults, cases_of, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, cell, plain
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
@@ -42,17 +41,13 @@ EXPLANATION = (
 def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: figure, run-outs, thresholds."""
     groups = groups_by_name(results, manifest)
-
-    def cases_of(*names: str) -> list[CaseResults]:
-        return list(itertools.chain.from_iterable(groups[name].cases for name in names if name in groups))
-
     blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
     if groups.get(study.SLIDING) and groups.get(study.DRAG):
         blocks.append(trajectories(groups[study.SLIDING], groups[study.DRAG], directory))
-    slides = cases_of(study.SLIDING, study.AVERAGE, study.DRAG)
+    slides = cases_of(groups, study.SLIDING, study.AVERAGE, study.DRAG)
     if slides:
         blocks += [Heading("Run-out", 2), run_outs(slides)]
-    starts = cases_of(study.THRESHOLD, study.MANUAL)
+    starts = cases_of(groups, study.THRESHOLD, study.MANUAL)
     if starts:
         blocks += thresholds(starts)
     shaken: list[ShakenCase] = []
