@@ -22,6 +22,16 @@ def timed(scene: Scene, **values: Any) -> Scene:
     return scene.model_copy(update={"time": scene.time.model_copy(update=values)})
 
 
+def constant(scene: Scene, **values: Any) -> Scene:
+    """Return a scene under constant acceleration without a discount."""
+    return timed(scene, alpha=0.5, delta=1.0, gg=1.0, **values)
+
+
+def average(scene: Scene, gg: float = 1.0) -> Scene:
+    """Return a scene under average acceleration and a discount per step."""
+    return timed(scene, alpha=0.25, delta=0.5, gg=gg)
+
+
 def stiffer(scene: Scene, ratio: float) -> Scene:
     """Return the scene with springs of p = ratio E."""
     contact = scene.contact.model_copy(update={"stiffness": ratio * scene.block.young})

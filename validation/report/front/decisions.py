@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table, table
 from validation.report.chapters.data import Groups
 from validation.report.chapters.measures import MetricColumn, cells, heads
-from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.chapters.text import DASH, cell, percent, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
@@ -50,31 +50,39 @@ def _rule(text: str) -> Callout:
     return Callout(f"Rule. {text}", "rule")
 
 
+def _damping_chart(
+    scheme: str,
+    scenes: Mapping[str, Scene],
+    y_range: tuple[float, float],
+    marks: Mapping[str, float],
+    levels: Mapping[str, float],
+) -> ChartPanel:
+    """Return the damping ratio of the first axial mode over the time step, dashed where the discount is a rate."""
+    steps = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
+    lines = []
+    for (name, scene), color in zip(scenes.items(), SETTINGS, strict=False):
+        dash = () if scene.time.gg_rate is None else DASHED
+        lines.append(ChartLine(name, 1e3 * steps, 100 * closed.over_steps(scene, steps), color, dash))
+    title = f"Damping ratio of the first axial mode [%], {scheme}"
+    return ChartPanel(title, "time step dt [ms]", "", lines, RANGE, y_range, (True, True), marks, levels)
+
+
 # ---- which time step ----------------------------------------------------------------------------------------------
 
 
 def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the time step."""
-    scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
-    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
-    lines = [
-        ChartLine(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
-        for r, scene, color in zip(RATIOS, scenes, SETTINGS, strict=False)
-    ]
-    greatest = max(float(np.nanmax(line.y)) for line in lines)
+    scenes = [closed.stiffer(closed.constant(paper), r) for r in RATIOS]
     turn = closed.most_damped(scenes[0])
     transit = 1e3 * spectra.transit(paper)
-    chart = ChartPanel(
-        "Damping ratio of the first axial mode [%], constant acceleration",
-        "time step dt [ms]",
-        "",
-        lines,
-        RANGE,
+    chart = _damping_chart(
+        "constant acceleration",
+        {f"p = {closed.ratio_of(scene):g}E": scene for scene in scenes},
         (0.05, 60.0),
-        (True, True),
         {f"a/c = {transit:.3g} ms": transit},
         {f"{100 * xi:g} %": 100 * xi for xi in TARGET_DAMPING},
     )
+    greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     caption = (
         f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % at ω₁ dt = {turn:.3g}, and falls "
         "beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
@@ -121,10 +129,9 @@ def _as_run(groups: Groups) -> Blocks:
         for pair in (("dda", "bar"), ("bar", "continuum")):
             errors += [group.number_of_pair(case, *pair, f"{name}.l2") for name in ("displacement", "pressure")]
         minimum = case.number("dda", "pressure.minimum")
-        tension = DASH
-        if minimum is not None:
-            hidden = minimum < -closed.NOISE * case.scene.load.pressure
-            tension = plain(minimum / 1e6, 3) if hidden else "none"
+        tension = cell(minimum, 1e-6, 3)
+        if minimum is not None and minimum >= -closed.NOISE * case.scene.load.pressure:
+            tension = "none"
         excess = peak_excess(case)
         peak = DASH if excess is None else signed_percent(excess)
         shares = (case.number("dda", "mode1.damping"), *errors)
@@ -157,7 +164,7 @@ def _as_run(groups: Groups) -> Blocks:
 
 def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the stiffness of the springs."""
-    base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
+    base = closed.constant(paper, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
     scenes = [closed.stiffer(base, float(r)) for r in grid]
     share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
@@ -251,26 +258,15 @@ def spring_table(groups: Groups, base: Scene) -> Table:
 
 def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the discount."""
-    base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
-    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
-    lines = []
-    for gg, color in zip(DISCOUNTS[1:], SETTINGS, strict=False):
-        scene = closed.timed(base, gg=gg)
-        lines.append(ChartLine(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
+    base = closed.average(paper)
     rate = closed.rate_for(base, 0.05)
     at_rate = closed.timed(base, gg_rate=rate, gg=1.0)
-    lines.append(
-        ChartLine(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), SETTINGS[3], DASHED)
-    )
+    scenes = {f"gg = {gg:g}": closed.timed(base, gg=gg) for gg in DISCOUNTS[1:]}
     turns = ", ".join(short(spectra.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
-    chart = ChartPanel(
-        "Damping ratio of the first axial mode [%], average acceleration",
-        "time step dt [ms]",
-        "",
-        lines,
-        RANGE,
+    chart = _damping_chart(
+        "average acceleration",
+        scenes | {f"gg = exp(−{rate:.3g} dt)": at_rate},
         (0.1, 1000.0),
-        (True, True),
         {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
         {"critical": 100.0},
     )

@@ -175,7 +175,7 @@ def springs(groups: Groups) -> tuple[str, str] | None:
         return None
     usual_steps, stiff_steps, fine_displacement, fine_pressure = texts
     radius = closed.contact_radius(stiff.scene)
-    constant = closed.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
+    constant = closed.constant(usual.scene)
     share = percent(closed.spring_share(constant))
     return (
         "Which springs?",
@@ -191,7 +191,7 @@ def springs(groups: Groups) -> tuple[str, str] | None:
 
 def discount(paper: Scene) -> tuple[str, str]:
     """Say what gg = 0.98 does."""
-    kinetic = closed.timed(paper, alpha=0.25, delta=0.5, gg=DISCOUNT)
+    kinetic = closed.average(paper, DISCOUNT)
     ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
     return (
         f"What does gg = {DISCOUNT:g} do?",
@@ -297,7 +297,7 @@ def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Arra
 def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(groups)
-    turn = closed.most_damped(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
+    turn = closed.most_damped(closed.constant(paper))
     claim = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
     if len(rows) > 1:
         claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
