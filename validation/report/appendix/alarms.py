@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.report.blocks import Blocks, Heading, TableColumn, table
 from validation.report.chapters.data import Groups, labels_of
+from validation.report.chapters.text import capital
 from validation.runs.records import AlarmRecord
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
@@ -52,7 +53,7 @@ def _sentence(alarm: AlarmRecord) -> str:
     sentence = alarm["sentence"]
     first, *remainder = sentence.split()
     is_symbol = first in ("dt", "gg") or "_" in first or remainder[:1] == ["="]  # which stays as it is written
-    return f"{sentence if is_symbol else sentence[:1].upper() + sentence[1:]}."
+    return f"{sentence if is_symbol else capital(sentence)}."
 
 
 def tension(values: Mapping[str, float]) -> tuple[bool, float]:

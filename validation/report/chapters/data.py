@@ -80,6 +80,11 @@ class CaseGroup:
         longest = max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
         return None if longest is None else dict(longest["metrics"])
 
+    def numbers_of_pair(self, solver: str, reference: str, metric: str) -> list[float]:
+        """Return a metric of a pair for the cases where it is a number."""
+        values = [self.number_of_pair(case, solver, reference, metric) for case in self.cases]
+        return [value for value in values if value is not None]
+
     def number_of_pair(self, case: CaseResults, solver: str, reference: str, metric: str) -> float | None:
         """Return a metric of a pair where it is a number."""
         value = (self.compared(case, solver, reference) or {}).get(metric)

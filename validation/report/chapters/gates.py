@@ -5,7 +5,7 @@ from __future__ import annotations
 from validation.metrics.catalogue import is_count
 from validation.report.blocks import Blocks, Callout, Heading, TableColumn, table
 from validation.report.chapters.data import Verdicts
-from validation.report.chapters.text import bounded, cell, short
+from validation.report.chapters.text import bounded, capital, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
@@ -44,7 +44,7 @@ def reason(v: VerdictRecord) -> str:
     """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
     uncertainty = v.get("reference_uncertainty") or 0.0
     width = f" ± {short(uncertainty, 2)}" if uncertainty else ""
-    why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
+    why = f" {capital(v['why'])}." if v.get("why") else ""
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
 
 

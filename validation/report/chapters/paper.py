@@ -12,7 +12,7 @@ import numpy as np
 
 from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
-from validation.report.chapters.text import DASH, bounded, short
+from validation.report.chapters.text import DASH, bounded, capital, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
@@ -93,7 +93,7 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
         measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
         statement = f"{claim['says']} ({claim['place']})"
-        why = f"{claim['why'][:1].upper()}{claim['why'][1:]}.{condition}"
+        why = f"{capital(claim['why'])}.{condition}"
         lines.append((claim["id"], word, statement, why, measured))
     return table(
         (

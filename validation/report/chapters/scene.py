@@ -18,6 +18,7 @@ from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
     AS_STATED,
     bounded,
+    capital,
     load_size,
     percent,
     plain,
@@ -106,7 +107,7 @@ def conclusion(group: CaseGroup) -> str:
     """Return one plain sentence on a scene, computed from its comparisons and verdicts."""
     parts = (_agreement(group), gate_count(group.verdicts), _tension(group), _damped_agreement(group))
     text = "; ".join(part for part in parts if part)
-    return text[:1].upper() + text[1:] + "."
+    return f"{capital(text)}."
 
 
 def _agreement(group: CaseGroup) -> str:
@@ -115,8 +116,7 @@ def _agreement(group: CaseGroup) -> str:
     for solver, reference in dict.fromkeys((*pairs, *parts_of(group.cases[0]).values(), *others)):
         differences_in_words = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
-            values = [group.number_of_pair(case, solver, reference, metric) for case in group.cases]
-            numbers = [value for value in values if value is not None]
+            numbers = group.numbers_of_pair(solver, reference, metric)
             if numbers:
                 differences_in_words.append(f"{span(numbers)} in {name}")
         if differences_in_words:

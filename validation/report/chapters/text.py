@@ -135,6 +135,11 @@ def bounded(value: float, text: str) -> str:
     return f"<10{raised(-12)}" if isinstance(value, float) and abs(value) <= 1e-12 else text
 
 
+def capital(text: str) -> str:
+    """Return a sentence with a capital letter."""
+    return text[:1].upper() + text[1:]
+
+
 def percent(value: float) -> str:
     """Return a fraction in per cent, or as a power of ten below 0.01 %."""
     return f"{short(100 * value, 3)}\u00a0%" if value == 0 or value >= 1e-4 else power(value)

@@ -22,7 +22,7 @@ from validation.report.chapters.data import (
     verdicts_of,
 )
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.chapters.text import DASH, capital, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import engineering
@@ -261,4 +261,4 @@ def _site_sentence(site: CaseGroups) -> str:
                 f"with {scheme} DDA is {percent(surface)} off at the surface and {percent(base)} off on the base"
             )
     text = f"{'; '.join(parts)} (relative L2 against the exact layers)."
-    return text[:1].upper() + text[1:] if parts else ""
+    return capital(text) if parts else ""

@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
+from validation.report.figures.charts import ChartLine, draw_chart_line
 from validation.report.figures.curves import (
     COLUMNS,
     HAIR,
@@ -26,12 +27,10 @@ from validation.report.figures.curves import (
     engineering,
     is_sparse,
     style_of,
-    thin,
 )
 from validation.report.figures.histories import (
     LETTER,
     Margins,
-    draw_line,
     house_style,
     label_ends,
     outer_ticks,
@@ -216,7 +215,7 @@ def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
         axes.plot(x, y, "o", ms=2.0, color=style_of(solver).color, zorder=2 + style_of(solver).layer)
         return
     if not dense:
-        draw_line(axes, solver, *thin(x, y))
+        draw_chart_line(axes, ChartLine(solver, x, y))
         return
     style = style_of(solver)
     middles, low, high = band(x, y)
@@ -239,7 +238,8 @@ def _difference_row(row: list[Axes], panels: HistoryPanels, column: str, names: 
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
         axes.yaxis.set_minor_locator(NullLocator())
         for solver, (x, y) in lines.items():
-            draw_line(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
+            visible = np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan)
+            draw_chart_line(axes, ChartLine(solver, x, visible))
         _time_axis(axes, panel)
     ends: dict[str, float] = {}
     for lines in curves:
@@ -251,7 +251,8 @@ def _difference_row(row: list[Axes], panels: HistoryPanels, column: str, names: 
 def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:
     share_left(row, count, label)
     row[0].yaxis.set_label_coords(-9.0 / size_of(row[0])[0], 0.5)
-    label_ends(row[count - 1], ends, names)
+    labels = [(y, names.get(solver, solver), style_of(solver).color) for solver, y in ends.items()]
+    label_ends(row[count - 1], labels)
 
 
 def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]]) -> None:

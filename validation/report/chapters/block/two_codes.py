@@ -34,8 +34,7 @@ def apart(groups: list[CaseGroup]) -> Table:
     for group in groups:
         cells = []
         for metric in MEASURES:
-            values = [group.number_of_pair(case, *CODES, metric) for case in group.cases]
-            worst = max((value for value in values if value is not None), default=None)
+            worst = max(group.numbers_of_pair(*CODES, metric), default=None)
             cells.append(DASH if worst is None else bounded(worst, power(worst)))
         if set(cells) != {DASH}:
             rows.append((group.title, str(len(group.cases)), *cells))

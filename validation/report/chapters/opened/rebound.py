@@ -14,7 +14,7 @@ from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, Ta
 from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, Verdicts, case_groups, verdicts_of
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, cell, short
+from validation.report.chapters.text import DASH, capital, cell, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
@@ -167,7 +167,7 @@ def conclusion(maps: CaseGroups) -> str:
             gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
     text = "; ".join(parts)
-    return f"{text[:1].upper()}{text[1:]}: a step too large for the contact spoils the motion, not the iteration."
+    return f"{capital(text)}: a step too large for the contact spoils the motion, not the iteration."
 
 
 def map_blocks(maps: CaseGroups, verdicts: Verdicts, directory: Path) -> Blocks:
