@@ -277,7 +277,7 @@ def raised(kind: str, scene: str, **values: float) -> Any:
 def test_of_the_alarms_of_a_kind_the_worst_is_shown(kind: str, mild: Any, worst: Any) -> None:
     alarms = [raised(kind, "a", **mild), raised(kind, "b", **worst)]
     for ordered in (alarms, alarms[::-1]):
-        assert remark(ordered, {"a": "dt = 1", "b": "dt = 2"}) == "dt = 2: The alarm of b."
+        assert remark(ordered, {"a": "dt = 1", "b": "dt = 2"}) == "dt = 2: the alarm of b."
 
 
 @pytest.mark.parametrize(

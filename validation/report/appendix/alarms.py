@@ -45,7 +45,7 @@ def remark(alarms: Alarms, labels: Mapping[str, str]) -> str:
         return _sentence(alarms[0])
     worst = max(alarms, key=lambda alarm: severity(alarm["values"]))
     label = labels.get(worst["scene"], "")
-    return f"{label}: {_sentence(worst)}" if label else _sentence(worst)
+    return f"{label}: {worst['sentence']}." if label else _sentence(worst)
 
 
 def _sentence(alarm: AlarmRecord) -> str:
