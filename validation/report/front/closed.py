@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from validation.advice.spectra import damping_ratio
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -44,8 +44,18 @@ def ratio_of(scene: Scene) -> float:
 
 
 def first_damping(scene: Scene) -> float:
-    """Return xi of the DDA block's first axial mode [-], at least 1 where it creeps; NaN beyond its real roots."""
-    return damping_ratio(scene, spectra.dda_frequency(scene))
+    """Return xi of the DDA block's first axial mode [-], at least 1 where it creeps; NaN where a root is not positive.
+
+    A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
+    """
+    frequency = spectra.dda_frequency(scene)
+    first, second = spectra.roots(scene, frequency)
+    if first.imag:
+        return spectra.damping_ratio(scene, frequency)
+    if min(first.real, second.real) <= 0:
+        return math.nan
+    logs = math.log(first.real), math.log(second.real)
+    return -sum(logs) / (2 * math.sqrt(logs[0] * logs[1])) if logs[0] * logs[1] > 0 else math.nan
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
