@@ -117,26 +117,6 @@ def test_ringing_falls_to_one_per_cent_in_so_many_steps(root: float, radius: flo
     assert (None if alarm is None else alarm.sentence) == words
 
 
-def test_the_worst_of_a_scenes_alarms_is_told_with_its_numbers() -> None:
-    labels = {"s": "dt = 1 s", "t": "dt = 2 s"}
-    agreed = [Alarm(AGREEMENT, scene, "", {"agreement": 0.0123, "removed": removed, "time error": 0.456}).record()
-              for scene, removed in (("s", 0.87), ("t", 0.86))]  # fmt: skip
-    assert appendix_alarms.agreement(agreed, labels) == (
-        "dt = 1 s: DDA within 1.23\u00a0% of the elastic block, of whose motion damping removed 87\u00a0%; both are "
-        "45.6\u00a0% off in time."
-    )
-    values = {"dda.minimum": -1.234e6, "dda.time": 0.0567, "dda.duration": 0.0089}
-    bar = {"bar.minimum": -2e6, "bar.time": 0.01, "bar.duration": 0.002}
-    less = Alarm(TENSION, "s", "", values | {"dda.minimum": -1e6}).record()
-    pulled = Alarm(TENSION, "t", "", values | bar).record()
-    said = "dda −1.23 MPa at 56.7 ms, tension for 8.9 ms."
-    assert appendix_alarms.tension([less, pulled], labels) == said
-    assert appendix_alarms.tension([Alarm(TENSION, "s", "", bar).record()], labels).startswith("bar −2.00 MPa at 10 ms")
-    rings = [Alarm(RINGING, "s", "", {"root": a, "radius": b}).record() for a, b in ((-0.95, 0.98), (-0.9, 0.9))]
-    assert appendix_alarms.ringing(rings, labels) == ("dt = 1 s: root −0.9500, |λ| = 0.9800: 228 steps to fall to 1 %.")
-    assert "∞ steps" in appendix_alarms.ringing([Alarm(RINGING, "s", "", {"root": -1, "radius": 1}).record()], labels)
-
-
 def test_alarms_are_told_by_kind_scene_and_number_of_cases() -> None:
     def group(name: str, *kinds: str) -> Any:
         own = tuple(Alarm(kind, f"{name}[{i}]", f"it is {name}", {"root": -1.0, "radius": 1.0}).record()

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gallery.samples import unpacked
 
 from validation.gallery.cases import GalleryScene
-from validation.gallery.histories import LEAST, MOST, STEPS, Sampling, lines_of, packed, samples_for, unpacked
+from validation.gallery.histories import LEAST, MOST, STEPS, Sampling, lines_of, packed, samples_for
 from validation.gallery.scene_data import FEWEST, MOST_LINES, all_lines, drawn, most_lines
 from validation.gallery.svg import Sheet, slim
 from validation.report.chapters.data import CaseResults

@@ -109,8 +109,9 @@ def test_the_verdicts_of_the_results_are_in_the_tables(gallery: dict[str, str], 
 
 def test_histories_and_colours_are_those_of_the_results(gallery: dict[str, str], results: Results) -> None:
     import numpy as np
+    from gallery.samples import unpacked
 
-    from validation.gallery.histories import STEPS, unpacked
+    from validation.gallery.histories import STEPS
     from validation.solvers.registry import get_solver
 
     page = next(data for data in data_of(gallery["scene-passing.html"]) if "cases" in data)

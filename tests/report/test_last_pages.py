@@ -12,8 +12,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, names_at
 
+from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.problems.quantities import Quantity
-from validation.report.appendix import alarms as appendix_alarms
 from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import MOST_LINES, gate_pages
 from validation.report.appendix.glossary import WORDS
@@ -260,28 +260,24 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
 
 
-def raised(scene: str, **values: float) -> Any:
-    named = {name.replace("_", " " if name == "time_error" else "."): value for name, value in values.items()}
-    return {"kind": "k", "scene": scene, "sentence": "s", "values": named}
+def raised(kind: str, scene: str, **values: float) -> Any:
+    named = {name.replace("_", "."): value for name, value in values.items()}
+    return {"kind": kind, "scene": scene, "sentence": f"the alarm of {scene}", "values": named}
 
 
 @pytest.mark.parametrize(
-    ("tell", "told"),
+    ("kind", "mild", "worst"),
     [
-        ("agreement", "dt = 2: DDA within 1\u00a0% of the elastic block, of whose motion damping removed 90\u00a0%; "
-         "both are 30\u00a0% off in time."),
-        ("tension", "dda −2.50 MPa at 4 ms, tension for 6 ms."),
-        ("ringing", "dt = 2: root −0.9900, |λ| = 0.9900: 458 steps to fall to 1 %."),
+        (AGREEMENT, {"removed": 0.6, "agreement": 0.01}, {"removed": 0.9, "agreement": 0.2}),
+        (TENSION, {"dda_minimum": -1e6, "dda_time": 0.1}, {"dda_minimum": -2.5e6, "dda_time": 4e-3}),
+        (TENSION, {"fem_minimum": -9e6}, {"dda_minimum": -1e6, "fem_minimum": -2e6}),  # of the judged solver
+        (RINGING, {"root": -0.95, "radius": 0.95}, {"root": -0.99, "radius": 0.99}),
     ],
-)  # fmt: skip
-def test_of_the_alarms_of_a_kind_the_worst_is_told_with_its_numbers(tell: str, told: str) -> None:
-    mild = raised("a", agreement=0.2, removed=0.6, time_error=0.1, dda_minimum=-1e6, dda_time=0.1, dda_duration=0.2,
-                  root=-0.95, radius=0.95)  # fmt: skip
-    worst = raised("b", agreement=0.01, removed=0.9, time_error=0.3, dda_minimum=-2.5e6, dda_time=4e-3,
-                   dda_duration=6e-3, root=-0.99, radius=0.99)  # fmt: skip
-    labels = {"a": "dt = 1", "b": "dt = 2"}
-    for alarms in ([mild, worst], [worst, mild]):
-        assert getattr(appendix_alarms, tell)(alarms, labels) == told
+)
+def test_of_the_alarms_of_a_kind_the_worst_is_shown(kind: str, mild: Any, worst: Any) -> None:
+    alarms = [raised(kind, "a", **mild), raised(kind, "b", **worst)]
+    for ordered in (alarms, alarms[::-1]):
+        assert remark(ordered, {"a": "dt = 1", "b": "dt = 2"}) == "dt = 2: the alarm of b."
 
 
 @pytest.mark.parametrize(

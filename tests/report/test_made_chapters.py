@@ -224,4 +224,5 @@ def test_an_impact_has_its_instants_in_milliseconds_and_its_force_in_meganewtons
     metrics = {"switches.first_closing": 0.5, "switches.first_opening": 0.75, "switches.second_closing": 0.875,
                "contact.restitution": 0.625, "contact.peak_force": 2.5e6, "contact.penetration": 4e-3}  # fmt: skip
     case = made_case(load_scene("drop").expand()[0], {"dda": metrics})
-    assert [float(cell) for cell in impacts.table(made_group(case)).rows[0][2:]] == [500, 750, 875, 0.625, 2.5, 4]
+    (row,) = impacts.quantity_table(made_group(case)).rows
+    assert [float(cell) for cell in row[2:]] == [500, 750, 875, 0.625, 2.5, 4]

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from validation.report.chapters.data import CaseResults, spoken_of
-from validation.report.chapters.text import case_labels
+from validation.report.chapters.data import CaseResults, cases_with, spoken_of
 from validation.runs.case_name import scene_of
 from validation.runs.records import CaseRecord, Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.runs.row import Row
 from validation.runs.text import shown
-from validation.scenes.scene import parse_scene
 from validation.solvers.registry import FULL
 
+PlainData = dict[str, Any]  # for a template or a script of a page
 _DIRECTORIES = re.compile(r"(?<![\w.:/-])(?:[A-Za-z]:[\\/]|/)(?:[^\s/\\'\"]+[\\/])+")
 
 
@@ -80,7 +79,13 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
     page = _pages()
     rows = results.rows()
     verdicts = results.readable_verdicts()
-    scenes = {name: _scene(name, scene, page("scene", name), rows, verdicts) for name, scene in records.items()}
+    scenes = {}
+    for name, scene in records.items():
+        by_case = {case: [*by_solver.values()] for case, by_solver in scene.records.items()}
+        verdicts_of_scene = tuple(v for v in verdicts if scene_of(v["scene"]) == name)
+        cases = tuple(_without_repeats(case) for case in cases_with(by_case, rows))
+        title = scene.title or name
+        scenes[name] = GalleryScene(name, title, page("scene", name), cases, tuple(scene.studies), verdicts_of_scene)
     studies = [
         GalleryStudy(
             name,
@@ -94,23 +99,9 @@ def studies_and_scenes(results: Results, names: Iterable[str]) -> tuple[list[Gal
     return studies, list(scenes.values())
 
 
-def _scene(
-    name: str, of_scene: _SceneRecords, page: str, rows: Mapping[str, Row], verdicts: Iterable[VerdictRecord]
-) -> GalleryScene:
-    """Return a scene; solvers that repeat another one in full are left out."""
-    names = list(of_scene.records)
-    scenes = []
-    for case, records in of_scene.records.items():
-        first_record = next(iter(records.values()))
-        scenes.append(parse_scene(first_record["definition"], case))
-    labels = case_labels(names, scenes)
-    cases = []
-    for case, label, scene in zip(names, labels, scenes, strict=True):
-        keys = {solver: record["key"] for solver, record in of_scene.records[case].items() if not solver.endswith(FULL)}
-        rows_by_solver = {solver: rows[key] for solver, key in keys.items() if key in rows}
-        cases.append(CaseResults(case, label, scene, rows_by_solver))
-    verdicts_of_scene = tuple(v for v in verdicts if scene_of(v["scene"]) == name)
-    return GalleryScene(name, of_scene.title or name, page, tuple(cases), tuple(of_scene.studies), verdicts_of_scene)
+def _without_repeats(case: CaseResults) -> CaseResults:
+    """Return a case without the rows of solvers that repeat another one in full."""
+    return replace(case, rows={solver: row for solver, row in case.rows.items() if not solver.endswith(FULL)})
 
 
 def _pages() -> Callable[[str, str], str]:

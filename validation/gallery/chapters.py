@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from validation.errors import InputError
-from validation.gallery.cases import GalleryScene, GalleryStudy, readable
+from validation.gallery.cases import GalleryScene, GalleryStudy, PlainData, readable
 from validation.gallery.svg import Sheet
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Table
 from validation.report.chapters.registry import chapter_of
-from validation.report.names import Readable, escaped, unescaped
+from validation.report.names import Readable, escaped, unescaped, with_texts
 from validation.runs.results import Results
 from validation.runs.text import printable
 
@@ -63,10 +62,10 @@ def scene_of_figure(drawing: Drawing, scenes: Sequence[GalleryScene]) -> Gallery
     return next((scene for scene in scenes if escaped(scene.name) == drawing.scene), None)
 
 
-def page_blocks(chapter: DrawnChapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[dict[str, Any]]:
+def page_blocks(chapter: DrawnChapter, scenes: Sequence[GalleryScene], sheet: Sheet) -> list[PlainData]:
     """Return the blocks of a chapter for the template; figures of one scene lead to its page."""
     blocks = chapter.blocks[1:] if isinstance(chapter.blocks[0], Heading) else chapter.blocks
-    template_blocks: list[dict[str, Any]] = []
+    template_blocks: list[PlainData] = []
     for block in blocks:
         if isinstance(block, PageBreak) or (isinstance(block, Table) and _of_verdicts(block)):
             continue
@@ -77,19 +76,19 @@ def page_blocks(chapter: DrawnChapter, scenes: Sequence[GalleryScene], sheet: Sh
     return _without_empty_headings(template_blocks)
 
 
-def placed(block: Block, directory: Path, sheet: Sheet) -> dict[str, Any]:
+def placed(block: Block, directory: Path, sheet: Sheet) -> PlainData:
     """Return a block for the template, a figure with its drawing."""
     if isinstance(block, FigureBlock):
         return _figure(_drawing(block, directory), (), sheet)
     return _record(block)
 
 
-def _record(block: Block) -> dict[str, Any]:
+def _record(block: Block) -> PlainData:
     """Return the name of a block's kind and its data."""
-    return {"block": type(block).__name__, **_plain(vars(block))}
+    return {"block": type(block).__name__, **with_texts(asdict(block), lambda text: readable(unescaped(text)))}
 
 
-def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> dict[str, Any]:
+def _figure(drawing: Drawing, scenes: Sequence[GalleryScene], sheet: Sheet) -> PlainData:
     scene = scene_of_figure(drawing, scenes)
     return {
         "block": "FigureBlock",
@@ -105,9 +104,9 @@ def _of_verdicts(table: Table) -> bool:
     return any(column.kind == "verdict" for column in table.columns)
 
 
-def _without_empty_headings(blocks: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def _without_empty_headings(blocks: Sequence[PlainData]) -> list[PlainData]:
     """Leave out headings of which nothing follows before the next of the same or a higher level."""
-    reversed_blocks: list[dict[str, Any]] = []
+    reversed_blocks: list[PlainData] = []
     for block in reversed(blocks):
         if block["block"] == "Heading":
             if not reversed_blocks:
@@ -117,14 +116,3 @@ def _without_empty_headings(blocks: Sequence[dict[str, Any]]) -> list[dict[str, 
                 continue
         reversed_blocks.append(block)
     return reversed_blocks[::-1]
-
-
-def _plain(value: Any) -> Any:
-    """Return data of a block in which every text can be shown."""
-    if isinstance(value, str):
-        return readable(unescaped(value))
-    if isinstance(value, Mapping):
-        return {key: _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    return _plain(vars(value)) if hasattr(value, "__dataclass_fields__") else value

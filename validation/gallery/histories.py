@@ -84,13 +84,6 @@ def packed(values: Array) -> list[Any]:
     return [low, high, base64.b64encode(numbers.tobytes()).decode()]
 
 
-def unpacked(low: float, high: float, text: str) -> Array:
-    """Return the values that `packed` stored, NaN for none."""
-    numbers = np.frombuffer(base64.b64decode(text), "<u2").astype(float)
-    values = low * (1 - numbers / STEPS) + high * (numbers / STEPS)
-    return np.where(numbers == NONE, np.nan, values)
-
-
 def lines_of(histories: Mapping[str, History], samples: int) -> dict[str, Any]:
     """Return the lines of a case as plain data: instants, whether every step is there, values by column and solver."""
     if not histories:

@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from validation.errors import InputError
 from validation.gallery import scene_data, verdicts
-from validation.gallery.calculators import CALCULATORS, Calculator, Choice
+from validation.gallery.calculators import CALCULATORS, Calculator
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
 from validation.gallery.chapters import DrawnChapter, page_blocks, scene_of_figure
 from validation.gallery.histories import LEAST, samples_for
@@ -38,7 +38,6 @@ def environment() -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["data"] = _data
-    templates.tests["choice"] = lambda value: isinstance(value, Choice)
     return templates
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
-from validation.gallery.cases import GalleryScene, readable
+from validation.gallery.cases import GalleryScene, PlainData, readable
 from validation.gallery.histories import lines_of
 from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.data import CaseResults
@@ -82,7 +81,7 @@ def all_lines(scenes: Sequence[GalleryScene], most: int) -> int:
     return sum(sum(map(lines, drawn(scene, most))) for scene in scenes)
 
 
-def data(results: Results, scene: GalleryScene, most: int, samples: int) -> dict[str, Any]:
+def data(results: Results, scene: GalleryScene, most: int, samples: int) -> PlainData:
     """Return the histories, outcomes and numbers of a scene's page, as plain data."""
     drawn_cases = drawn(scene, most)
     cases = [_case(results, case, samples) for case in drawn_cases]
@@ -99,7 +98,7 @@ def data(results: Results, scene: GalleryScene, most: int, samples: int) -> dict
     }
 
 
-def _case(results: Results, case: CaseResults, samples: int) -> dict[str, Any]:
+def _case(results: Results, case: CaseResults, samples: int) -> PlainData:
     """Return label, curves and what went otherwise than hoped for."""
     histories: dict[str, History] = {}
     messages = []
@@ -121,7 +120,7 @@ def _case(results: Results, case: CaseResults, samples: int) -> dict[str, Any]:
     return page_data | lines_of(histories, samples)
 
 
-def _style(name: str) -> dict[str, Any]:
+def _style(name: str) -> PlainData:
     style = style_of(name)
     return {"color": style.color, "dash": [round(2 * length, 1) for length in style.dash], "width": style.width}
 

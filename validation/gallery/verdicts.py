@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
 
-from validation.gallery.cases import readable
+from validation.gallery.cases import PlainData, readable
 from validation.report.chapters.gates import ORDER, band, measured, reason, value_cell
 from validation.runs.records import VerdictRecord
 
 COLUMNS = ("verdict", "case", "pair", "metric", "value", "band")
 
 
-def table(verdicts: Sequence[VerdictRecord]) -> dict[str, Any]:
+def table(verdicts: Sequence[VerdictRecord]) -> PlainData:
     """Return the table of some verdicts, failures first: rows of six texts and the number of the row's reason."""
     words: dict[str, int] = {}
     reasons: dict[str, int] = {}

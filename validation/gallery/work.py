@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
+from validation.gallery.cases import PlainData
 from validation.report.chapters.work import refinement
 from validation.report.figures.curves import style_of
 from validation.runs.records import Manifest
@@ -16,7 +16,7 @@ from validation.studies.work.study import SCHEMES
 REFERENCES = ("continuum", "bar")
 
 
-def work_plots(results: Results, manifest: Manifest) -> list[dict[str, Any]]:
+def work_plots(results: Results, manifest: Manifest) -> list[PlainData]:
     """Return a plot for each scheme that was refined: the runs of each method, with costs and errors of each run."""
     plots = []
     for scheme in SCHEMES:
@@ -26,7 +26,7 @@ def work_plots(results: Results, manifest: Manifest) -> list[dict[str, Any]]:
     return plots
 
 
-def _plot(runs: Sequence[Point]) -> dict[str, Any]:
+def _plot(runs: Sequence[Point]) -> PlainData:
     """Return what is varied and the runs; an error that is zero or absent has no place on a logarithmic axis."""
     methods = list(dict.fromkeys(run.method for run in runs))
     return {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -43,11 +44,6 @@ class TableColumn:
     group: str = ""
 
 
-def columns(kind: Kind, *titles: str, group: str = "") -> tuple[TableColumn, ...]:
-    """Return columns of one kind."""
-    return tuple(TableColumn(title, kind, group) for title in titles)
-
-
 @dataclass(frozen=True)
 class Table:
     """A table; a row of one cell spans all columns as a remark on the rows below it.
@@ -65,6 +61,51 @@ class Table:
         for row in self.rows:
             if len(row) not in (1, len(self.columns)):
                 raise ValueError(f"rows: must have {len(self.columns)} cells each, or one, got {len(row)}")
+
+
+# A title, a column with its kind, or a shared title and those below it.
+Head = str | TableColumn | Sequence[str]
+NUMBER = re.compile("<?[−+]?[0-9][0-9.]*(×10)?[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]*( / [0-9]+)?")  # or a bound, or two counts
+
+
+def table(
+    heads: Iterable[Head],
+    rows: Iterable[Sequence[str]],
+    caption: str = "",
+    notes: Iterable[str] = (),
+    ruled: bool = True,
+) -> Table:
+    """Return a table whose columns of numbers are aligned at the decimal point, as their cells show.
+
+    Example
+    -------
+    >>> [column.kind for column in table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns]
+    ['text', 'decimal', 'text']
+    """
+    titles: list[tuple[str, str] | TableColumn] = []  # of a column and of its group
+    for head in heads:
+        if isinstance(head, TableColumn):
+            titles.append(head)
+        elif isinstance(head, str):
+            titles.append((head, ""))
+        else:
+            titles += [(title, head[0]) for title in head[1:]]
+    lines = [tuple(row) for row in rows]
+    columns = []
+    for place, title in enumerate(titles):
+        if isinstance(title, TableColumn):
+            columns.append(title)
+        else:
+            cells = [line[place] for line in lines if len(line) == len(titles)]
+            columns.append(TableColumn(title[0], "decimal" if _are_numbers(cells) else "text", title[1]))
+    return Table(tuple(columns), tuple(lines), caption, tuple(notes), ruled)
+
+
+def _are_numbers(cells: Sequence[str]) -> bool:
+    """Whether some cells are numbers, and the others words or dashes without a digit."""
+    numbers = [cell for cell in cells if NUMBER.fullmatch(cell)]
+    others = [cell for cell in cells if not NUMBER.fullmatch(cell) and any(map(str.isdigit, cell))]
+    return bool(numbers) and not others
 
 
 @dataclass(frozen=True)
@@ -118,4 +159,5 @@ class GateLines:
 
 Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
 Part = Block | Points | Beside | GateLines  # of the first and the last pages
-Chapter = Callable[[Results, Manifest, Path], list[Block]]
+Blocks = list[Block]
+Chapter = Callable[[Results, Manifest, Path], Blocks]

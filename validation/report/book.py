@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Part
+from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, PageBreak, Part
 from validation.report.chapters.registry import CHAPTERS, chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
@@ -94,7 +94,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
         return [*front, *chapters, PageBreak(), *appendix(results, groups, verdicts, readable)]
 
 
-def _chapter(results: Results, study: str, figures: Path) -> list[Block]:
+def _chapter(results: Results, study: str, figures: Path) -> Blocks:
     manifest = results.whole(study, histories=True)
     with _damage_named(results, f"the chapter of {unescaped(study)}"):
         return chapter_of(study)(results, manifest, figures)

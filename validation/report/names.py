@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from validation.runs.records import Manifest, VerdictRecord
@@ -37,19 +37,19 @@ class Readable(Results):
 
     def manifest(self, study: str) -> Manifest:
         """Return a study's manifest."""
-        manifest: Manifest = _mapped(super().manifest(self._files.get(study, study)))
+        manifest: Manifest = with_texts(super().manifest(self._files.get(study, study)), escaped, NOT_SHOWN)
         return manifest
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        verdicts: list[VerdictRecord] = _mapped(super().readable_verdicts())
+        verdicts: list[VerdictRecord] = with_texts(super().readable_verdicts(), escaped, NOT_SHOWN)
         return [v for v in verdicts if study is None or v["study"] == study]
 
 
-def _mapped(data: Any) -> Any:
-    """Return plain data with every text escaped, but those under the keys that are not shown."""
+def with_texts(data: Any, change: Callable[[str], str], skipped: Collection[str] = ()) -> Any:
+    """Return plain data with every text changed, but those under the keys that are skipped."""
     if isinstance(data, str):
-        return escaped(data)
+        return change(data)
     if isinstance(data, Mapping):
-        return {key: value if key in NOT_SHOWN else _mapped(value) for key, value in data.items()}
-    return [_mapped(value) for value in data] if isinstance(data, Iterable) else data
+        return {key: data[key] if key in skipped else with_texts(data[key], change, skipped) for key in data}
+    return [with_texts(value, change, skipped) for value in data] if isinstance(data, Iterable) else data

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ import typst
 
 from validation.errors import InputError
 from validation.report.blocks import Beside, Part
-from validation.report.names import unescaped
+from validation.report.names import unescaped, with_texts
 from validation.runs.files import write_atomically
 
 TEMPLATE = Path(__file__).with_name("report.typ")
@@ -58,20 +58,11 @@ def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
 
 def _record(block: Part) -> dict[str, Any]:
     """Return a block as plain data with the name of its kind, those within it as well."""
-    data: dict[str, Any] = {"block": type(block).__name__} | _unescaped_texts(asdict(block))
+    data: dict[str, Any] = {"block": type(block).__name__} | with_texts(asdict(block), unescaped)
     if isinstance(block, Beside):
         data["left"] = [_record(part) for part in block.left]
         data["right"] = [_record(part) for part in block.right]
     return data
-
-
-def _unescaped_texts(data: Any) -> Any:
-    """Return the data of a block with every text in characters that can be set, dollars without their backslash."""
-    if isinstance(data, str):
-        return unescaped(data)
-    if isinstance(data, Mapping):
-        return {key: _unescaped_texts(value) for key, value in data.items()}
-    return [_unescaped_texts(value) for value in data] if isinstance(data, list | tuple) else data
 
 
 def png_of(svg: Path) -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from validation.report.blocks import GateLine, GateLines, Heading, Paragraph, Part
-from validation.report.chapters.data import CaseGroup, labels_of
+from validation.report.chapters.data import Groups, labels_of
 from validation.report.chapters.gates import band, measured, reason, value_cell
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
@@ -14,7 +14,7 @@ MOST_LINES = 700  # beyond, gates of a scene that share pair, metric and reason 
 Verdicts = Sequence[VerdictRecord]
 
 
-def gate_pages(verdicts: Verdicts, groups: Mapping[str, CaseGroup]) -> list[Part]:
+def gate_pages(verdicts: Verdicts, groups: Groups) -> list[Part]:
     """Return the gates that passed, study by study."""
     passed = [v for v in verdicts if v["verdict"] == "PASS"]
     if not passed:

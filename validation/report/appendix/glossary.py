@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.report.blocks import Block, Heading, Table, TableColumn
+from validation.report.blocks import Blocks, Heading, TableColumn, table
 
 WORDS = (
     ("block", "A polygon that DDA moves as a whole: u, v, r of its centroid and one strain εx, εy, γxy all over it."),
@@ -23,6 +23,6 @@ WORDS = (
 )  # fmt: skip
 
 
-def glossary() -> list[Block]:
+def glossary() -> Blocks:
     """Return the glossary."""
-    return [Heading("Twelve words", 2), Table((TableColumn("Word"), TableColumn("Meaning", "fill")), WORDS)]
+    return [Heading("Twelve words", 2), table(("Word", TableColumn("Meaning", "fill")), WORDS)]

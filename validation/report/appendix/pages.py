@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from validation.report.appendix.alarms import alarm_table
 from validation.report.appendix.gates import gate_pages
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Heading, Part
-from validation.report.chapters.data import CaseGroup
-from validation.runs.records import VerdictRecord
+from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
-def appendix(
-    results: Results, groups: Mapping[str, CaseGroup], verdicts: Sequence[VerdictRecord], studies: Sequence[str]
-) -> list[Part]:
+def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> list[Part]:
     """Return words, alarms, parameters, provenance and gates."""
     return [
         Heading("Appendix"),

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from validation.report.blocks import Block, Heading, Table, TableColumn, columns
-from validation.report.chapters.data import CaseGroup, varied_fields
+from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
+from validation.report.chapters.data import Groups, varied_fields
 from validation.report.chapters.text import parameter_items, plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Row
 
 
-def parameter_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
+def parameter_table(groups: Groups) -> Blocks:
     """Return the data of the scenes: of the first in full, of the others what differs from it."""
     rows: list[tuple[str, str]] = []
     first_items: set[str] = set()
@@ -25,10 +25,10 @@ def parameter_table(groups: Mapping[str, CaseGroup]) -> list[Block]:
         rows.append((group.name, ", ".join([*differing, count])))
         first_items = first_items or set(items)
     caption = "Data of the scenes: the first in full, the others where they differ from it."
-    return [Heading("Parameters", 2), Table((TableColumn("Scene"), TableColumn("Data", "fill")), tuple(rows), caption)]
+    return [Heading("Parameters", 2), table(("Scene", TableColumn("Data", "fill")), rows, caption)]
 
 
-def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
+def provenance(results: Results, studies: Sequence[str]) -> Blocks:
     """Return where the numbers come from and what they cost; what all studies share is said once."""
     manifests = [results.manifest(study) for study in studies]
     studies_by_item: dict[tuple[str, str], list[str]] = {}
@@ -39,8 +39,8 @@ def provenance(results: Results, studies: Sequence[str]) -> list[Block]:
     for (name, text), names in studies_by_item.items():
         where = "" if len(names) == len(manifests) else f" ({', '.join(names)})"
         rows.append((name.capitalize(), f"{text}{where}"))
-    table = Table((TableColumn("Item"), TableColumn("Value", "fill")), tuple(rows))
-    return [Heading("Provenance", 2), table, cost_table(results, manifests)]
+    items = table(("Item", TableColumn("Value", "fill")), rows)
+    return [Heading("Provenance", 2), items, cost_table(results, manifests)]
 
 
 def _item_text(value: object) -> str:
@@ -70,6 +70,6 @@ def cost_table(results: Results, manifests: Sequence[Manifest]) -> Table:
             seconds += sum(row.seconds.values())
         counts = (len(rows_by_key), unknowns, work["factorisations"], work["solves"], work["steps"])
         lines.append((solver, *map(str, counts), plain(seconds, 3)))
-    titles = columns("decimal", "Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
+    titles = ("Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")
     caption = "Cost of the results; cached runs count with their original run time."
-    return Table((TableColumn("Solver"), *titles), tuple(lines), caption)
+    return table(("Solver", *titles), lines, caption)

@@ -8,7 +8,7 @@ from pathlib import Path
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.sentences import told_lines
-from validation.report.blocks import Block, Callout, Heading, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.text import DASH, parameters, short
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import HistoryPanel
@@ -61,7 +61,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
     ]
 
 
-def _facts(answer: Answer) -> list[Block]:
+def _facts(answer: Answer) -> Blocks:
     rows = [(name, CAUSES[name].words + _number(answer, name)) for name in answer.causes]
     if answer.nearest and answer.nearest["causes"]:
         rows.append(("nearest", f"{', '.join(answer.nearest['causes'])}: {short(100 * answer.unexplained, 2)} % left"))
@@ -70,30 +70,29 @@ def _facts(answer: Answer) -> list[Block]:
         rows.append(("departure", f"step {answer.departure.step}, mainly in {answer.departure.kind}"))
     if answer.opened:
         rows.append(("contact open", f"first step {answer.opened[0]}, last {answer.opened[1]}"))
-    return [Table((TableColumn("Found", "code"), TableColumn("In words", "fill")), tuple(rows))] if rows else []
+    return [table((TableColumn("Found", "code"), TableColumn("In words", "fill")), rows)] if rows else []
 
 
 def _number(answer: Answer, name: str) -> str:
     return f": {short(answer.values[name], 5)}" if name in answer.values else ""
 
 
-def _evidence(answer: Answer) -> list[Block]:
+def _evidence(answer: Answer) -> Blocks:
     """Return what was measured before any cause was named."""
     marks = {True: "right", False: "wrong", None: DASH}
     rows = tuple((stage.name.replace("_", " "), marks[stage.agrees], stage.words) for stage in answer.evidence)
-    titles = (*columns("code", "Evidence", ""), *columns("fill", "In words"))
-    return [Table(titles, rows)] if rows else []
+    titles = (TableColumn("Evidence", "code"), TableColumn("", "code"), TableColumn("In words", "fill"))
+    return [table(titles, rows)] if rows else []
 
 
 def _ranking(answer: Answer) -> Table:
-    titles = (
-        *columns("code", "Model"),
-        *columns("fill", "Scheme"),
-        *columns("decimal", "Misfit [%]", "Compliance [%]"),
-    )
     rows = []
     for row in answer.ranking[:LINES]:
         scheme = "exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}"
         softer = DASH if row["compliance"] is None else short(100 * row["compliance"], 3)
         rows.append((str(row["model"]), str(row["name"] or scheme), short(100 * row["misfit"], 3), softer))
-    return Table(titles, tuple(rows), "Relative L2 of what each model leaves, at its best compliance of the springs.")
+    return table(
+        (TableColumn("Model", "code"), TableColumn("Scheme", "fill"), "Misfit [%]", "Compliance [%]"),
+        rows,
+        "Relative L2 of what each model leaves, at its best compliance of the springs.",
+    )

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Table, TableColumn
+from validation.report.blocks import Blocks, Head, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.measures import MetricColumn, heads
 from validation.report.chapters.text import DASH, case_label, load_size, word_notes
@@ -22,7 +22,7 @@ OVER = ("time.step", "time.steps", "fem.elements")  # what a budget is drawn ove
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 
 
-def budget_blocks(group: CaseGroup, directory: Path) -> list[Block]:
+def budget_blocks(group: CaseGroup, directory: Path) -> Blocks:
     """Return the damping budget chart of a scene, or nothing where its results hold none."""
     if not group.budgets:
         return []
@@ -97,10 +97,10 @@ def damping_table(group: CaseGroup) -> Table:
         else:
             labels = itertools.chain([case.label], itertools.repeat(""))
             rows += [(label, *line) for label, line in zip(labels, lines, strict=False)]
-    titles = (TableColumn("Solver"), *heads(MEASURES))
+    titles: tuple[Head, ...] = ("Solver", *heads(MEASURES))
     if not has_long_labels:
-        titles = (TableColumn("Case"), *titles)
-    return Table(titles, tuple(rows), notes=word_notes(measured), ruled=not has_long_labels)
+        titles = ("Case", *titles)
+    return table(titles, rows, notes=word_notes(measured), ruled=not has_long_labels)
 
 
 def _finished(case: CaseResults) -> list[str]:

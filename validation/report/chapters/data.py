@@ -6,7 +6,6 @@ import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 from validation.report.chapters.text import case_labels
@@ -17,8 +16,9 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
+from validation.solvers.registry import FULL, by_role
 
+Verdicts = Sequence[VerdictRecord]
 DerivedRows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene or case, name) -> metrics
 
 
@@ -80,10 +80,19 @@ class CaseGroup:
         longest = max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
         return None if longest is None else dict(longest["metrics"])
 
+    def numbers_of_pair(self, solver: str, reference: str, metric: str) -> list[float]:
+        """Return a metric of a pair for the cases where it is a number."""
+        values = [self.number_of_pair(case, solver, reference, metric) for case in self.cases]
+        return [value for value in values if value is not None]
+
     def number_of_pair(self, case: CaseResults, solver: str, reference: str, metric: str) -> float | None:
         """Return a metric of a pair where it is a number."""
         value = (self.compared(case, solver, reference) or {}).get(metric)
         return float(value) if isinstance(value, int | float) else None
+
+
+Groups = Mapping[str, CaseGroup]  # scenes by their names
+CaseGroups = Sequence[CaseGroup]
 
 
 def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[CaseGroup]:
@@ -93,13 +102,30 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
     for entry in spoken_of(manifest):
         scenes.setdefault(scene_of(entry["scene"]), {}).setdefault(entry["scene"], []).append(entry)
     verdicts = results.verdicts(manifest.get("study"))
-    history_of = results.history if drawn else lambda _: None
-    return [_group(history_of, rows, manifest, base, cases, verdicts) for base, cases in scenes.items()]
+    groups = []
+    for base, records in scenes.items():
+        groups.append(
+            CaseGroup(
+                base,
+                next(iter(records.values()))[0].get("title") or base,
+                cases_with(records, rows, results.history) if drawn else cases_with(records, rows),
+                tuple(c for c in manifest.get("comparisons", []) if scene_of(c["scene"]) == base),
+                tuple(v for v in verdicts if scene_of(v["scene"]) == base),
+                tuple(a for a in manifest.get("alarms", []) if scene_of(a["scene"]) == base),
+                tuple(b for b in manifest.get("budgets", []) if scene_of(b["scene"]) == base),
+            )
+        )
+    return groups
 
 
-def groups_by_name(results: Results, manifest: Manifest) -> dict[str, CaseGroup]:
+def groups_by_name(results: Results, manifest: Manifest) -> Groups:
     """Return the scenes of a study with their histories, by the scenes' names."""
     return {group.name: group for group in case_groups(results, manifest)}
+
+
+def cases_of(groups: Groups, *names: str) -> list[CaseResults]:
+    """Return the cases of the scenes of these names, as far as the study has them."""
+    return list(itertools.chain.from_iterable(groups[name].cases for name in names if name in groups))
 
 
 def derived_rows(manifest: Manifest) -> DerivedRows:
@@ -130,42 +156,24 @@ def verdicts_of(groups: Iterable[CaseGroup]) -> list[VerdictRecord]:
     return list(itertools.chain.from_iterable(group.verdicts for group in groups))
 
 
-def _group(
-    history_of: Callable[[str], History | None],
+def cases_with(
+    records_by_case: Mapping[str, Sequence[CaseRecord]],
     rows: Mapping[str, Row],
-    manifest: Manifest,
-    base: str,
-    entries: Mapping[str, Sequence[CaseRecord]],
-    verdicts: Sequence[VerdictRecord],
-) -> CaseGroup:
-    scenes = [parse_scene(of_case[0]["definition"], name) for name, of_case in entries.items()]
-    labels = case_labels(list(entries), scenes)
-    cases = map(partial(_case, history_of, rows), entries.values(), labels, scenes)
-    return CaseGroup(
-        base,
-        next(iter(entries.values()))[0].get("title") or base,
-        tuple(cases),
-        tuple(c for c in manifest.get("comparisons", []) if scene_of(c["scene"]) == base),
-        tuple(v for v in verdicts if scene_of(v["scene"]) == base),
-        tuple(a for a in manifest.get("alarms", []) if scene_of(a["scene"]) == base),
-        tuple(b for b in manifest.get("budgets", []) if scene_of(b["scene"]) == base),
-    )
-
-
-def _case(
-    history_of: Callable[[str], History | None],
-    rows: Mapping[str, Row],
-    entries: Sequence[CaseRecord],
-    label: str,
-    scene: Scene,
-) -> CaseResults:
-    rows_by_solver = {e["solver"]: rows[e["key"]] for e in entries if e["key"] in rows}
-    histories = {}
-    for solver, row in rows_by_solver.items():
-        history = history_of(row.key)
-        if history is not None and not solver.endswith(":full"):  # whose history is that of the model without it
-            histories[solver] = history
-    return CaseResults(entries[0]["scene"], label, scene, rows_by_solver, histories)
+    history_of: Callable[[str], History | None] = lambda key: None,
+) -> tuple[CaseResults, ...]:
+    """Return the cases of one scene with their labels, the rows of their records, and the histories of these by key."""
+    scenes = [parse_scene(records[0]["definition"], name) for name, records in records_by_case.items()]
+    labels = case_labels(list(records_by_case), scenes)
+    cases = []
+    for (name, records), label, scene in zip(records_by_case.items(), labels, scenes, strict=True):
+        rows_by_solver = {record["solver"]: rows[record["key"]] for record in records if record["key"] in rows}
+        histories = {}
+        for solver, row in rows_by_solver.items():
+            history = history_of(row.key)
+            if history is not None and not solver.endswith(FULL):  # whose history is that of the model without it
+                histories[solver] = history
+        cases.append(CaseResults(name, label, scene, rows_by_solver, histories))
+    return tuple(cases)
 
 
 def varied_fields(group: CaseGroup) -> set[str]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
-from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.runs.records import Manifest
@@ -46,7 +46,7 @@ UNEXPLAINED_NOTE = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the table, the causes of failures, what has no verdict, the programs."""
     field = read(results)
     if field is None:
@@ -81,17 +81,12 @@ def counted(field: Field) -> str:
     )
 
 
-def _part(title: str, table: Table) -> list[Block]:
+def _part(title: str, table: Table) -> Blocks:
     return [Heading(title, 3), table] if table.rows else []
 
 
 def by_problem(field: Field) -> Table:
     """Return the table of programs by problems."""
-    titles = (
-        TableColumn("Program"),
-        *(TableColumn(problem.name, "outcome") for problem in field.problems),
-        TableColumn("Time [s]", "decimal"),
-    )
     installed = installed_programs(field)
     rows = [("allowed [%]", *(allowed(field, problem.name) for problem in field.problems), "")]
     rows += [(program.title, *_outcomes(field, program), seconds(field, program)) for program in installed]
@@ -99,7 +94,12 @@ def by_problem(field: Field) -> Table:
     missing = [program.title for program in field.programs if program not in installed]
     if missing:
         notes.append(f"Not installed: {', '.join(missing)}.")
-    return Table(titles, tuple(rows), "Programs and problems.", tuple(notes))
+    return table(
+        ("Program", *(TableColumn(problem.name, "outcome") for problem in field.problems), "Time [s]"),
+        rows,
+        "Programs and problems.",
+        tuple(notes),
+    )
 
 
 def installed_programs(field: Field) -> list[ProgramLine]:
@@ -150,17 +150,10 @@ def seconds(field: Field, program: ProgramLine) -> str:
 
 def failures(field: Field) -> Table:
     """Return the causes of failures, those of one program with one cause in a line."""
-    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Cause", "fill"))
-    rows = []
-    for program in installed_programs(field):
-        problems_by_cause: dict[str, list[str]] = {}
-        for cell in _cells(field, program):
-            if cell.verdict == FAIL:
-                problems_by_cause.setdefault(cell.cause, []).append(cell.problem + _right_until(cell))
-        rows += _lines(field, program, problems_by_cause)
+    rows = _lines(field, (FAIL,), lambda cell: cell.cause, _right_until)
     is_unexplained = any(row[-1] == NOT_EXPLAINED for row in rows)
     notes = (UNEXPLAINED_NOTE,) if is_unexplained else ()
-    return Table(titles, tuple(rows), notes=notes)
+    return table(("Program", "Problems", TableColumn("Cause", "fill")), rows, notes=notes)
 
 
 def _right_until(cell: Cell) -> str:
@@ -172,34 +165,39 @@ def _right_until(cell: Cell) -> str:
 
 def absent(field: Field) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    titles = (TableColumn("Program"), TableColumn("Problems"), TableColumn("Reason", "fill"))
-    rows = []
+    rows = _lines(field, (NOT_APPLICABLE, NOT_RUN), _reason)
+    return table(("Program", "Problems", TableColumn("Reason", "fill")), rows)
+
+
+def _reason(cell: Cell) -> str:
+    """Return why a problem has no verdict."""
+    reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
+    return f"no answer: {reason}" if cell.verdict == NOT_RUN else reason
+
+
+def _lines(
+    field: Field,
+    verdicts: Collection[str],
+    text_of: Callable[[Cell], str],
+    remark: Callable[[Cell], str] = lambda cell: "",
+) -> list[tuple[str, str, str]]:
+    """Return of each program a line for each text, with the problems of these verdicts that it applies to."""
+    lines = []
     for program in installed_programs(field):
-        problems_by_reason: dict[str, list[str]] = {}
+        problems_by_text: dict[str, list[str]] = {}
         for cell in _cells(field, program):
-            if cell.verdict in (NOT_APPLICABLE, NOT_RUN):
-                reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
-                if cell.verdict == NOT_RUN:
-                    reason = f"no answer: {reason}"
-                problems_by_reason.setdefault(reason, []).append(cell.problem)
-        rows += _lines(field, program, problems_by_reason)
-    return Table(titles, tuple(rows))
-
-
-def _lines(field: Field, program: ProgramLine, problems_by_text: dict[str, list[str]]) -> list[tuple[str, ...]]:
-    """Return a line for each text, with the problems that it applies to; the first line names the program."""
-    lines: list[tuple[str, ...]] = []
-    title = program.title
-    for text, problems in problems_by_text.items():
-        names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)
-        lines.append((title, names, text))
-        title = ""
+            if cell.verdict in verdicts:
+                problems_by_text.setdefault(text_of(cell), []).append(cell.problem + remark(cell))
+        title = program.title
+        for text, problems in problems_by_text.items():
+            names = "all" if len(problems) == len(field.problems) > 1 else ", ".join(problems)
+            lines.append((title, names, text))
+            title = ""
     return lines
 
 
 def programs(field: Field) -> Table:
     """Return what each program says of itself."""
-    titles = (*columns("text", "Program", "Version"), *columns("fill", "Model", "Settings"))
     rows: list[tuple[str, str, str, str]] = []
     previous: Mapping[str, str] = {}
     for program in installed_programs(field):
@@ -212,4 +210,4 @@ def programs(field: Field) -> Table:
                 model = "the same"
         rows.append((program.title, version, model, about.get("settings", "")))
         previous = about
-    return Table(titles, tuple(rows))
+    return table(("Program", "Version", TableColumn("Model", "fill"), TableColumn("Settings", "fill")), rows)

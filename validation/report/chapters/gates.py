@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from validation.metrics.catalogue import is_count
-from validation.report.blocks import Block, Callout, Heading, Table, TableColumn
-from validation.report.chapters.text import bounded, cell, short
+from validation.report.blocks import Blocks, Callout, Heading, TableColumn, table
+from validation.report.chapters.data import Verdicts
+from validation.report.chapters.text import bounded, capital, cell, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
@@ -45,26 +44,20 @@ def reason(v: VerdictRecord) -> str:
     """Return why the band is what it is, the kind of reference, and what went wrong if anything did."""
     uncertainty = v.get("reference_uncertainty") or 0.0
     width = f" ± {short(uncertainty, 2)}" if uncertainty else ""
-    why = f" {v['why'][:1].upper()}{v['why'][1:]}." if v.get("why") else ""
+    why = f" {capital(v['why'])}." if v.get("why") else ""
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
 
 
-def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
+def not_passed(verdicts: Verdicts) -> Blocks:
     """Return the gates that failed or did not run, with value, band and reason; nothing where all passed."""
     bad = sorted((v for v in verdicts if v["verdict"] != "PASS"), key=lambda v: ORDER[v["verdict"]])
     if not bad:
         return []
-    blocks: list[Block] = [Heading("Gates that did not pass", 2)]
+    blocks: Blocks = [Heading("Gates that did not pass", 2)]
     failures = sum(v["verdict"] == "FAIL" for v in bad)
     if failures:
         text = "One gate fails." if failures == 1 else f"{failures} gates fail."
         blocks.append(Callout(text, "fail"))
-    titles = (
-        TableColumn("Verdict", "verdict"),
-        TableColumn("Gate", "id"),
-        TableColumn("Value", "decimal"),
-        TableColumn("Band"),
-    )
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in bad:
         row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
@@ -72,4 +65,7 @@ def not_passed(verdicts: Sequence[VerdictRecord]) -> list[Block]:
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
-    return [*blocks, Table(titles, tuple(lines), ruled=False)]
+    return [
+        *blocks,
+        table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band"), lines, ruled=False),
+    ]

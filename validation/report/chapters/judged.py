@@ -12,7 +12,7 @@ from validation.problems.data import united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
 from validation.problems.quantities import COUNTED, Quantity
-from validation.report.blocks import Block, Callout, FigureBlock, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.chapters.text import DASH, bounded, plain, short
 from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
@@ -69,11 +69,11 @@ def per_cent(share: float | None) -> str:
     return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
-def page(answer: JudgedAnswer, directory: Path) -> list[Block]:
+def page(answer: JudgedAnswer, directory: Path) -> Blocks:
     """Return the blocks of the page; its figures are written to a directory."""
     judgement = answer.judgement
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(judgement.word, "warn")
-    blocks: list[Block] = [Callout(headline(answer), tone)]  # type: ignore[arg-type]
+    blocks: Blocks = [Callout(headline(answer), tone)]  # type: ignore[arg-type]
     blocks += [Callout(sentence, "warn") for sentence in answer.warnings]
     if answer.cause is not None:
         blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
@@ -85,7 +85,7 @@ def page(answer: JudgedAnswer, directory: Path) -> list[Block]:
         _columns(judgement.columns, answer.standard),
         *figures(answer, directory),
         *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
-        Table((TableColumn("Of the answer"), TableColumn("", "fill")), tuple(answer.about)),
+        table(("Of the answer", TableColumn("", "fill")), tuple(answer.about)),
     ]
 
 
@@ -114,13 +114,6 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
 
 
 def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
-    titles = (
-        TableColumn("Column"),
-        TableColumn("Verdict", "outcome"),
-        *columns("decimal", "Error [%]", "Allowed [%]"),
-        TableColumn("Set by"),
-        TableColumn("Until [s]", "decimal"),
-    )
     rows = []
     notes = [ALLOWED]
     for column in columns_of_answer:
@@ -129,7 +122,12 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
         rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
         if column.band is None:
             notes.append(f"{name}: {column.reason}.")
-    return Table(titles, tuple(rows), "Relative L2 error of each column.", tuple(notes))
+    return table(
+        ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]"),
+        rows,
+        "Relative L2 error of each column.",
+        tuple(notes),
+    )
 
 
 def datum(column: Column, standard: Standard) -> str:
@@ -139,9 +137,10 @@ def datum(column: Column, standard: Standard) -> str:
 
 
 def _further_numbers(numbers: Sequence[Quantity]) -> Table:
-    titles = (TableColumn("Number", "fill"), *columns("decimal", "Answer", "Exact"), TableColumn("Unit"))
     rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
-    return Table(titles, tuple(rows), "Further numbers, which are not judged.")
+    return table(
+        (TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, "Further numbers, which are not judged."
+    )
 
 
 def _number_cell(number: Quantity, value: float | None) -> str:

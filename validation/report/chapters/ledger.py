@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph
-from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.blocks import Blocks, Heading, Paragraph
+from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults
 from validation.report.chapters.text import percent, span
 from validation.report.figures import histories
 from validation.report.figures.ledger import LedgerLine, ledger_figure
@@ -41,7 +41,7 @@ def entry(group: CaseGroup, case: CaseResults, part: str) -> Values:
     return displacement, pressure
 
 
-def with_entries(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str]]) -> list[CaseGroup]:
+def with_entries(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> list[CaseGroup]:
     """Return the groups with the cases of these parts that some of them applies to."""
     compared_groups = []
     for group in groups:
@@ -52,9 +52,9 @@ def with_entries(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str
     return compared_groups
 
 
-def ledger_blocks(groups: Sequence[CaseGroup], name: str, directory: Path) -> list[Block]:
+def ledger_blocks(groups: CaseGroups, name: str, directory: Path) -> Blocks:
     """Return the ledger of a study's scenes as a figure and a sentence; nothing where fewer than two cases have one."""
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for parts in (PARTS, OPENING_PARTS):
         compared = with_entries(groups, parts)
         if sum(len(group.cases) for group in compared) > 1:
@@ -69,7 +69,7 @@ def ledger_blocks(groups: Sequence[CaseGroup], name: str, directory: Path) -> li
     return blocks
 
 
-def headline(groups: Sequence[CaseGroup]) -> str:
+def headline(groups: CaseGroups) -> str:
     """Return what code, mesh and model form contribute, in plain sentences."""
     displacement = part_values(groups, "model form", 0)
     pressure = part_values(groups, "model form", 1)
@@ -81,7 +81,7 @@ def headline(groups: Sequence[CaseGroup]) -> str:
     )
 
 
-def _shares(groups: Sequence[CaseGroup], model_form: float) -> str:
+def _shares(groups: CaseGroups, model_form: float) -> str:
     """Say what code and mesh contribute, and that the rest is model form where both are below its least."""
     parts = {
         "code and rounding are": part_values(groups, "code", 0),
@@ -97,7 +97,7 @@ def _shares(groups: Sequence[CaseGroup], model_form: float) -> str:
     return f"; of the displacement's difference {sentence}{remainder}"
 
 
-def ledger_lines(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
+def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
     """Return the ledger as lines of a figure."""
     lines = []
     for group in groups:
@@ -107,7 +107,7 @@ def ledger_lines(groups: Sequence[CaseGroup], parts: Mapping[str, tuple[str, str
     return lines
 
 
-def part_values(groups: Sequence[CaseGroup], part: str, column: int) -> list[float]:
+def part_values(groups: CaseGroups, part: str, column: int) -> list[float]:
     """Return all numbers of a part, for displacement (0) or pressure (1)."""
     values = []
     for group in groups:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
-from validation.report.chapters.text import DASH, bounded, short
+from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
+from validation.report.chapters.text import DASH, bounded, capital, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
@@ -62,12 +62,12 @@ COLUMNS = {
 }
 
 
-def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: conclusion, register of claims, figures."""
     groups = groups_by_name(results, manifest)
     rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
     claims = manifest.get("data", {}).get("claims", [])
-    blocks: list[Block] = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
+    blocks: Blocks = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
     for title, letter in (("Statements", "C"), ("Slips of the equations", "S")):
         blocks += [Heading(title, 2), claims_table([c for c in claims if c["id"].startswith(letter)], rows)]
     blocks += [Heading("The figures", 2), *figure_1(manifest, groups, directory)]
@@ -93,22 +93,30 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
         measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
         statement = f"{claim['says']} ({claim['place']})"
-        why = f"{claim['why'][:1].upper()}{claim['why'][1:]}.{condition}"
+        why = f"{capital(claim['why'])}.{condition}"
         lines.append((claim["id"], word, statement, why, measured))
-    titles = (*columns("text", "Id", "Verdict"), *columns("fill", "The paper says", "Why", "Measured"))
-    return Table(titles, tuple(lines))
+    return table(
+        (
+            "Id",
+            "Verdict",
+            TableColumn("The paper says", "fill"),
+            TableColumn("Why", "fill"),
+            TableColumn("Measured", "fill"),
+        ),
+        lines,
+    )
 
 
 def _number(value: object) -> str:
     return bounded(value, short(value)) if isinstance(value, int | float) else str(value or DASH)
 
 
-def figure_1(manifest: Manifest, groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
+def figure_1(manifest: Manifest, groups: Groups, directory: Path) -> Blocks:
     """Return Figure 1, with the spectral radii of the study's own constant-acceleration operators."""
     data = manifest.get("data", {})
     if "schemes" not in data:
         return []
-    cases = groups["damping-map"].cases if "damping-map" in groups else ()
+    cases = cases_of(groups, "damping-map")
     caption = (
         "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
         "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, Paragraph
+from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.damping import budget_blocks, damping_table
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
     AS_STATED,
     bounded,
+    capital,
     load_size,
     percent,
     plain,
@@ -27,9 +28,9 @@ from validation.report.chapters.text import (
 )
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
-from validation.report.figures.curves import COLUMNS, HistoryPanel, differences
+from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -42,7 +43,7 @@ CALM = 1.5  # times the time in which the slowest line settles
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
-def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of a study: its question, then a section for each scene."""
     groups = case_groups(results, manifest)
     blocks = opening(manifest)
@@ -54,9 +55,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> list
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def opening(
-    manifest: Manifest, verdicts: Sequence[VerdictRecord] = (), lead: str = "", remark: str = ""
-) -> list[Block]:
+def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
@@ -71,7 +70,7 @@ def scene_section(
     columns: Sequence[str] | None = None,
     apart: bool = False,
     without: Sequence[str] = (),
-) -> list[Block]:
+) -> Blocks:
     """Return the section of one scene: its finding in words, the figure that shows it, the numbers that matter.
 
     Parameters
@@ -87,7 +86,7 @@ def scene_section(
     without
         Solvers that are left out of the figure.
     """
-    blocks: list[Block] = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
+    blocks: Blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, apart, without))
@@ -108,7 +107,7 @@ def conclusion(group: CaseGroup) -> str:
     """Return one plain sentence on a scene, computed from its comparisons and verdicts."""
     parts = (_agreement(group), gate_count(group.verdicts), _tension(group), _damped_agreement(group))
     text = "; ".join(part for part in parts if part)
-    return text[:1].upper() + text[1:] + "."
+    return f"{capital(text)}."
 
 
 def _agreement(group: CaseGroup) -> str:
@@ -117,8 +116,7 @@ def _agreement(group: CaseGroup) -> str:
     for solver, reference in dict.fromkeys((*pairs, *parts_of(group.cases[0]).values(), *others)):
         differences_in_words = []
         for metric, name in zip(METRICS, ("displacement", "contact pressure"), strict=True):
-            values = [group.number_of_pair(case, solver, reference, metric) for case in group.cases]
-            numbers = [value for value in values if value is not None]
+            numbers = group.numbers_of_pair(solver, reference, metric)
             if numbers:
                 differences_in_words.append(f"{span(numbers)} in {name}")
         if differences_in_words:
@@ -143,7 +141,7 @@ def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     return f" over {short(low)}\u00a0s" if high <= low * 1.001 else f", {short(low)} to {short(high)}\u00a0s"
 
 
-def gate_count(verdicts: Sequence[VerdictRecord]) -> str:
+def gate_count(verdicts: Verdicts) -> str:
     """Return how many gates pass, fail or did not run, as part of a sentence."""
     count = Counter(v["verdict"] for v in verdicts)
     if not verdicts:
@@ -193,14 +191,14 @@ def _damped_agreement(group: CaseGroup) -> str:
     return f"{trend}: both are damped, which is no sign of accuracy"
 
 
-def outcomes(group: CaseGroup) -> list[Block]:
+def outcomes(group: CaseGroup) -> Blocks:
     """Name every outcome other than completed, with its sentence; cases that share it share a line."""
     labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
             if row.outcome is not Outcome.COMPLETED:
                 labels_by_outcome.setdefault((solver, row.outcome, row.notes), []).append(case.label)
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for (solver, outcome, notes), labels in labels_by_outcome.items():
         where = "" if labels == [AS_STATED] else f" at {'; '.join(labels)}"
         blocks.append(Callout(f"{solver}{where}: {outcome}. {outcome.sentence} {'; '.join(notes)}".strip(), "warn"))
@@ -262,7 +260,7 @@ def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without
     return CALM * latest
 
 
-def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]:
+def _on_one(panels: HistoryPanels, columns: Sequence[str]) -> list[str]:
     """Name the lines that lie on one another, and how far off they are at most."""
     parts = []
     for name, others in motion.twins(panels, columns).items():
@@ -270,7 +268,7 @@ def _on_one(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> list[str]
     return [f"{', '.join(parts)}."] if parts else []
 
 
-def _reading(panels: Sequence[HistoryPanel], columns: Sequence[str], apart: bool) -> list[str]:
+def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
     sentences = []
     if start := motion.start_of(panels, columns[0]):
@@ -360,7 +358,7 @@ def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[C
     )
 
 
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> list[Block]:
+def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> Blocks:
     panel, sentence = drift_panel(group, drift)
     caption = "Displacement at rest on corner point springs over the mesh."
     return [

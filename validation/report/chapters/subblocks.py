@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
@@ -37,7 +38,7 @@ TURNING = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: conclusions over all scenes."""
     groups = groups_by_name(results, manifest)
     return [
@@ -57,7 +58,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     ]
 
 
-def _tables(groups: dict[str, CaseGroup], make: Any, names: tuple[str, ...]) -> list[Block]:
+def _tables(groups: Groups, make: Any, names: tuple[str, ...]) -> Blocks:
     return [make(groups[name]) for name in names if name in groups]
 
 
@@ -84,9 +85,9 @@ def _line(name: str, group: CaseGroup, cases: list[CaseResults], reference: str,
     return ChartLine(name, np.array(x), np.array(y), dots=3.0, notes=notes)
 
 
-def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
+def _time_figures(groups: Groups, directory: Path) -> Blocks:
     """Return error against seconds for both motions; a number at a point counts the sub-blocks upwards."""
-    blocks: list[Block] = []
+    blocks: Blocks = []
     motions = {
         "axial": ("displacement.l2", "Displacement under pressure"),
         "rocking": ("horizontal.l2", "Horizontal displacement under a sideways traction"),
@@ -95,7 +96,7 @@ def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
         group = groups.get(f"subblocks-{kind}")
         if group is None:
             continue
-        lines = [_line(name, group, _of_pattern(group, name), "fem", metric) for name in ("squares", "triangles")]
+        lines = [_line(name, group, _of_pattern(group.cases, name), "fem", metric) for name in ("squares", "triangles")]
         column = groups.get("subblocks-column")
         if kind == "axial" and column is not None:
             lines.append(_line("columns, μ = 0", column, list(column.cases), "bar", metric))
@@ -110,8 +111,8 @@ def _time_figures(groups: dict[str, CaseGroup], directory: Path) -> list[Block]:
     return blocks
 
 
-def _of_pattern(group: CaseGroup, pattern: str) -> list[CaseResults]:
-    return [case for case in group.cases if case.scene.block.pattern == pattern]
+def _of_pattern(cases: Iterable[CaseResults], pattern: str) -> list[CaseResults]:
+    return [case for case in cases if case.scene.block.pattern == pattern]
 
 
 def _frequency_error(case: CaseResults) -> float | None:
@@ -135,19 +136,20 @@ def _patterns(group: CaseGroup) -> Table:
         errors = (_percent(_frequency_error(case)), _percent(group.number_of_pair(case, "dda", "fem", metric)))
         cost = (str(work.get("unknowns", DASH)), short(1e3 * _seconds(case), 3))
         rows.append((case.scene.block.pattern, str(_count(case)), *errors, *cost))
-    titles = (TableColumn("Pattern"), TableColumn("n", "decimal"), *columns("text", "Error of ω₁", "L2 error"))
-    titles += columns("decimal", "Unknowns", "ms")
-    return Table(titles, tuple(rows), f"{group.title}, against quadratic elements")
+    return table(
+        ("Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms"),
+        rows,
+        f"{group.title}, against quadratic elements",
+    )
 
 
-def _growth(groups: dict[str, CaseGroup]) -> list[Block]:
+def _growth(groups: Groups) -> Blocks:
     """Return one sentence on how the seconds of a step grow with the number of squares."""
     points = []
-    for name in ("subblocks-rocking", "subblocks-locking"):
-        for case in _of_pattern(groups[name], "squares") if name in groups else ():
-            row = case.rows.get("dda")
-            if row is not None and row.work.get("unknowns", 0) > 300:
-                points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
+    for case in _of_pattern(cases_of(groups, "subblocks-rocking", "subblocks-locking"), "squares"):
+        row = case.rows.get("dda")
+        if row is not None and row.work.get("unknowns", 0) > 300:
+            points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
     if len(dict(points)) < 2:
         return []
     unknowns, seconds = np.array(points).T
@@ -163,8 +165,11 @@ def _glue(group: CaseGroup) -> Table:
         errors_by_motion = errors.setdefault(case.scene.block.glue_ratio, {False: DASH, True: DASH})
         errors_by_motion[bool(case.scene.load.traction)] = _percent(_frequency_error(case))
     rows = tuple((short(ratio), *errors_by_motion.values()) for ratio, errors_by_motion in errors.items())
-    titles = (TableColumn("glue_ratio", "decimal"), *columns("text", "Axial ω₁", "Rocking ω₁"))
-    return Table(titles, rows, "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue")
+    return table(
+        ("glue_ratio", "Axial ω₁", "Rocking ω₁"),
+        rows,
+        "8 × 8 squares at p = 1E, μ = 0: error of the first frequency by glue",
+    )
 
 
 def _rocking(group: CaseGroup) -> Table:
@@ -177,8 +182,8 @@ def _rocking(group: CaseGroup) -> Table:
             cells += [DASH if value is None else short(value) for value in values]
         width = case.scene.fem.patch_width or case.scene.block.base_length
         rows.append((short(width), *cells, _percent(_frequency_error(case))))
-    titles = columns("decimal", "Patch width [m]")
-    for group_title in ("ω₁ [rad/s]", "ξ₁ [1]"):
-        titles += columns("decimal", "dda", "fem", group=group_title)
-    caption = "First rocking mode on springs of equal total stiffness"
-    return Table((*titles, TableColumn("Block above elements")), tuple(rows), caption)
+    return table(
+        ("Patch width [m]", ("ω₁ [rad/s]", "dda", "fem"), ("ξ₁ [1]", "dda", "fem"), "Block above elements"),
+        rows,
+        "First rocking mode on springs of equal total stiffness",
+    )

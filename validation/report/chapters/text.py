@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
@@ -57,6 +58,47 @@ _SYMBOLS = {
     "load.slope": ("β", "°"),
 }
 
+PARAMETERS = {  # how the data of a block are written, in this order; those at their defaults are not
+    "block.vertices": "polygon of {} vertices",
+    "block.side": "a = {:g} m",
+    "block.width": "{:g} m wide",
+    "block.height": "{:g} m high",
+    "block.density": "ρ = {:g} kg/m³",
+    "block.young": "E = {:short2} Pa",
+    "block.poisson": "μ = {:g}",
+    "block.hypothesis": "{}",
+    "block.subdivide": "{0[0]:g} by {0[1]:g} sub-blocks",
+    "block.pattern": "{}",
+    "block.glue_ratio": "glue = {:short2}E",
+    "block.velocity": "{:g} m/s upwards at t = 0",
+    "block.tilt": "tilted by {:.4g}°",
+    "contact.stiffness": "p = {:short2} N/m",
+    "contact.shear_stiffness": "in shear {:short2} N/m",
+    "contact.law": "springs without tension",
+    "contact.friction": "friction φ = {:.4g}°",
+    "contact.rules": "{} friction",
+    "contact.cohesion": "cohesion {:short2} Pa",
+    "contact.rule": "{} contact",
+    "contact.gap": "gap {:short4} m",
+    "contact.band": "dead band −{0[0]:short4} to {0[1]:short4} m",
+    "load.pressure": "q = {:short2} Pa",
+    "load.eccentricity": "e = {:g} m",
+    "load.traction": "τ = {:short2} Pa",
+    "load.gravity": "g = {:g} m/s²",
+    "load.slope": "slope β = {:.4g}°",
+    "load.base_motion": "base moved by {}",
+    "run.geometry": "updated geometry",
+    "run.rotation": "{} rotation",
+}
+ALWAYS = {"block.poisson", "block.hypothesis", "load.pressure"}  # written at their defaults too
+WRITTEN_WITH = {  # data that say something beside another one only
+    "block.pattern": "block.subdivide",
+    "block.glue_ratio": "block.subdivide",
+    "contact.rules": "contact.friction",
+    "run.rotation": "run.geometry",
+}
+SPECIAL = {("contact.stiffness", math.inf): "rigid stops", ("contact.shear_stiffness", 0.0): "frictionless"}
+
 
 def raised(number: int) -> str:
     """Return a whole number in superscript digits."""
@@ -91,6 +133,11 @@ def short(value: float, digits: int = 4) -> str:
 def bounded(value: float, text: str) -> str:
     """Return the text of a measured value; where it is rounding, say that it is below 1e-12."""
     return f"<10{raised(-12)}" if isinstance(value, float) and abs(value) <= 1e-12 else text
+
+
+def capital(text: str) -> str:
+    """Return a sentence with a capital letter."""
+    return text[:1].upper() + text[1:]
 
 
 def percent(value: float) -> str:
@@ -174,67 +221,39 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
 
 
 def _of_block(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the data of a block, its contact and its load, by their fields; what is absent is left out."""
-    block = scene.block
-    if block.vertices is not None:
-        yield "block.vertices", f"polygon of {len(block.outline)} vertices"
-    elif block.side is not None:
-        yield "block.side", f"a = {block.side:g} m"
-    else:
-        yield from (("block.width", f"{block.width:g} m wide"), ("block.height", f"{block.height:g} m high"))
-    yield "block.density", f"ρ = {block.density:g} kg/m³"
-    yield "block.young", f"E = {short(block.young, 2)} Pa"
-    yield "block.poisson", f"μ = {block.poisson:g}"
-    yield "block.hypothesis", block.hypothesis
-    if block.subdivide is not None:
-        yield "block.subdivide", f"{block.subdivide[0]} by {block.subdivide[1]} sub-blocks"
-        yield "block.pattern", block.pattern
-        yield "block.glue_ratio", f"glue = {short(block.glue_ratio, 2)}E"
-    if block.velocity:
-        yield "block.velocity", f"{block.velocity:g} m/s upwards at t = 0".replace("-", "−")
-    if block.tilt:
-        yield "block.tilt", f"tilted by {_degrees(block.tilt)}"
-    yield from (*_of_contact(scene), *_of_load(scene))
+    """Yield the data of a block, its contact, its load and its geometry, by their fields."""
+    for field, template in PARAMETERS.items():
+        if _is_written(scene, WRITTEN_WITH.get(field, field)):
+            value = _value(scene, field)
+            yield field, SPECIAL.get((field, value)) or template.format(_written(value))
 
 
-def _of_contact(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the data of the contact; one that is locked has its stiffness alone."""
-    contact = scene.contact
-    yield "contact.stiffness", "rigid stops" if math.isinf(contact.stiffness) else f"p = {_newtons(contact.stiffness)}"
-    if contact.shear_stiffness is not None:
-        yield "contact.shear_stiffness", f"in shear {_newtons(contact.shear)}" if contact.shear else "frictionless"
-    if contact.law == "unilateral":
-        yield "contact.law", "springs without tension"
-    if contact.friction is not None:
-        yield "contact.friction", f"friction φ = {_degrees(contact.friction)}"
-        yield "contact.rules", f"{contact.rules} friction"
-    if contact.cohesion:
-        yield "contact.cohesion", f"cohesion {short(contact.cohesion, 2)} Pa"
-    if contact.rule != "newmark":
-        yield "contact.rule", f"{contact.rule} contact"
-    if contact.gap:
-        yield "contact.gap", f"gap {short(contact.gap)} m"
-    if any(contact.band):
-        yield "contact.band", f"dead band −{short(contact.band[0])} to {short(contact.band[1])} m"
+def _value(scene: Scene, field: str) -> Any:
+    table, key = field.split(".")
+    return getattr(getattr(scene, table), key)
 
 
-def _of_load(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the loads, of which the pressure is given even where it is zero, and how the outline follows."""
-    load = scene.load
-    yield "load.pressure", f"q = {short(load.pressure, 2)} Pa"
-    if load.eccentricity:
-        yield "load.eccentricity", f"e = {load.eccentricity:g} m".replace("-", "−")
-    if load.traction:
-        yield "load.traction", f"τ = {short(load.traction, 2)} Pa"
-    if load.gravity:
-        yield "load.gravity", f"g = {load.gravity:g} m/s²"
-    if load.slope:
-        yield "load.slope", f"slope β = {_degrees(load.slope)}"
-    if load.base_motion is not None:
-        yield "load.base_motion", f"base moved by {shown(Path(load.base_motion).name)}"
-    if scene.run.geometry == "updated":
-        yield "run.geometry", "updated geometry"
-        yield "run.rotation", f"{scene.run.rotation} rotation"
+def _is_written(scene: Scene, field: str) -> bool:
+    """Whether a datum is not the default of its key, or is written all the same."""
+    table, key = field.split(".")
+    fields = type(getattr(scene, table)).model_fields
+    return field in ALWAYS or _value(scene, field) != fields[key].default
+
+
+class _Number(float):
+    """A number with a true minus sign; `short2` writes two digits without zeros at the end of its decimals."""
+
+    def __format__(self, spec: str) -> str:
+        if spec.startswith("short"):
+            return short(float(self), int(spec.removeprefix("short")))
+        return format(float(self), spec).replace("-", "−")
+
+
+def _written(value: Any) -> Any:
+    """Return a value for its template: numbers as they are written, of a file its name, of a polygon its vertices."""
+    if isinstance(value, tuple):
+        return len(value) if isinstance(value[0], tuple) else tuple(map(_Number, value))
+    return shown(Path(value).name) if isinstance(value, str) else _Number(value)
 
 
 def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
@@ -257,14 +276,6 @@ def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
             value = getattr(table, key)
             if f"{name}.{key}" not in written | OF_POLYGONS and value != field.default:
                 yield f"{name}.{key}", f"{key.replace('_', ' ')} = {value}"
-
-
-def _newtons(stiffness: float) -> str:
-    return f"{short(stiffness, 2)} N/m"
-
-
-def _degrees(angle: float) -> str:
-    return f"{angle:.4g}°".replace("-", "−")
 
 
 def _of_mesh(scene: Scene) -> list[tuple[str, str]]:

@@ -10,17 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
 from validation.report.chapters.data import (
-    CaseGroup,
+    CaseGroups,
     CaseResults,
     DerivedRows,
+    Groups,
+    cases_of,
     derived_rows,
     groups_by_name,
     verdicts_of,
 )
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.chapters.text import DASH, capital, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import engineering
@@ -48,7 +50,7 @@ class TravelledWaves:
     amplitude: Array  # after ten wavelengths, over that at the start [-]
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: waves in blocks, joints and base, the site."""
     groups = groups_by_name(results, manifest)
     rows = derived_rows(manifest)
@@ -84,6 +86,10 @@ def _courant(scene: Scene) -> float:
     return round(speed * scene.time.step * layer.blocks / layer.thickness, 6)
 
 
+def _scheme(case: CaseResults) -> str:
+    return SCHEMES.get(case.scene.time.delta, DASH)
+
+
 def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int, Mapping[str, Any]]]:
     """Return blocks a wavelength and metrics of the waves of a case that DDA carried."""
     waves = []
@@ -94,11 +100,10 @@ def _waves(case: CaseResults, rows: DerivedRows, metric: str) -> list[tuple[int,
     return waves
 
 
-def travels(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> list[TravelledWaves]:
+def travels(groups: Groups, rows: DerivedRows) -> list[TravelledWaves]:
     """Return the waves measured in welded blocks, by case."""
-    group = groups.get("waves-blocks")
     measured = []
-    for case in group.cases if group else ():
+    for case in cases_of(groups, "waves-blocks"):
         waves = _waves(case, rows, "wave.left")
         if waves and case.scene.time.delta in SCHEMES:
             parts = (np.array([wave[f"wave.{part}"] for _, wave in waves]) for part in ("speed_error", "left"))
@@ -139,9 +144,8 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
     axes: dict[str, Any] = {"x_range": (7.0, 115.0), "logarithmic": (True, False)}
     axes["x_ticks"] = {float(blocks): str(blocks) for blocks in BLOCKS}
     label = "blocks a wavelength"
-    shares = {
-        share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)
-    }  # a zero would meet the other axis' last tick
+    # A zero would meet the other axis' last tick.
+    shares = {share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)}
     return [
         ChartPanel("Error of the phase speed [%]", label, "", speeds, y_range=(-3.0, 4.0), levels={"": 0.0}, **axes),
         ChartPanel(
@@ -150,70 +154,60 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
     ]
 
 
-def _others(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _others(groups: Groups, rows: DerivedRows) -> Table:
     """Return the waves in glued blocks, under kinetic damping, and in shear."""
     lines = []
-    for name in ("waves-glue", "waves-discount", "waves-shear"):
-        for case in groups[name].cases if name in groups else ():
-            column = case.scene.column
-            if column is None:
-                continue
-            layer = column.layer[0]
-            glue = DASH
-            if column.glue is not None:
-                glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
-            time = case.scene.time
-            scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
-            for count, wave in _waves(case, rows, "wave.left"):
-                numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
-                lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
-    titles = (
-        *columns("text", "Motion"), *columns("decimal", "kg h / E"), *columns("text", "α, δ, gg"),
-        *columns("decimal", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
-    )  # fmt: skip
-    return Table(titles, tuple(lines), "Glue of finite stiffness, kinetic damping, and shear waves, as measured")
+    for case in cases_of(groups, "waves-glue", "waves-discount", "waves-shear"):
+        column = case.scene.column
+        if column is None:
+            continue
+        layer = column.layer[0]
+        glue = DASH
+        if column.glue is not None:
+            glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
+        time = case.scene.time
+        scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
+        for count, wave in _waves(case, rows, "wave.left"):
+            numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
+            lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
+    return table(
+        ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
+        lines,
+        "Glue of finite stiffness, kinetic damping, and shear waves, as measured",
+    )
 
 
 # ---- joints and base ------------------------------------------------------------------------------------------------
 
 
-def _joints(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _joints(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a joint of kj = rho c w lets through."""
     lines = []
-    for name, group in groups.items():
-        for case in group.cases if name.startswith("waves-joint") else ():
-            for count, wave in _waves(case, rows, "joint.transmitted"):
-                parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
-                scheme = SCHEMES.get(case.scene.time.delta, DASH)
-                lines.append((scheme, str(count), f"{_courant(case.scene):g}", *parts))
-    titles = (*columns("text", "α, δ"), *columns("decimal", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"))
+    for case in cases_of(groups, *(name for name in groups if name.startswith("waves-joint"))):
+        for count, wave in _waves(case, rows, "joint.transmitted"):
+            parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
+            lines.append((_scheme(case), str(count), f"{_courant(case.scene):g}", *parts))
     caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
-    return Table(titles, tuple(lines), caption)
+    return table(("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"), lines, caption)
 
 
-def _base(groups: Mapping[str, CaseGroup], rows: DerivedRows) -> Table:
+def _base(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a transmitting base of the column's own impedance sends back."""
     lines = []
     counts: list[int] = []
-    for case in groups["waves-base"].cases if "waves-base" in groups else ():
+    for case in cases_of(groups, "waves-base"):
         waves = _waves(case, rows, "base.reflected")
         counts = [count for count, _ in waves]
-        scheme = SCHEMES.get(case.scene.time.delta, DASH)
         reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
-        lines.append((scheme, f"{_courant(case.scene):g}", *reflected))
-    titles = (
-        *columns("text", "α, δ"),
-        *columns("decimal", "c dt/h"),
-        *columns("decimal", *map(str, counts), group="|R| [%] by blocks a wavelength"),
-    )
+        lines.append((_scheme(case), f"{_courant(case.scene):g}", *reflected))
     caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
-    return Table(titles, tuple(lines), caption)
+    return table(("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts))), lines, caption)
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------
 
 
-def _site(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
+def _site(groups: Groups, directory: Path) -> Blocks:
     """Return the page of the layered site: surface and base under two schemes and exactly."""
     groups_of_site = [groups[name] for name in ("waves-site", "waves-site-usual") if name in groups]
     traces: dict[str, list[ChartLine]] = {DISPLACEMENT: [], PRESSURE: []}
@@ -254,7 +248,7 @@ def site_panel(title: str, unit: str, traces: Sequence[ChartLine], x_label: str)
     return ChartPanel(f"{title} [{unit}]", x_label, "", lines, (0.0, float(traces[0].x[-1])), names="beside")
 
 
-def _site_sentence(site: Sequence[CaseGroup]) -> str:
+def _site_sentence(site: CaseGroups) -> str:
     """Say how far DDA is from the exact layers, case by case."""
     parts = []
     for group in site:
@@ -267,4 +261,4 @@ def _site_sentence(site: Sequence[CaseGroup]) -> str:
                 f"with {scheme} DDA is {percent(surface)} off at the surface and {percent(base)} off on the base"
             )
     text = f"{'; '.join(parts)} (relative L2 against the exact layers)."
-    return text[:1].upper() + text[1:] if parts else ""
+    return capital(text) if parts else ""

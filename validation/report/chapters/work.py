@@ -6,12 +6,13 @@ import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.data import Verdicts
 from validation.report.chapters.scene import gate_count, opening
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.cost import work_figure
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.work.points import METHODS, Point, cheapest, floor, points
 
@@ -20,7 +21,7 @@ MESHED = {method for (solver, _), method in METHODS.items() if solver == "fem"}
 TARGET_ERRORS = (0.1, 0.01, 0.001)
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter."""
     verdicts = results.verdicts(manifest["study"])
     blocks = opening(manifest)
@@ -30,7 +31,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return [*blocks, order_table(verdicts)]
 
 
-def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Path) -> list[Block]:
+def scheme_blocks(runs: Sequence[Point], prefix: str, title: str, directory: Path) -> Blocks:
     """Return the figure and the sentences of one scheme."""
     if not runs:
         return [Heading(title, 2), Paragraph("No run completed.")]
@@ -87,7 +88,7 @@ def floor_sentence(runs: Sequence[Point]) -> str:
     )
 
 
-def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
+def order_table(verdicts: Verdicts) -> Table:
     """Return the orders that were fitted: what was refined, and the order of each quantity."""
     orders_by_name: dict[str, dict[str, str]] = {}
     for v, quantity in itertools.product(verdicts, ("displacement", "pressure")):
@@ -96,9 +97,8 @@ def order_table(verdicts: Sequence[VerdictRecord]) -> Table:
     rows = []
     for name, orders in orders_by_name.items():
         rows.append((name, orders.get("displacement", DASH), orders.get("pressure", DASH)))
-    titles = (TableColumn("Refined", "code"), *columns("decimal", "displacement", "pressure", group="Order"))
     note = (
         "Fitted with their sign on four levels or more; for mu = 0.25 from successive changes, with the finest mesh's "
         "grid-convergence index as its uncertainty."
     )
-    return Table(titles, tuple(rows), notes=(note,))
+    return table((TableColumn("Refined", "code"), ("Order", "displacement", "pressure")), rows, notes=(note,))

@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocato
 
 from validation.report.figures.curves import GREY, HAIR, dash_style, style_of, thin
 from validation.report.figures.histories import (
+    EndLabel,
     Margins,
     axes_grid,
     house_style,
@@ -245,9 +246,7 @@ def _write_names(axes: Axes, panel: ChartPanel) -> None:
 
 def name_at_ends(axes: Axes, lines: Sequence[ChartLine]) -> None:
     """Write the names beside the values at the largest x that is drawn."""
-    ends: dict[str, float] = {}
-    names: dict[str, str] = {}
-    colors: dict[str, str] = {}
+    labels: dict[str, EndLabel] = {}
     low, high = axes.get_ylim()
     for line in lines:
         is_drawn = np.isfinite(line.y) & (line.x <= axes.get_xlim()[1])
@@ -256,10 +255,8 @@ def name_at_ends(axes: Axes, lines: Sequence[ChartLine]) -> None:
         drawn = np.flatnonzero(is_drawn)
         if line.name and drawn.size:
             last = drawn[np.argmax(line.x[drawn])]
-            ends[line.name] = float(np.clip(line.y[last], low, high))
-            names[line.name] = line.name + line.note
-            colors[line.name] = line.shade
-    label_ends(axes, ends, names, colors, below=0.0)
+            labels[line.name] = (float(np.clip(line.y[last], low, high)), line.name + line.note, line.shade)
+    label_ends(axes, list(labels.values()), below=0.0)
 
 
 def _name_beside(axes: Axes, panel: ChartPanel) -> None:

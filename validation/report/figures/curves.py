@@ -22,42 +22,8 @@ from validation.solvers.registry import by_role, get_solver, is_solver
 TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
 RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
 MOST_DOTS = 400  # samples; more dots cannot be told apart
-SMALL = 7.0  # pt, of letters
-HAIR = 0.4  # pt, of lines
+HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
-HOUSE_STYLE = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
-    "font.size": SMALL,
-    "mathtext.fontset": "dejavusans",
-    "axes.labelsize": 6.5,
-    "axes.titlesize": SMALL,
-    "axes.titlelocation": "left",
-    "axes.titlepad": 3.0,
-    "axes.linewidth": HAIR,
-    "axes.edgecolor": GREY,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.formatter.use_mathtext": True,
-    "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5,
-    "xtick.color": GREY,
-    "ytick.color": GREY,
-    "xtick.labelcolor": "black",
-    "ytick.labelcolor": "black",
-    "xtick.major.width": HAIR,
-    "ytick.major.width": HAIR,
-    "xtick.minor.width": HAIR,
-    "ytick.minor.width": HAIR,
-    "xtick.major.size": 2.0,
-    "ytick.major.size": 2.0,
-    "xtick.minor.size": 1.2,
-    "ytick.minor.size": 1.2,
-    "lines.solid_capstyle": "round",
-    "svg.fonttype": "path",
-    "svg.hashsalt": "dda-validation",
-    "path.simplify": True,
-}
 
 EXACT = "exact"  # name of the line of an exact motion, whichever solution it comes from
 COLUMNS = {
@@ -158,7 +124,10 @@ class HistoryPanel:
         return {name: history for name, history in finest.items() if column in history.columns}
 
 
-def common_range(panels: Sequence[HistoryPanel], column: str) -> tuple[float, float]:
+HistoryPanels = Sequence[HistoryPanel]
+
+
+def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     columns = [np.zeros(1)]
     for panel in panels:

@@ -17,14 +17,12 @@ from matplotlib.figure import Figure
 from validation.report.blocks import FigureBlock
 from validation.report.figures.curves import (
     HAIR,
-    HOUSE_STYLE,
-    dash_style,
     nudge,
-    style_of,
 )
 from validation.runs.files import write_atomically
-from validation.runs.history import Array
 
+HOUSE_STYLE = mpl.rc_params_from_file(str(Path(__file__).with_name("house.mplstyle")), use_default_template=False)
+EndLabel = tuple[float, str, str]  # value at the end of a line, its name, its colour
 P = TypeVar("P", bound=Any)  # a dataclass with a title
 WIDTH = 166.0  # mm, text width of the report
 LABEL_GAP = 3.0  # mm between the names of two lines
@@ -37,7 +35,7 @@ TITLE_LINE = 3.2  # mm, height of a line of it, amply
 @contextmanager
 def house_style() -> Iterator[None]:
     """Apply the house style for the time of a drawing or saving."""
-    with mpl.rc_context(HOUSE_STYLE):  # type: ignore[arg-type]
+    with mpl.rc_context(HOUSE_STYLE):
         yield
 
 
@@ -92,37 +90,23 @@ def size_of(axes: Axes) -> tuple[float, float]:
     return box.width * figure.get_figwidth() * 25.4, box.height * figure.get_figheight() * 25.4
 
 
-def label_ends(
-    axes: Axes,
-    ends: Mapping[str, float],
-    names: Mapping[str, str] | None = None,
-    colors: Mapping[str, str] | None = None,
-    below: float = 1.0,
-) -> None:
-    """Write the names of lines beside their ends (data coordinates), nudged apart, with a thin leader.
+def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> None:
+    """Write the names of lines beside their ends, nudged apart, with a thin leader.
 
-    The limits of the axes must have been set before; `names` replaces the text of a label, `colors` the solver's own,
-    and labels stand at most `below` mm below the axes.
+    The limits of the axes must have been set before; names stand at most `below` mm below the axes.
     """
-    if not ends:
+    if not labels:
         return
     width, height = size_of(axes)
     right = axes.get_xlim()[1]
     to_axes = axes.transAxes.inverted()
-    points = [to_axes.transform(axes.transData.transform((right, y))) for y in ends.values()]
+    points = [to_axes.transform(axes.transData.transform((right, y))) for y, _, _ in labels]
     heights = [float(np.clip(point[1], 0, 1)) for point in points]
     places = nudge(heights, LABEL_GAP / height, -below / height, 1 + 1.0 / height)
-    for name, start, place in zip(ends, heights, places, strict=True):
-        color = style_of(name).color if colors is None else colors[name]
+    for (_, name, color), start, place in zip(labels, heights, places, strict=True):
         where: dict[str, Any] = {"transform": axes.transAxes, "color": color}
         axes.plot([1, 1 + 2.5 / width], [start, place], lw=HAIR, clip_on=False, **where)
-        axes.text(1 + 3.1 / width, place, (names or {}).get(name, name), va="center_baseline", ha="left", **where)
-
-
-def draw_line(axes: Axes, name: str, x: Array, y: Array) -> None:
-    """Draw a solver's line in its own style."""
-    style = style_of(name)
-    axes.plot(x, y, color=style.color, lw=style.width, zorder=2 + style.layer, ls=dash_style(style.dash))
+        axes.text(1 + 3.1 / width, place, name, va="center_baseline", ha="left", **where)
 
 
 def small_multiples(

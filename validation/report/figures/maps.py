@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.report.figures.histories import WIDTH, house_style
+from validation.report.figures.histories import Margins, axes_grid, house_style
 from validation.runs.history import Array
 
 GAP = 6.0  # mm between two maps, and above each line for its titles
@@ -45,23 +45,18 @@ def map_figure(
     scale: MapScale,
 ) -> Figure:
     """Draw lines of maps; rows are labelled at the left, columns below the last line, as both axes are by `labels`."""
-    across = len(maps[0])
-    width = (WIDTH - LEFT - 2.0 - GAP * (across - 1)) / across
-    tall = scale.cell * len(rows)
-    height = (GAP + tall) * len(maps) + BOTTOM
+    margins = Margins(LEFT, 2.0, GAP, BOTTOM, GAP)
     with house_style():
-        figure = Figure(figsize=(WIDTH / 25.4, height / 25.4))
-        for i, line in enumerate(maps):
-            y = height - (GAP + tall) * (i + 1)
-            for k, number_map in enumerate(line):
-                x = LEFT + k * (width + GAP)
-                axes = figure.add_axes((x / WIDTH, y / height, width / WIDTH, tall / height))
+        figure, grid = axes_grid([(scale.cell * len(rows), GAP)] * len(maps), len(maps[0]), margins)
+        for line, line_axes in zip(maps, grid, strict=True):
+            is_last = line_axes is grid[-1]
+            for axes, number_map in zip(line_axes, line, strict=True):
+                is_first = axes is line_axes[0]
                 _draw(axes, number_map, scale)
-                is_last = i == len(maps) - 1
                 axes.set_xticks(range(len(columns)), list(columns) if is_last else [""] * len(columns))
-                axes.set_yticks(range(len(rows)), [""] * len(rows) if k else list(rows))
+                axes.set_yticks(range(len(rows)), list(rows) if is_first else [""] * len(rows))
                 axes.tick_params(length=0)
-                axes.set(xlabel=labels[0] if is_last else "", ylabel="" if k else labels[1])
+                axes.set(xlabel=labels[0] if is_last else "", ylabel=labels[1] if is_first else "")
     return figure
 
 

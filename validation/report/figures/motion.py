@@ -16,21 +16,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
+from validation.report.figures.charts import ChartLine, draw_chart_line
 from validation.report.figures.curves import (
     COLUMNS,
     HAIR,
     HistoryPanel,
+    HistoryPanels,
     common_range,
     differences,
     engineering,
     is_sparse,
     style_of,
-    thin,
 )
 from validation.report.figures.histories import (
     LETTER,
     Margins,
-    draw_line,
     house_style,
     label_ends,
     outer_ticks,
@@ -49,7 +49,7 @@ FLOOR = 1e-9  # of the static value; smaller differences are not drawn
 Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
 
 
-def history_figure(panels: Sequence[HistoryPanel], *columns: str, apart: bool = False) -> Figure:
+def history_figure(panels: HistoryPanels, *columns: str, apart: bool = False) -> Figure:
     """Draw columns of all solvers, one panel a case; if `apart`, the first one's differences from the reference below.
 
     Differences are divided by the static value (by the reference's largest value where there is none) and shown
@@ -87,7 +87,7 @@ def history_figure(panels: Sequence[HistoryPanel], *columns: str, apart: bool = 
 # ---- lines that lie on one another --------------------------------------------------------------------------------
 
 
-def twins(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> Twins:
+def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
     """Return the solvers that are drawn, and with each the later ones that lie on it in every panel."""
     lines: dict[str, dict[str, float]] = {}
     for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
@@ -101,7 +101,7 @@ def twins(panels: Sequence[HistoryPanel], columns: Sequence[str]) -> Twins:
     return lines
 
 
-def _apart(panels: Sequence[HistoryPanel], columns: Sequence[str], one: str, other: str) -> float | None:
+def _apart(panels: HistoryPanels, columns: Sequence[str], one: str, other: str) -> float | None:
     """Return how far a solver is off another at most, over the largest value; None where it is drawn without it."""
     worst = 0.0
     for panel in panels:
@@ -142,7 +142,7 @@ def swings(history: History, column: str) -> int:
     return int(np.count_nonzero(np.diff(np.signbit(far))))
 
 
-def start_of(panels: Sequence[HistoryPanel], column: str) -> float | None:
+def start_of(panels: HistoryPanels, column: str) -> float | None:
     """Return the time [s] of the start that is drawn by itself, or None where all swings can be seen."""
     spans = []
     for panel in panels:
@@ -173,19 +173,19 @@ def _columns(count: int) -> int:
     return -(-count // rows)
 
 
-def _scale(panels: Sequence[HistoryPanel], column: str) -> tuple[float, str]:
+def _scale(panels: HistoryPanels, column: str) -> tuple[float, str]:
     """Return the factor and the unit that a column is drawn in."""
     low, high = common_range(panels, column)
     return engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
 
 
-def _label(panels: Sequence[HistoryPanel], column: str) -> str:
+def _label(panels: HistoryPanels, column: str) -> str:
     name, _ = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
     _, unit = _scale(panels, column)
     return f"{name}\n[{unit}]" if unit else name
 
 
-def _ends(band: Sequence[HistoryPanel], panels: Sequence[HistoryPanel], column: str) -> dict[str, float]:
+def _ends(band: HistoryPanels, panels: HistoryPanels, column: str) -> dict[str, float]:
     """Return where each line ends, in the last panel of a band that has it."""
     factor, _ = _scale(panels, column)
     ends = {}
@@ -195,7 +195,7 @@ def _ends(band: Sequence[HistoryPanel], panels: Sequence[HistoryPanel], column: 
     return ends
 
 
-def _history_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str, limits: tuple[float, float]) -> None:
+def _history_row(row: list[Axes], panels: HistoryPanels, column: str, limits: tuple[float, float]) -> None:
     low, high = limits
     factor, _ = engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
     pad = 0.05 * (high - low) or 1.0
@@ -215,7 +215,7 @@ def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
         axes.plot(x, y, "o", ms=2.0, color=style_of(solver).color, zorder=2 + style_of(solver).layer)
         return
     if not dense:
-        draw_line(axes, solver, *thin(x, y))
+        draw_chart_line(axes, ChartLine(solver, x, y))
         return
     style = style_of(solver)
     middles, low, high = band(x, y)
@@ -224,7 +224,7 @@ def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
         axes.plot(middles, edge, color=style.color, lw=0.6, zorder=2 + style.layer)
 
 
-def _difference_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str, names: Mapping[str, str]) -> None:
+def _difference_row(row: list[Axes], panels: HistoryPanels, column: str, names: Mapping[str, str]) -> None:
     curves = [differences(panel, column) for panel in panels]
     values = np.zeros(0)
     for lines in curves:
@@ -238,7 +238,8 @@ def _difference_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str
         axes.yaxis.set_major_locator(LogLocator(numticks=5))
         axes.yaxis.set_minor_locator(NullLocator())
         for solver, (x, y) in lines.items():
-            draw_line(axes, solver, x, np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan))
+            visible = np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan)
+            draw_chart_line(axes, ChartLine(solver, x, visible))
         _time_axis(axes, panel)
     ends: dict[str, float] = {}
     for lines in curves:
@@ -250,7 +251,8 @@ def _difference_row(row: list[Axes], panels: Sequence[HistoryPanel], column: str
 def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:
     share_left(row, count, label)
     row[0].yaxis.set_label_coords(-9.0 / size_of(row[0])[0], 0.5)
-    label_ends(row[count - 1], ends, names)
+    labels = [(y, names.get(solver, solver), style_of(solver).color) for solver, y in ends.items()]
+    label_ends(row[count - 1], labels)
 
 
 def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]]) -> None:

@@ -22,6 +22,16 @@ def timed(scene: Scene, **values: Any) -> Scene:
     return scene.model_copy(update={"time": scene.time.model_copy(update=values)})
 
 
+def constant(scene: Scene, **values: Any) -> Scene:
+    """Return a scene under constant acceleration without a discount."""
+    return timed(scene, alpha=0.5, delta=1.0, gg=1.0, **values)
+
+
+def average(scene: Scene, gg: float = 1.0) -> Scene:
+    """Return a scene under average acceleration and a discount per step."""
+    return timed(scene, alpha=0.25, delta=0.5, gg=gg)
+
+
 def stiffer(scene: Scene, ratio: float) -> Scene:
     """Return the scene with springs of p = ratio E."""
     contact = scene.contact.model_copy(update={"stiffness": ratio * scene.block.young})
@@ -33,11 +43,12 @@ def ratio_of(scene: Scene) -> float:
     return scene.contact.stiffness / scene.block.young
 
 
-def damping(scene: Scene, frequency: float) -> float:
-    """Return the damping ratio xi of a mode [-], at least 1 where it does not swing; NaN where a root is not positive.
+def first_damping(scene: Scene) -> float:
+    """Return xi of the DDA block's first axial mode [-], at least 1 where it creeps; NaN where a root is not positive.
 
     A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
     """
+    frequency = spectra.dda_frequency(scene)
     first, second = spectra.roots(scene, frequency)
     if first.imag:
         return spectra.damping_ratio(scene, frequency)
@@ -45,11 +56,6 @@ def damping(scene: Scene, frequency: float) -> float:
         return math.nan
     logs = math.log(first.real), math.log(second.real)
     return -sum(logs) / (2 * math.sqrt(logs[0] * logs[1])) if logs[0] * logs[1] > 0 else math.nan
-
-
-def first_damping(scene: Scene) -> float:
-    """Return xi of the DDA block's first axial mode."""
-    return damping(scene, spectra.dda_frequency(scene))
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
@@ -91,12 +97,7 @@ def overdamped_below(scene: Scene) -> float | None:
         return None
     # w dt of two equal roots lies near (1 - gg) / 2
     middle = (1 - scene.time.discount) / 2 / spectra.dda_frequency(scene)
-
-    def swings(step: float) -> float:
-        first, second = spectra.roots(timed(scene, step=step), spectra.dda_frequency(scene))
-        return abs((first - second).imag) - abs((first - second).real)
-
-    return float(brentq(swings, middle / 4, 4 * middle))
+    return float(brentq(lambda step: first_damping(timed(scene, step=step)) - 1, middle / 4, 4 * middle))
 
 
 def contact_radius(scene: Scene) -> float:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Callout, Heading, PageBreak, Paragraph, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table, table
+from validation.report.chapters.data import Groups
 from validation.report.chapters.measures import MetricColumn, cells, heads
-from validation.report.chapters.text import DASH, percent, plain, short
+from validation.report.chapters.text import DASH, cell, percent, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
-from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
 
@@ -37,9 +38,9 @@ SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
 
-def decisions(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the three pages."""
-    blocks: list[Block] = []
+    blocks: Blocks = []
     for page in (step_page, spring_page, discount_page):
         blocks += [PageBreak(), *page(groups, paper, directory)]
     return blocks
@@ -49,31 +50,39 @@ def _rule(text: str) -> Callout:
     return Callout(f"Rule. {text}", "rule")
 
 
+def _damping_chart(
+    scheme: str,
+    scenes: Mapping[str, Scene],
+    y_range: tuple[float, float],
+    marks: Mapping[str, float],
+    levels: Mapping[str, float],
+) -> ChartPanel:
+    """Return the damping ratio of the first axial mode over the time step, dashed where the discount is a rate."""
+    steps = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
+    lines = []
+    for (name, scene), color in zip(scenes.items(), SETTINGS, strict=False):
+        dash = () if scene.time.gg_rate is None else DASHED
+        lines.append(ChartLine(name, 1e3 * steps, 100 * closed.over_steps(scene, steps), color, dash))
+    title = f"Damping ratio of the first axial mode [%], {scheme}"
+    return ChartPanel(title, "time step dt [ms]", "", lines, RANGE, y_range, (True, True), marks, levels)
+
+
 # ---- which time step ----------------------------------------------------------------------------------------------
 
 
-def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the time step."""
-    scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
-    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
-    lines = [
-        ChartLine(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
-        for r, scene, color in zip(RATIOS, scenes, SETTINGS, strict=False)
-    ]
-    greatest = max(float(np.nanmax(line.y)) for line in lines)
+    scenes = [closed.stiffer(closed.constant(paper), r) for r in RATIOS]
     turn = closed.most_damped(scenes[0])
     transit = 1e3 * spectra.transit(paper)
-    chart = ChartPanel(
-        "Damping ratio of the first axial mode [%], constant acceleration",
-        "time step dt [ms]",
-        "",
-        lines,
-        RANGE,
+    chart = _damping_chart(
+        "constant acceleration",
+        {f"p = {closed.ratio_of(scene):g}E": scene for scene in scenes},
         (0.05, 60.0),
-        (True, True),
         {f"a/c = {transit:.3g} ms": transit},
         {f"{100 * xi:g} %": 100 * xi for xi in TARGET_DAMPING},
     )
+    greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     caption = (
         f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % at ω₁ dt = {turn:.3g}, and falls "
         "beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
@@ -102,14 +111,14 @@ def step_table(scenes: Sequence[Scene]) -> Table:
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
-    titles = (
-        TableColumn("Wanted ξ"),
-        *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
+    return table(
+        ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(s):g}E" for s in scenes))),
+        rows,
+        "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.",
     )
-    return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
 
 
-def _as_run(groups: Groups) -> list[Block]:
+def _as_run(groups: Groups) -> Blocks:
     """Return what the runs over one fixed time had: damping, errors, hidden tension."""
     group = groups.get("model-form")
     if group is None:
@@ -120,10 +129,9 @@ def _as_run(groups: Groups) -> list[Block]:
         for pair in (("dda", "bar"), ("bar", "continuum")):
             errors += [group.number_of_pair(case, *pair, f"{name}.l2") for name in ("displacement", "pressure")]
         minimum = case.number("dda", "pressure.minimum")
-        tension = DASH
-        if minimum is not None:
-            hidden = minimum < -closed.NOISE * case.scene.load.pressure
-            tension = plain(minimum / 1e6, 3) if hidden else "none"
+        tension = cell(minimum, 1e-6, 3)
+        if minimum is not None and minimum >= -closed.NOISE * case.scene.load.pressure:
+            tension = "none"
         excess = peak_excess(case)
         peak = DASH if excess is None else signed_percent(excess)
         shares = (case.number("dda", "mode1.damping"), *errors)
@@ -131,16 +139,16 @@ def _as_run(groups: Groups) -> list[Block]:
         rows.append((f"{1e3 * case.scene.time.step:g}", damping, peak, *error_cells, tension))
     if not rows:
         return []
-    titles = (
-        *columns("decimal", "dt [ms]"), *columns("text", "ξ₁"),
-        *columns("text", "first peak", "displ.", "pressure", group="DDA − bar: model"),
-        *columns("text", "displ.", "pressure", group="bar − continuum: time"),
-        *columns("decimal", "Pull of the contact [MPa]"),
-    )  # fmt: skip
     return [
-        Table(
-            titles,
-            tuple(rows),
+        table(
+            (
+                "dt [ms]",
+                "ξ₁",
+                ("DDA − bar: model", "first peak", "displ.", "pressure"),
+                ("bar − continuum: time", "displ.", "pressure"),
+                "Pull of the contact [MPa]",
+            ),
+            rows,
             "What each step cost at p = 1E, as run: first peak of the pressure, and relative L2 over 0.2 s.",
         ),
         Paragraph(
@@ -154,9 +162,9 @@ def _as_run(groups: Groups) -> list[Block]:
 # ---- which springs ------------------------------------------------------------------------------------------------
 
 
-def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the stiffness of the springs."""
-    base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
+    base = closed.constant(paper, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
     scenes = [closed.stiffer(base, float(r)) for r in grid]
     share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
@@ -230,42 +238,35 @@ def spring_table(groups: Groups, base: Scene) -> Table:
         )
         settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
         rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
-    titles = (
-        TableColumn("p"),
-        *columns("decimal", "v at rest [mm]", "springs [mm]"), *columns("text", "ξ₁"),
-        *columns("decimal", "|λ| contact", "4/ω contact [ms]"),
-        *heads(SETTLING + FINE_SETTLING),
-    )  # fmt: skip
-    return Table(
-        titles, tuple(rows), f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run."
+    return table(
+        (
+            "p",
+            "v at rest [mm]",
+            "springs [mm]",
+            "ξ₁",
+            "|λ| contact",
+            "4/ω contact [ms]",
+            *heads(SETTLING + FINE_SETTLING),
+        ),
+        rows,
+        f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run.",
     )
 
 
 # ---- which discount -----------------------------------------------------------------------------------------------
 
 
-def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
+def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the page on the discount."""
-    base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
-    grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
-    lines = []
-    for gg, color in zip(DISCOUNTS[1:], SETTINGS, strict=False):
-        scene = closed.timed(base, gg=gg)
-        lines.append(ChartLine(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
+    base = closed.average(paper)
     rate = closed.rate_for(base, 0.05)
     at_rate = closed.timed(base, gg_rate=rate, gg=1.0)
-    lines.append(
-        ChartLine(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), SETTINGS[3], DASHED)
-    )
+    scenes = {f"gg = {gg:g}": closed.timed(base, gg=gg) for gg in DISCOUNTS[1:]}
     turns = ", ".join(short(spectra.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
-    chart = ChartPanel(
-        "Damping ratio of the first axial mode [%], average acceleration",
-        "time step dt [ms]",
-        "",
-        lines,
-        RANGE,
+    chart = _damping_chart(
+        "average acceleration",
+        scenes | {f"gg = exp(−{rate:.3g} dt)": at_rate},
         (0.1, 1000.0),
-        (True, True),
         {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
         {"critical": 100.0},
     )
@@ -309,15 +310,19 @@ def discount_table(base: Scene) -> Table:
         step = DASH if overdamped_below is None else f"{1e3 * overdamped_below:.3g}"
         rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
         rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))
-    titles = (
-        *columns("decimal", "gg"),
-        *columns("text", *(f"dt = {milliseconds(step)}" for step in STEPS[1:]), group="ξ₁, average acceleration"),
-        *columns("decimal", "overdamped below dt [ms]", "c at dt = 1 ms [1/s]"),
+    return table(
+        (
+            "gg",
+            ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:])),
+            "overdamped below dt [ms]",
+            "c at dt = 1 ms [1/s]",
+        ),
+        rows,
+        "What a discount per step damps at p = 1E, in closed form.",
     )
-    return Table(titles, tuple(rows), "What a discount per step damps at p = 1E, in closed form.")
 
 
-def _measured(groups: Groups) -> list[Block]:
+def _measured(groups: Groups) -> Blocks:
     """Return how the runs of Figure 9 were damped, as measured on their histories."""
     group = groups.get("figure-9")
     if group is None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import cmath
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Beside, Block, Callout, Heading, Paragraph, Part, Points
-from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Part, Points
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, Verdicts
 from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
@@ -19,9 +19,8 @@ from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, 
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed
-from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import PAPER, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
-from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
 from validation.theory import spectra
 
@@ -33,7 +32,7 @@ DISCOUNT = 0.98
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
 
 
-def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], directory: Path) -> list[Part]:
+def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path) -> list[Part]:
     """Return the blocks of the first page."""
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
@@ -48,7 +47,7 @@ def first_page(groups: Groups, paper: Scene, verdicts: Sequence[VerdictRecord], 
     ]
 
 
-def tested(paper: Scene) -> list[Block]:
+def tested(paper: Scene) -> Blocks:
     """Return what stands beside the drawing."""
     block = paper.block
     return [
@@ -176,7 +175,7 @@ def springs(groups: Groups) -> tuple[str, str] | None:
         return None
     usual_steps, stiff_steps, fine_displacement, fine_pressure = texts
     radius = closed.contact_radius(stiff.scene)
-    constant = closed.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
+    constant = closed.constant(usual.scene)
     share = percent(closed.spring_share(constant))
     return (
         "Which springs?",
@@ -192,7 +191,7 @@ def springs(groups: Groups) -> tuple[str, str] | None:
 
 def discount(paper: Scene) -> tuple[str, str]:
     """Say what gg = 0.98 does."""
-    kinetic = closed.timed(paper, alpha=0.25, delta=0.5, gg=DISCOUNT)
+    kinetic = closed.average(paper, DISCOUNT)
     ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
     return (
         f"What does gg = {DISCOUNT:g} do?",
@@ -298,7 +297,7 @@ def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Arra
 def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(groups)
-    turn = closed.most_damped(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
+    turn = closed.most_damped(closed.constant(paper))
     claim = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
     if len(rows) > 1:
         claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
@@ -309,7 +308,7 @@ def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     )
 
 
-def verdict_line(verdicts: Sequence[VerdictRecord]) -> Callout:
+def verdict_line(verdicts: Verdicts) -> Callout:
     """Return the one line of verdicts."""
     if not verdicts:
         return Callout("No gate was judged.", "warn")

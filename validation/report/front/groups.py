@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, case_groups
 from validation.report.front.closed import ratio_of
 from validation.runs.results import Results
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-Groups = Mapping[str, CaseGroup]
 PAPER = "figures-3-4"
 
 

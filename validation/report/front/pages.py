@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import PageBreak, Paragraph, Part
+from validation.report.chapters.data import Groups, Verdicts
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
-from validation.report.front.groups import Groups, paper_scene
-from validation.runs.records import VerdictRecord
+from validation.report.front.groups import paper_scene
 
 
-def front_pages(
-    groups: Groups, verdicts: Sequence[VerdictRecord], studies: Sequence[str], directory: Path
-) -> list[Part]:
+def front_pages(groups: Groups, verdicts: Verdicts, studies: Sequence[str], directory: Path) -> list[Part]:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
     paper = paper_scene(groups)
     failures = not_passed(verdicts)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Table, columns
-from validation.report.chapters.data import CaseGroup, groups_by_name
+from validation.report.blocks import Blocks, Heading, Table, table
+from validation.report.chapters.data import Groups, cases_of, groups_by_name
 from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import drift_panel, drift_values, opening, scene_section
@@ -36,7 +35,7 @@ AT_REST = tuple(
 IN_WORDS = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: a section for each figure of the paper, then mesh and springs, then the ledger."""
     groups = groups_by_name(results, manifest)
     blocks = opening(manifest)
@@ -47,7 +46,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return [*blocks, *mesh_blocks(groups, directory), *ledger_blocks(list(groups.values()), "core", directory)]
 
 
-def mesh_blocks(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]:
+def mesh_blocks(groups: Groups, directory: Path) -> Blocks:
     """Return what mesh, point springs and lateral strain do to the finite elements beside DDA."""
     charts: list[ChartPanel] = []
     sentences: list[str] = []
@@ -82,7 +81,7 @@ def mesh_blocks(groups: Mapping[str, CaseGroup], directory: Path) -> list[Block]
     return [Heading("Mesh, point springs and lateral strain", 2), figure, *([table] if table.rows else [])]
 
 
-def mesh_errors(groups: Mapping[str, CaseGroup]) -> tuple[np.ndarray, np.ndarray] | None:
+def mesh_errors(groups: Groups) -> tuple[np.ndarray, np.ndarray] | None:
     """Return elements a side and relative L2 error of fem against the bar; None for fewer than two meshes."""
     group = groups.get("mesh-convergence")
     if group is None:
@@ -98,14 +97,12 @@ def mesh_errors(groups: Mapping[str, CaseGroup]) -> tuple[np.ndarray, np.ndarray
     return n, errors
 
 
-def lateral_table(groups: Mapping[str, CaseGroup]) -> Table:
+def lateral_table(groups: Groups) -> Table:
     """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
     rows = []
-    group = groups.get("poisson-statics")
-    for case in group.cases if group else ():
+    for case in cases_of(groups, "poisson-statics"):
         dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
         ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
         rows.append((case.label, short(case.scene.block.poisson), *cells(AT_REST, case), ratio))
-    titles = (*columns("text", "Case"), *columns("decimal", "μ"), *heads(AT_REST), *columns("text", "apart"))
     caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
-    return Table(titles, tuple(rows), caption)
+    return table(("Case", "μ", *heads(AT_REST), "apart"), rows, caption)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.blocks import Block, Blocks, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, case_groups
 from validation.report.chapters.scene import gate_count, opening, outcomes
 from validation.report.chapters.text import DASH, bounded, power
@@ -15,7 +15,7 @@ CODES = ("fem:full", "fenicsx")
 MEASURES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: how far the codes are apart, scene by scene; where one did not run, why."""
     groups = case_groups(results, manifest)
     blocks = opening(manifest)
@@ -34,14 +34,12 @@ def apart(groups: list[CaseGroup]) -> Table:
     for group in groups:
         cells = []
         for metric in MEASURES:
-            values = [group.number_of_pair(case, *CODES, metric) for case in group.cases]
-            worst = max((value for value in values if value is not None), default=None)
+            worst = max(group.numbers_of_pair(*CODES, metric), default=None)
             cells.append(DASH if worst is None else bounded(worst, power(worst)))
         if set(cells) != {DASH}:
             rows.append((group.title, str(len(group.cases)), *cells))
-    titles = (
-        *columns("text", "Scene"), *columns("decimal", "Cases"),
-        *columns("decimal", "L2", "largest", group="Displacement"),
-        *columns("decimal", "L2", "largest", group="Pressure"),
-    )  # fmt: skip
-    return Table(titles, tuple(rows), "Two programs on one mesh: relative differences, the largest over the cases.")
+    return table(
+        ("Scene", "Cases", ("Displacement", "L2", "largest"), ("Pressure", "L2", "largest")),
+        rows,
+        "Two programs on one mesh: relative differences, the largest over the cases.",
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name
 from validation.report.chapters.scene import history_block, opening
 from validation.report.chapters.text import DASH, bounded, percent, power
@@ -17,7 +17,7 @@ LOCKING = "locking"
 LONG = "long-run"
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the table of locking, the long run with its energy."""
     groups = groups_by_name(results, manifest)
     blocks = opening(manifest)
@@ -78,8 +78,11 @@ def locking_table(group: CaseGroup) -> Table:
         cells = [DASH if v is None else f"{1e3 * v:.4f}".replace("-", "−") for v in (linear, quadratic)]
         share = DASH if not linear or not quadratic else percent(linear / quadratic)
         rows.append((f"{poisson:g}", *cells, share))
-    titles = (*columns("decimal", "μ", "linear", "quadratic"), *columns("text", "linear over quadratic"))
-    return Table(titles, tuple(rows), f"v at rest [mm], plane strain, {_coarsest(group)} elements a side.")
+    return table(
+        ("μ", "linear", "quadratic", "linear over quadratic"),
+        rows,
+        f"v at rest [mm], plane strain, {_coarsest(group)} elements a side.",
+    )
 
 
 def locked_sentence(group: CaseGroup) -> str:

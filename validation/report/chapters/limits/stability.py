@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Block, Heading, Table, TableColumn, columns
+from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, short
 from validation.report.figures import histories
@@ -62,7 +62,7 @@ def extreme_runs(results: Results, manifest: Manifest) -> list[ExtremeRun]:
     return runs
 
 
-def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of a study of extremes."""
     runs = extreme_runs(results, manifest)
     blocks = [*opening(manifest, lead=conclusion(runs)), outcome_table(runs)]
@@ -129,13 +129,12 @@ def outcome_table(runs: Sequence[ExtremeRun]) -> Table:
             count[str(kind) if has_kind else str(run.row.outcome)] += 1
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
-    titles = (TableColumn("Solver"), *columns("decimal", *kinds), TableColumn("otherwise", "fill"))
     notes = tuple(f"{kind}: {kind.sentence}" for kind in Stability)
     caption = "Outcomes by name; the bar has no matrix and completes or does not apply."
-    return Table(titles, tuple(rows), caption, notes)
+    return table(("Solver", *kinds, TableColumn("otherwise", "fill")), rows, caption, notes)
 
 
-def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> list[Block]:
+def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> Blocks:
     """Return the two maps of one solver, worst over schemes, starts and discounts."""
     if not _errors(runs):
         return []
@@ -164,7 +163,7 @@ def _decade(value: float) -> str:
     return f"$10^{{{round(math.log10(value))}}}$"
 
 
-def factor_tables(runs: Sequence[ExtremeRun]) -> list[Block]:
+def factor_tables(runs: Sequence[ExtremeRun]) -> Blocks:
     """Return one table of the one-factor extremes: radius, condition, residual and digits."""
     by_key = {(run.scene, run.solver): run for run in runs}
     scenes = dict.fromkeys(run.scene for run in runs)
@@ -176,12 +175,19 @@ def factor_tables(runs: Sequence[ExtremeRun]) -> list[Block]:
         fewest = sorted(rows, key=lambda row: _fewest(by_key.get((row[0], "dda"))))[:MOST_ROWS]
         rows = [row for row in rows if row in fewest]
         caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
-    titles = (
-        TableColumn("Scene", "id"),
-        *columns("decimal", "|λ|", "condition", "residual", group="dda"),
-        *columns("decimal", "dda", "dda-textbook", "fem", group="Digits of displacement / pressure"),
-    )
-    return [Heading("One datum at its extremes", 3), Table(titles, tuple(rows), caption, ruled=False)]
+    return [
+        Heading("One datum at its extremes", 3),
+        table(
+            (
+                TableColumn("Scene", "id"),
+                ("dda", "|λ|", "condition", "residual"),
+                ("Digits of displacement / pressure", "dda", "dda-textbook", "fem"),
+            ),
+            rows,
+            caption,
+            ruled=False,
+        ),
+    ]
 
 
 def _factor_row(scene: str, runs: Mapping[tuple[str, str], ExtremeRun]) -> tuple[str, ...]:

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Paragraph, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.chapters.measures import MetricColumn, cells
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, plain, short
+from validation.report.chapters.text import short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
@@ -20,12 +21,17 @@ from validation.runs.results import Results
 COLORS = ("#0072b2", "#d55e00", "#56b4e9", "#8c6d1f")  # of quantities and schemes, which are no solvers
 SCHEMES = {0.5: "(1/2, 1)", 0.5625: "(9/16, 1)"}
 QUANTITIES = ("displacement", "pressure")
+SETTLING = (
+    MetricColumn("displacement.fine_settling_step", 1.0, "displ.", decimals=0),
+    MetricColumn("pressure.fine_settling_step", 1.0, "press.", decimals=0),
+    MetricColumn("contact.spectral_radius", 1.0, "|λ| of the contact", digits=8),
+)
 
 
-def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: what rings, for how long, and what does not."""
     (group,) = case_groups(results, manifest)
-    table = by_ratio(group)
+    cases_by_ratio = by_ratio(group)
     longest = float(max(case.scene.time.steps for case in group.cases))
     caption = (
         "Steps until displacement and contact pressure stay within 10⁻⁴ of their static values, dda; a hollow mark has "
@@ -35,7 +41,7 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "",
         "p / E",
         "Steps to settle within $10^{-4}$",
-        curves(table, longest),
+        curves(cases_by_ratio, longest),
         y_range=(10.0, 1.6 * longest),
         logarithmic=(True, True),
     )
@@ -45,8 +51,8 @@ def contact_chapter(results: Results, manifest: Manifest, directory: Path) -> li
         "settle in between, and beyond, a ringing too small to see never ends."
     )
     return [
-        *opening(manifest, lead=conclusion(table)),
-        settling_table(table),
+        *opening(manifest, lead=conclusion(cases_by_ratio)),
+        settling_table(cases_by_ratio),
         histories.saved(figure, directory, f"{group.slug}-settling.svg", caption, group.name),
         Paragraph(f"{ring} {gate_count(group.verdicts).capitalize()}."),
     ]
@@ -68,13 +74,13 @@ def _steps(case: CaseResults | None, quantity: str) -> float | None:
     return None if case is None else case.number("dda", f"{quantity}.fine_settling_step")
 
 
-def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
+def curves(cases_by_ratio: CasesByRatio, longest: float) -> list[ChartLine]:
     """Return steps to settle over p/E; a hollow dot at the longest run has not settled within it."""
-    ratios = np.array(list(table))
+    ratios = np.array(list(cases_by_ratio))
     lines: list[ChartLine] = []
     for (alpha, scheme), quantity in itertools.product(SCHEMES.items(), QUANTITIES):
         color = COLORS[len(lines) // 3]
-        settling = np.array([_steps(row.get(alpha), quantity) for row in table.values()], dtype=float)
+        settling = np.array([_steps(row.get(alpha), quantity) for row in cases_by_ratio.values()], dtype=float)
         settles = np.isfinite(settling)
         steps = np.where(settles, settling, longest)
         lines += [
@@ -85,12 +91,12 @@ def curves(table: CasesByRatio, longest: float) -> list[ChartLine]:
     return lines
 
 
-def conclusion(table: CasesByRatio) -> str:
+def conclusion(cases_by_ratio: CasesByRatio) -> str:
     """Say in one sentence how long the pressure takes under either scheme."""
     parts = []
     for alpha, name in SCHEMES.items():
         settling: list[tuple[float, float]] = []
-        for ratio, row in table.items():
+        for ratio, row in cases_by_ratio.items():
             steps = _steps(row.get(alpha), "pressure")
             if steps is not None:
                 settling.append((steps, -ratio))
@@ -103,19 +109,15 @@ def conclusion(table: CasesByRatio) -> str:
     )
 
 
-def settling_table(table: CasesByRatio) -> Table:
+def settling_table(cases_by_ratio: CasesByRatio) -> Table:
     """Return steps to settle and the contact mode's root by p/E."""
-    titles = columns("decimal", "p / E")
-    for name in SCHEMES.values():
-        titles += columns("decimal", "displ.", "press.", "|λ| of the contact", group=f"α, δ = {name}")
+    of_scheme = [measure.title for measure in SETTLING]
     rows = []
-    for ratio, row in table.items():
-        cells = [short(ratio)]
-        for alpha in SCHEMES:
-            case = row.get(alpha)
-            steps = [_steps(case, quantity) for quantity in QUANTITIES]
-            cells += [DASH if n is None else f"{n:.0f}" for n in steps]
-            radius = None if case is None else case.number("dda", "contact.spectral_radius")
-            cells.append(DASH if radius is None else plain(radius, 8))
-        rows.append(tuple(cells))
-    return Table(titles, tuple(rows), "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.")
+    for ratio, row in cases_by_ratio.items():
+        measured = [cells(SETTLING, row.get(alpha)) for alpha in SCHEMES]
+        rows.append((short(ratio), *itertools.chain(*measured)))
+    return table(
+        ("p / E", *((f"α, δ = {name}", *of_scheme) for name in SCHEMES.values())),
+        rows,
+        "Steps to settle within 10⁻⁴ of static, and the contact mode's |λ|, dda.",
+    )

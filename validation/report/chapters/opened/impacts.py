@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from validation.report.blocks import Block, Heading, Table, columns
+from validation.report.blocks import Blocks, Heading, Table, table
 from validation.report.chapters.data import CaseGroup, case_groups, verdicts_of
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import opening
@@ -27,12 +27,12 @@ NOTE = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: a table for each benchmark."""
     groups = case_groups(results, manifest)
     blocks = opening(manifest, verdicts_of(groups), remark=NOTE)
     for group in groups:
-        blocks += [Heading(group.title, 3), table(group)]
+        blocks += [Heading(group.title, 3), quantity_table(group)]
     return blocks
 
 
@@ -41,9 +41,8 @@ def measures_of(solver: str) -> list[MetricColumn]:
     return [MetricColumn(*quantity, digits=5, solver=solver) for quantity in QUANTITIES]
 
 
-def table(group: CaseGroup) -> Table:
+def quantity_table(group: CaseGroup) -> Table:
     """Return the quantities of each run."""
-    titles = (*columns("text", "Case", "Solver"), *heads(measures_of("dda")))
     rows = []
     for case in group.cases:
         label = case.label
@@ -51,4 +50,4 @@ def table(group: CaseGroup) -> Table:
             name = f"{solver} (exact)" if role(solver) in EXACT_IN_TIME else solver
             rows.append((label, name, *cells(measures_of(solver), case)))
             label = ""
-    return Table(titles, tuple(rows))
+    return table(("Case", "Solver", *heads(measures_of("dda"))), rows)

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, Verdicts, case_groups, verdicts_of
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, cell, short
+from validation.report.chapters.text import DASH, capital, cell, short
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import Margins
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
-from validation.runs.records import Manifest, VerdictRecord
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.theory import landing
 
@@ -52,7 +52,7 @@ BUDGET = (
 BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: restitution, then energy, switches and solves."""
     groups = case_groups(results, manifest)
     impacts = [group for group in groups if group.name.startswith(IMPACT)]
@@ -67,7 +67,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
 # ---- restitution --------------------------------------------------------------------------------------------------
 
 
-def restitution_blocks(data: dict[str, Any], impacts: Sequence[CaseGroup], directory: Path) -> list[Block]:
+def restitution_blocks(data: dict[str, Any], impacts: CaseGroups, directory: Path) -> Blocks:
     """Return the restitution map as a figure, and what it is on a rigid contact."""
     omega = np.array(data["omega"])
     top = 1.05 * max(max(rows["high"]) for rows in data["schemes"].values())
@@ -144,7 +144,7 @@ def ratio(case: CaseResults) -> float:
     return case.scene.contact.stiffness / case.scene.block.young
 
 
-def exact_switches(maps: Sequence[CaseGroup]) -> dict[float, float]:
+def exact_switches(maps: CaseGroups) -> dict[float, float]:
     """Return the switches of the exact block by p/E."""
     switches = {}
     for group in maps:
@@ -155,7 +155,7 @@ def exact_switches(maps: Sequence[CaseGroup]) -> dict[float, float]:
     return switches
 
 
-def conclusion(maps: Sequence[CaseGroup]) -> str:
+def conclusion(maps: CaseGroups) -> str:
     """Say in one or two sentences what was gained, and how many solves it took."""
     parts = []
     for group in maps:
@@ -167,10 +167,10 @@ def conclusion(maps: Sequence[CaseGroup]) -> str:
             gain = "gains no energy" if most < 1e-9 else f"gains up to {short(most, 3)} times the energy given"
             parts.append(f"{words} {gain} and needs at most {max(solves):.0f} solves a step")
     text = "; ".join(parts)
-    return f"{text[:1].upper()}{text[1:]}: a step too large for the contact spoils the motion, not the iteration."
+    return f"{capital(text)}: a step too large for the contact spoils the motion, not the iteration."
 
 
-def map_blocks(maps: Sequence[CaseGroup], verdicts: Sequence[VerdictRecord], directory: Path) -> list[Block]:
+def map_blocks(maps: CaseGroups, verdicts: Verdicts, directory: Path) -> Blocks:
     """Return the maps over dt and p, and the budget of energy as a table."""
     if not maps:
         return []
@@ -245,9 +245,9 @@ def _number(value: float) -> str:
     return short(value, 3) if value < 100 else f"{value:.0f}"
 
 
-def budget_table(maps: Sequence[CaseGroup]) -> Table:
+def budget_table(maps: CaseGroups) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
-    titles = columns("text", "Scheme", "p", "dt [ms]") + columns("decimal", "scheme", group=LOST) + heads(BUDGET)
+    titles: tuple[Head, ...] = ("Scheme", "p", TableColumn("dt [ms]"), (LOST, "scheme"), *heads(BUDGET))
     rows = []
     for group in maps:
         name = kind(group)
@@ -255,7 +255,7 @@ def budget_table(maps: Sequence[CaseGroup]) -> Table:
         for case in sorted(cases, key=lambda c: (ratio(c), -c.scene.time.step)):
             rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
             name = ""
-    return Table(titles, tuple(rows), "Budget of the cases of two time steps, dda.", ruled=False)
+    return table(titles, rows, "Budget of the cases of two time steps, dda.", ruled=False)
 
 
 def budget_cells(case: CaseResults) -> tuple[str, ...]:

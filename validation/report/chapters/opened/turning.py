@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, case_groups, verdicts_of
+from validation.report.blocks import Blocks, Paragraph, Table, table
+from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, case_groups, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, plain, short
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
@@ -48,7 +48,7 @@ QUANTITIES = {  # metric -> words
 }
 
 
-def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of `rocking`."""
     groups = case_groups(results, manifest)
     swings = [group for group in groups if group.name in LET_GO]
@@ -64,7 +64,7 @@ def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> li
     return [*blocks, *drawn(panels, directory, "rocking.svg", caption)]
 
 
-def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of `toppling`."""
     groups = case_groups(results, manifest)
     caption = (
@@ -76,7 +76,7 @@ def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> l
     return [*blocks, *drawn(panels, directory, "toppling.svg", caption)]
 
 
-def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> list[Block]:
+def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> Blocks:
     """Return the figure of the panels that have lines, nothing where no case finished."""
     filled = [panel for panel in panels if panel.lines]
     margins = Margins(13.0, 20.0, 6.0, 10.0, 33.0)
@@ -99,9 +99,8 @@ def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
     return short(values[0]) if values and isinstance(values[0], int | float) else DASH
 
 
-def swing_table(swings: Sequence[CaseGroup]) -> Table:
+def swing_table(swings: CaseGroups) -> Table:
     """Return quarter periods and rate ratios."""
-    titles = ("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner")
     rows = []
     for group in swings:
         for case in group.cases:
@@ -111,9 +110,10 @@ def swing_table(swings: Sequence[CaseGroup]) -> Table:
             ratio = plain(block.height / block.width, 2)
             rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
     caption = (
-        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before impact."
+        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the "
+        "impact."
     )
-    return Table(columns("decimal", *titles), tuple(rows), caption)
+    return table(("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner"), rows, caption)
 
 
 def size(case: CaseResults) -> float:
@@ -122,19 +122,21 @@ def size(case: CaseResults) -> float:
     return PUSH / block.gravity / block.pulse_threshold(DURATION)
 
 
-def pulse_table(pulses: Sequence[CaseGroup]) -> Table:
+def pulse_table(pulses: CaseGroups) -> Table:
     """Return peaks, and times of tipping, after pulses."""
     rows = []
     for group in pulses:
         for case in group.cases:
             rows.append((plain(size(case), 3), judged(group, case, "peak"), judged(group, case, "time")))
-    titles = columns("decimal", "pulse / threshold", "peak tilt", "time of tipping")
-    return Table(titles, tuple(rows), "Towers of 4 m on a base that accelerates; DDA over the rigid block.")
+    return table(
+        ("pulse / threshold", "peak tilt", "time of tipping"),
+        rows,
+        "Towers of 4 m on a base that accelerates; DDA over the rigid block.",
+    )
 
 
-def fall_table(groups: Sequence[CaseGroup]) -> Table:
+def fall_table(groups: CaseGroups) -> Table:
     """Return what the gates of blocks on slopes measured, with their bands."""
-    titles = (*columns("text", "Scene", "Quantity"), *columns("decimal", "DDA", "from", "to"))
     rows = []
     for group in groups:
         for case in group.cases:
@@ -144,7 +146,7 @@ def fall_table(groups: Sequence[CaseGroup]) -> Table:
                 edges = (short(edge, 7) for edge in verdict["band"])
                 rows.append((label, words, judged(group, case, verdict["metric"]), *edges))
                 label = ""
-    return Table(titles, tuple(rows))
+    return table(("Scene", "Quantity", "DDA", "from", "to"), rows)
 
 
 def swing_panel(group: CaseGroup) -> ChartPanel:
@@ -172,13 +174,13 @@ def pulse_panel(group: CaseGroup) -> ChartPanel:
     return ChartPanel(title, "t [s]", y_label, coloured(lines), levels={"": 1.0}, marks={"": DURATION})
 
 
-def finished_cases(groups: Sequence[CaseGroup], name: str) -> list[CaseResults]:
+def finished_cases(groups: CaseGroups, name: str) -> list[CaseResults]:
     """Return the cases of a scene that have a history of DDA."""
     cases = itertools.chain.from_iterable(group.cases for group in groups if group.name == name)
     return [case for case in cases if "dda" in case.histories]
 
 
-def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
+def fall_panel(groups: CaseGroups) -> ChartPanel:
     """Return the turn of falling towers, and that of a rigid one."""
     curves = []
     for name, words in (("toppling-tower", "from its base"), ("toppling-fall", "released")):
@@ -193,7 +195,7 @@ def fall_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
     return ChartPanel("Toppling", "t [s]", "turn [rad]", lines)
 
 
-def area_panel(groups: Sequence[CaseGroup]) -> ChartPanel:
+def area_panel(groups: CaseGroups) -> ChartPanel:
     """Return the area of towers by exact and by first-order rotation."""
     curves = []
     for name, words in (("toppling-fall", "exact"), ("toppling-growth", "first-order")):

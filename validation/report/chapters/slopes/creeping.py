@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, FigureBlock, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
+from validation.report.blocks import Blocks, FigureBlock, Paragraph, Table, table
+from validation.report.chapters.data import CaseResults, Groups, cases_of, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import cell, plain
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
@@ -42,7 +41,7 @@ EXPLANATION = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the figure and the table by steps."""
     groups = groups_by_name(results, manifest)
     blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
@@ -52,11 +51,11 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block
     return blocks
 
 
-def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> FigureBlock:
+def over_time_and_step(groups: Groups, directory: Path) -> FigureBlock:
     """Return the figure of slides over time and of slip over the step."""
-    exact = [case for case in cases(groups, study.EXACT) if case.scene.contact.friction == 30]
+    exact = [case for case in cases_of(groups, study.EXACT) if case.scene.contact.friction == 30]
     lines = [trace("exact", case, "block-events", BLACK) for case in exact]
-    steps = cases(groups, study.STEPS)
+    steps = cases_of(groups, study.STEPS)
     for words, step, color in (("1 ms", 1e-3, ORANGE), ("0.2 ms", 2e-4, AMBER)):
         lines += [trace(f"(1/2, 1), {words}", c, "dda", color) for c in steps if of(c, CONSTANT) and at(c, step)]
     lines += [trace("(1/4, 1/2), 0.2 ms", c, "dda", BLUE) for c in steps if of(c, AVERAGE) and at(c, 2e-4)]
@@ -78,11 +77,6 @@ def over_time_and_step(groups: Mapping[str, CaseGroup], directory: Path) -> Figu
     return saved(chart_figure(panels, margins=BESIDE), directory, "creep.svg", CAPTION)
 
 
-def cases(groups: Mapping[str, CaseGroup], name: str) -> list[CaseResults]:
-    """Return the cases of a scene."""
-    return list(groups[name].cases) if name in groups else []
-
-
 def of(case: CaseResults, kind: str) -> bool:
     """Whether a case is of a scheme from the usual start, without a discount."""
     t = case.scene.time
@@ -96,9 +90,9 @@ def at(case: CaseResults, step: float) -> bool:
     return abs(case.scene.time.step / step - 1) < 1e-9
 
 
-def lagged(groups: Mapping[str, CaseGroup]) -> list[CaseResults]:
+def lagged(groups: Groups) -> list[CaseResults]:
     """Return the cases of lagged friction on the scene's own springs."""
-    return [case for case in cases(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
+    return [case for case in cases_of(groups, study.LAGGED) if case.scene.contact.stiffness == case.scene.block.young]
 
 
 def trace(words: str, case: CaseResults, solver: str, color: str) -> ChartLine:
@@ -133,27 +127,28 @@ def across(case: CaseResults) -> ChartLine:
     return ChartLine("exact", np.array([0.2, 10.0]), np.full(2, 1e3 * speed), BLACK, dash=(2.0, 2.0))
 
 
-def by_step(groups: Mapping[str, CaseGroup]) -> Table:
+def by_step(groups: Groups) -> Table:
     """Return the slip in a second by step and rule."""
-    steps = cases(groups, study.STEPS)
+    steps = cases_of(groups, study.STEPS)
     rows = []
     for step, program_slip in study.PROGRAM.items():
         slips = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
         slips.append(next((slip(c) for c in lagged(groups) if at(c, step)), None))
         rows.append(tuple(cell(value, 1e3, 3) for value in (step, *slips, program_slip)))
     scale = friction.creep_scale(steps[0].scene)
-    titles = columns(
-        "decimal", "dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"
-    )
     caption = f"Slip per second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
-    return Table(titles, tuple(rows), caption)
+    return table(
+        ("dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"),
+        rows,
+        caption,
+    )
 
 
-def by_stiffness(groups: Mapping[str, CaseGroup]) -> list[Block]:
+def by_stiffness(groups: Groups) -> Blocks:
     """Return the table of the creep on springs of any stiffness, where a run has it."""
-    damped = cases(groups, study.DAMPED)
+    damped = cases_of(groups, study.DAMPED)
     rows = []
-    for case in sorted(cases(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
+    for case in sorted(cases_of(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
         p = case.scene.contact.stiffness
         stopping = [one for one in damped if one.scene.contact.stiffness == p]
         by_step_alone = next((slip(one) for one in stopping if one.scene.time.discount == 1), None)
@@ -166,14 +161,12 @@ def by_stiffness(groups: Mapping[str, CaseGroup]) -> list[Block]:
             by_discount,
         )
         rows.append((plain(p / case.scene.block.young, 3), *(cell(value, 1e3, 3) for value in numbers)))
-    titles = columns(
-        "decimal", "p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]"
-    )
+    titles = ("p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]")
     caption = (
         "Springs of other stiffness, with steps to match: mean speed over seven cycles, and the slide at which the "
         "block stops under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 per step (ω_n dt = 0.17)."
     )
-    return [Table(titles, tuple(rows), caption)] if rows else []
+    return [table(titles, rows, caption)] if rows else []
 
 
 def speed(case: CaseResults, solver: str) -> float | None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Block, FigureBlock, Heading, Paragraph, Table, columns
-from validation.report.chapters.data import CaseGroup, CaseResults, groups_by_name, verdicts_of
+from validation.report.blocks import Block, Blocks, FigureBlock, Heading, Paragraph, Table, table
+from validation.report.chapters.data import CaseGroup, CaseResults, cases_of, groups_by_name, verdicts_of
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, cell, plain
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
@@ -39,20 +38,16 @@ EXPLANATION = (
 )
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: figure, run-outs, thresholds."""
     groups = groups_by_name(results, manifest)
-
-    def cases_of(*names: str) -> list[CaseResults]:
-        return list(itertools.chain.from_iterable(groups[name].cases for name in names if name in groups))
-
     blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
     if groups.get(study.SLIDING) and groups.get(study.DRAG):
         blocks.append(trajectories(groups[study.SLIDING], groups[study.DRAG], directory))
-    slides = cases_of(study.SLIDING, study.AVERAGE, study.DRAG)
+    slides = cases_of(groups, study.SLIDING, study.AVERAGE, study.DRAG)
     if slides:
         blocks += [Heading("Run-out", 2), run_outs(slides)]
-    starts = cases_of(study.THRESHOLD, study.MANUAL)
+    starts = cases_of(groups, study.THRESHOLD, study.MANUAL)
     if starts:
         blocks += thresholds(starts)
     shaken: list[ShakenCase] = []
@@ -106,15 +101,26 @@ def share(case: CaseResults) -> tuple[float, float] | None:
 
 def run_outs(cases: Sequence[CaseResults]) -> Table:
     """Return the displacements of all runs beside the closed form."""
-    titles = (
-        *columns("decimal", "dt [ms]", "α", "δ", "gg", "c [1/s]", "cohesion [Pa]"),
-        *columns("decimal", "closed form [m]", "dda [m]", "ahead [µm]", "fem [m]"),
-    )
     caption = (
         "Distance after a second at 28.9 degrees under 15 degrees of friction. Ahead: the run beyond the closed form; "
         "18.64 µm is tan φ times the settlement; under average acceleration the block is still in the air."
     )
-    return Table(titles, tuple(_run_out(case) for case in cases), caption)
+    return table(
+        (
+            "dt [ms]",
+            "α",
+            "δ",
+            "gg",
+            "c [1/s]",
+            "cohesion [Pa]",
+            "closed form [m]",
+            "dda [m]",
+            "ahead [µm]",
+            "fem [m]",
+        ),
+        tuple(_run_out(case) for case in cases),
+        caption,
+    )
 
 
 def _run_out(case: CaseResults) -> tuple[str, ...]:
@@ -136,9 +142,6 @@ def _run_out(case: CaseResults) -> tuple[str, ...]:
 
 def thresholds(cases: Sequence[CaseResults]) -> Iterator[Block]:
     """Yield the accelerations about the angle of friction."""
-    titles = columns(
-        "decimal", "slope [°]", "friction [°]", "a, closed form [m/s²]", "a, dda [m/s²]", "slip a second [mm/s]"
-    )
     rows = []
     for case in cases:
         history = case.histories.get(DDA)
@@ -164,7 +167,11 @@ def thresholds(cases: Sequence[CaseResults]) -> Iterator[Block]:
         "Gravity is switched on, so that a block begins to slide on every slope and loses or gains speed by "
         "g (sin β − tan φ cos β): the slope at which that passes through zero is the angle of friction."
     )
-    yield Table(titles, tuple(rows), "Acceleration over the second half of each run.")
+    yield table(
+        ("slope [°]", "friction [°]", "a, closed form [m/s²]", "a, dda [m/s²]", "slip a second [mm/s]"),
+        rows,
+        "Acceleration over the second half of each run.",
+    )
 
 
 ShakenCase = tuple[CaseResults, dict[str, VerdictRecord]]
@@ -182,16 +189,6 @@ def judged(group: CaseGroup) -> list[ShakenCase]:
 
 def shaking(cases: Sequence[ShakenCase]) -> Iterator[Block]:
     """Yield the slides over a base that shakes, beside those of a rigid mass."""
-    titles = columns(
-        "decimal",
-        "base",
-        "slope [deg]",
-        "p [GN/m]",
-        "slide, rigid [mm]",
-        "slide, dda [mm]",
-        "largest difference [mm]",
-        "allowed [mm]",
-    )
     rows = []
     for case, verdicts in cases:
         low, high = verdicts["slide"]["band"]
@@ -203,8 +200,16 @@ def shaking(cases: Sequence[ShakenCase]) -> Iterator[Block]:
         rows.append((base, *scene, plain(500 * (low + high), 5), *measured, plain(500 * (high - low), 3)))
     if rows:
         yield Heading("A base that shakes", 2)
-        yield Table(
-            titles,
-            tuple(rows),
+        yield table(
+            (
+                "base",
+                "slope [deg]",
+                "p [GN/m]",
+                "slide, rigid [mm]",
+                "slide, dda [mm]",
+                "largest difference [mm]",
+                "allowed [mm]",
+            ),
+            rows,
             "Slide over a base that shakes, at 2 Hz or by a record of three frequencies: Newmark's sliding block.",
         )

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Block, Paragraph, Table, columns
+from validation.report.blocks import Blocks, Paragraph, Table, table
 from validation.report.chapters.data import DerivedRows, derived_rows
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, plain
@@ -30,7 +30,7 @@ DIGITS = 6  # that rows are stored with: to round once more would be to round tw
 HIDDEN = "response-damping"
 
 
-def chapter(results: Results, manifest: Manifest, directory: Path) -> list[Block]:
+def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: what the step takes, the figure, the table."""
     rows = derived_rows(manifest)
     blocks = opening(manifest, results.verdicts(manifest["study"]), lead(rows))
@@ -77,13 +77,10 @@ def amplitudes(rows: DerivedRows) -> Table:
             cells += [plain(factor * value, DIGITS) if isinstance(value, float) else DASH for value in values]
         if set(cells) != {DASH}:
             lines.append((ANSWERS[scene], f"{frequency:g}", *cells))
-    titles = (
-        *columns("text", "Answer"), *columns("decimal", "f [Hz]"),
-        *columns("decimal", *SOLVERS, group="Displacement [mm]"),
-        *columns("decimal", *SOLVERS, group="Contact pressure [MPa]"),
-    )  # fmt: skip
     caption = "Amplitudes under the pressure; fem: eight linear elements, whose error against the bar is known"
-    return Table(titles, tuple(lines), caption)
+    return table(
+        ("Answer", "f [Hz]", ("Displacement [mm]", *SOLVERS), ("Contact pressure [MPa]", *SOLVERS)), lines, caption
+    )
 
 
 def hidden(rows: DerivedRows) -> str:
