@@ -43,7 +43,7 @@ MOST_DIGITS = 960
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 PIECES = 6000
-"""Greatest number of pieces, about ten seconds and 200 MB."""
+"""Greatest number of pieces; half of them, granite on stiff springs in four times the digits, took 32 s and 114 MB."""
 FRONT = 4
 """Travel times between two arrivals of the load's front at the base."""
 

@@ -43,10 +43,6 @@ FEW = 4
 UNIT = np.eye(SIZE)
 FREQUENT = 20
 """Times that a time is passed before its exp(G s) is kept, which costs as much as twenty series."""
-OTHER_LENGTHS = 1
-"""Where times are counted whose exp(G s) is not kept."""
-SHORT_ANGLE = 0.1
-"""Angle that is left to the series where exp(G s) of powers of two are kept [rad]."""
 EXPONENTIAL_ERROR = 1e-13
 """Part of the greatest entry of exp(G s), in the units of the flow, by which floats of it may be wrong."""
 EXPONENTIAL_TERMS = 14
@@ -65,7 +61,6 @@ class Flow:
         scale = np.sqrt([float(m) for m in model.mass])
         scaled = scale[:, None] * B / scale
         self.rate = math.sqrt(float(np.linalg.norm(scaled, 2))) * (1 + 1e-9)  # bound of the rates of the motion [rad/s]
-        self.minus_B = arb_mat([line[:6] for line in self.G.tolist()[6:12]]) * (1 / arb(self.rate) ** 2)
         # unknowns and rates of norm one, in which G has the norm `rate`; references and the one change them as slowly
         self.units = np.array([*(1 / (scale * self.rate)), *(1 / scale), *[1 / (scale[0] * self.rate)] * 2, 1.0])
         load = np.abs(self.G_floats[6:12, 14] * scale).max() / self.rate
@@ -78,7 +73,6 @@ class Flow:
         self._lines: list[list[arb]] = []
         self._derivatives: dict[tuple[int, int | None], arb_mat] = {}
         self._exponentials: dict[int, tuple[arb, arb_mat, Array]] = {}
-        self._powers: dict[float, arb_mat] = {}
         self._uses: Counter[int] = Counter()
 
     def _add_corner(self, c: int) -> None:
@@ -217,11 +211,6 @@ class Flow:
         if known is not None:
             length = length - known[0]
             z = known[1] * z
-        elif self._uses[OTHER_LENGTHS] > FREQUENT:
-            while self.rate * float(length) > SHORT_ANGLE:
-                power = 2.0 ** math.floor(math.log2(float(length)))
-                length = length - power
-                z = self._power(power) * z
         return z if length == 0 else self.series(z, length)
 
     def exponential(self, length: arb) -> tuple[arb, arb_mat, Array] | None:
@@ -229,20 +218,11 @@ class Flow:
         key = key_of(length)
         self._uses[key] += 1
         if key not in self._exponentials:
-            self._uses[OTHER_LENGTHS] += 1
             if self._uses[key] <= FREQUENT:
                 return None
             matrix = self._exp(length)
             self._exponentials[key] = length, matrix, to_floats(matrix)
         return self._exponentials[key]
-
-    def _power(self, length: float) -> arb_mat:
-        """exp(G s) for a power of two, from that of its half."""
-        if length not in self._powers:
-            short = self.rate * length < SHORT_ANGLE
-            half = None if short else self._power(length / 2)
-            self._powers[length] = self._exp(arb(length)) if half is None else half * half
-        return self._powers[length]
 
     def _exp(self, length: arb) -> arb_mat:
         """exp(G s), by way of the units of the flow, in which G is balanced."""

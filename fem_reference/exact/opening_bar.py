@@ -232,7 +232,7 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
     ----------
     bar, scheme
         The bar and its scheme.
-    own
+    loaded
         Weights of the base's own pressure [m/Pa], shape (steps + 1,).
     free
         What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).

@@ -112,7 +112,7 @@ def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pyte
     before = {solver: Case(scene, solver).key() for solver in ("dda", "fem", "fenicsx")}
     monkeypatch.setattr(FEniCSx, "versions", lambda self: {"dolfinx": "another"})
     assert Case(scene, "fenicsx").key() != before["fenicsx"] and Case(scene, "fem").key() == before["fem"]
-    for library in ("numpy", "scipy", "scikit-fem", "meshio", "mpmath"):
+    for library in ("numpy", "scipy", "scikit-fem", "meshio", "python-flint"):
         sound = case_module.library_versions()
         assert sound[library] != "not installed"
         monkeypatch.setattr(case_module, "library_versions", lambda: sound | {library: "another"})  # noqa: B023

@@ -109,7 +109,7 @@ solvers = ["bar-events"]
 def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, most: int, horizon: float
 ) -> None:
-    """The bar of 165 pieces is cut at 80; a longer one has six thousand in ten seconds and would go on for hours."""
+    """The bar of 165 pieces is cut at 80; a longer one has thousands and would go on for hours."""
     monkeypatch.setattr(module, limit, most)
     run = get_solver(name).prepare(scene(tmp_path, GRANITE)).run()
     assert run.outcome is Outcome.HORIZON

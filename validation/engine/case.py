@@ -24,7 +24,7 @@ SOURCES = (  # of this package: what reads a scene, runs it and measures the run
     "validation.solvers",
     "validation.engine",
 )
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "mpmath")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "meshio", "python-flint")
 MEASURES = ("history", "modes")  # what is measured on a run unless a study asks for more or less
 
 

@@ -1,7 +1,7 @@
 """Sixty-digit references as ordinary solvers: `dda-60`, `bar-60` and `fem-60`.
 
 They take the doubles of a scene as exact (`fem-60` those of the mesh's matrices) and share no step with the solvers
-that they judge. Their histories are rounded to doubles at the end and cost milliseconds to a second.
+that they judge. Their histories are rounded to doubles at the end and cost milliseconds to seconds.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,14 +22,16 @@ from validation.solvers.bar import BAR_COLUMNS, ExactBar, NewmarkBar
 from validation.solvers.contract import NotReported, Prepared, Role
 from validation.solvers.dda import DDA, OneBlock
 from validation.solvers.fem import FiniteElements, Mesh
-from validation.solvers.sixty_digits.block import Number
 from validation.solvers.translation import check_columns
+
+if TYPE_CHECKING:
+    from flint import arb
 
 LARGEST = float(np.finfo(float).max)
 MOST_UNKNOWNS = 60  # beyond it sixty digits would take minutes
 
 
-def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
+def _run(scene: Scene, compute: Callable[[], dict[str, list[arb]]]) -> Run:
     """Round the columns to doubles; what a double cannot hold is infinite from there on."""
     check_columns(scene, BAR_COLUMNS)
     began = time.perf_counter()
@@ -39,7 +42,7 @@ def _run(scene: Scene, compute: Callable[[], dict[str, list[Number]]]) -> Run:
     return Run(Outcome.COMPLETED, History(times, columns), work, seconds, ("sixty-digit arithmetic",))
 
 
-def _doubles(values: list[Number]) -> Array:
+def _doubles(values: list[arb]) -> Array:
     doubles: Array = np.fromiter((float(v) if abs(v) <= LARGEST else np.inf for v in values), np.float64, len(values))
     doubles[~np.logical_and.accumulate(np.isfinite(doubles))] = np.inf
     return doubles
