@@ -23,6 +23,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.stepping.one_library import one_library
+
 Loop = Callable[..., Any]
 
 WORTHWHILE_KEPT = 0.8  # seconds of plain Python from which a loop is read from the cache, which takes about as long
@@ -233,9 +235,10 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
     direct = called_by(functions[0])
     for function in functions:
         if function is not loop and function not in _jitable:
-            # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step
-            # and nobody else calls it: without an entry from C there is less to compile
-            register_jitable(forceinline=function in direct, no_cfunc_wrapper=True)(function)
+            # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;
+            # and nobody else calls any of these: they have no entry from Python or C
+            options = {"pipeline_class": one_library(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            register_jitable(forceinline=function in direct, **options)(function)
             _jitable.add(function)
     directory = cache_directory()
     if directory is not None:
@@ -252,13 +255,16 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
 def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
     """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
+    # nothing is allocated in a loop: without the counting of references a call costs what it does
+    options = {"pipeline_class": one_library(), "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
     try:
         if directory is not None:
             numba.config.CACHE_DIR = str(directory)
-        # nothing is allocated in a loop: without the counting of references a call costs what it does
-        dispatcher: Any = numba.njit(cache=directory is not None, error_model="numpy", _nrt=False)(loop)
+        dispatcher: Any = numba.njit(cache=directory is not None, **options)(loop)
     finally:
         numba.config.CACHE_DIR = before
+    if pipeline := options.get("pipeline_class"):
+        pipeline.library = None
     dispatcher.compile(types)
     machine_code: Loop = dispatcher
     return machine_code
