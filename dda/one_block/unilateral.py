@@ -129,14 +129,14 @@ def solve_unilateral(
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     motion = model.load.motion
-    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None)
+    block, shear_law = block_equations(form, law, scheme, options.rule, options.solve_limit)
     state = start_state(form, law, scheme, model.velocity, options.rule)
     base = base_record(motion and motion.along(form.axes))
     history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
     ready = perf_counter()
     (reached, ended), left, how = run_loop(
-        make_steps, (block, state, state), (base,), (history, steps, options.cut), seconds
+        make_steps, (block, shear_law, state, state), (base,), (history, steps, options.cut), seconds
     )
     history = reached_history(history, reached)
     with np.errstate(all="ignore"):

@@ -35,11 +35,13 @@ from dda.contact.kernel import (
     Contacts,
     Free,
     Law,
+    ShearLaw,
     Work,
     at_rest,
     change_slides,
     find_contacts,
     law_of,
+    shear_law_of,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -116,7 +118,6 @@ class BlockEquations(NamedTuple):
     multiplicity: float
     translation: Matrix  # (n, 2) R, along and away from the base
     carried: Matrix  # (n, 2) M R
-    moves: bool  # whether the base does
     inverse_mass: Matrix  # (n, n)
     whole: StepLength  # of a whole step
     part: StepLength  # of the last part of a step
@@ -126,15 +127,15 @@ class BlockEquations(NamedTuple):
 
 
 def block_equations(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int, moves: bool
-) -> BlockEquations:
-    """Return the equations as numbers, with the matrices of a whole step."""
+    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
+) -> tuple[BlockEquations, ShearLaw | None]:
+    """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
     vectors += zeros(c, (n, n), n, 2, 2, n)
     block = BlockEquations(
-        law=law_of(law, slides=q > c),
+        law=law_of(law),
         stiffness=law.stiffness,
         rule=RULES.index(rule),
         limit=limit,
@@ -149,7 +150,6 @@ def block_equations(
         multiplicity=form.multiplicity,
         translation=form.translation,
         carried=form.M @ form.translation,
-        moves=moves,
         inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
         whole=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
         part=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
@@ -157,8 +157,9 @@ def block_equations(
         room=Room(*vectors),
         work=work_for(c),
     )
-    set_length(block, 1.0, block.whole)
-    return block
+    shear_law = shear_law_of(law) if q > c else None
+    set_length(block, shear_law, 1.0, block.whole)
+    return block, shear_law
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -173,7 +174,7 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
 # ---- the step --------------------------------------------------------------------------------------------------------
 
 
-def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
+def set_length(block: BlockEquations, shear_law: ShearLaw | None, ratio: float, length: StepLength) -> None:
     """Write everything that depends on the length of a step: S0^-1, and the flexibility of the contacts.
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
@@ -202,24 +203,30 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
             for k in range(n):
                 total += block.B[i][k] * length.pushed[k][j]
             length.C_paired[i][j] = total
-    if q == 4:
+    if shear_law is not None and q == 4:
         change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C, q)
     block.made[0] += 1
 
 
-def length_of(block: BlockEquations, ratio: float) -> StepLength:
+def length_of(block: BlockEquations, shear_law: ShearLaw | None, ratio: float) -> StepLength:
     """Return what belongs to a length, over the scheme's step."""
     if ratio == 1.0:
         return block.whole
     if block.part.numbers[0] != ratio:
-        set_length(block, ratio, block.part)
+        set_length(block, shear_law, ratio, block.part)
     return block.part
 
 
 def advance(
-    block: BlockEquations, state: BlockState, after: BlockState, base: BaseRecord, begun: float, ratio: float
+    block: BlockEquations,
+    shear_law: ShearLaw | None,
+    state: BlockState,
+    after: BlockState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> tuple[int, int]:
     """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
 
@@ -228,29 +235,32 @@ def advance(
     begun, ratio
         Where it begins and how long it is, in steps.
     """
-    length = length_of(block, ratio)
+    length = length_of(block, shear_law, ratio)
     scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
-    free_step(block, length, scheme, state, base, begun, ratio)
+    free_step(block, shear_law, length, scheme, state, base, begun, ratio)
     before = state.contacts
     free = block.room.free
     if block.rule == 2:
         outcome, solves = conserving(block.stiffness, before, free, length, after.contacts, block.work)
     else:
-        outcome, solves = find_contacts(block.law, before, free, length, block.limit, after.contacts, block.work)
+        outcome, solves = find_contacts(
+            block.law, shear_law, before, free, length, block.limit, after.contacts, block.work
+        )
     if outcome != FOUND:
         return outcome, solves
-    accept(block, length, scheme, state, after, ratio)
-    if block.law.shears:
+    accept(block, shear_law, length, scheme, state, after, ratio)
+    if shear_law is not None:
         refer(block, state.contacts, after)
     return FOUND, solves
 
 
 def free_step(
     block: BlockEquations,
+    shear_law: ShearLaw | None,
     length: StepLength,
     scheme: StepScheme,
     state: BlockState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
 ) -> None:
@@ -262,14 +272,14 @@ def free_step(
         room.P[i] = ratio * state.P[i]
         room.f[i] = ratio * ratio * state.f[i]
         room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
-    if block.moves:
+    if base is not None:
         base_displacement(base, block.step, begun, ratio, room.start, room.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], room.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
     for i in range(c):  # the gaps are the last unknowns
         room.free.gap[i] = state.D[n - c + i] + room.x[n - c + i]
-    if block.law.shears:
+    if shear_law is not None:
         slides_by(block, room.x, room.free.slide)
 
 
@@ -286,13 +296,20 @@ def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
 
 
 def accept(
-    block: BlockEquations, length: StepLength, scheme: StepScheme, state: BlockState, after: BlockState, ratio: float
+    block: BlockEquations,
+    shear_law: ShearLaw | None,
+    length: StepLength,
+    scheme: StepScheme,
+    state: BlockState,
+    after: BlockState,
+    ratio: float,
 ) -> None:
     """Write (D, P, f) at the end of the step under the contact forces."""
     room = block.room
     n = len(block.K)
     c = len(block.room.slide)
-    contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
+    normal = block.work.mean if block.rule == 2 else after.contacts.normal
+    contact_forces(block, shear_law, normal, after.contacts.shear)
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
         after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
@@ -310,13 +327,13 @@ def accept(
         after.f[i] = f1 / (ratio * ratio)
 
 
-def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None:
+def contact_forces(block: BlockEquations, shear_law: ShearLaw | None, normal: Vector, shear: Vector) -> None:
     """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
     room = block.room
     c = len(block.room.slide)
     for i in range(c):
         room.forces[i] = normal[i]
-    if not block.law.shears:
+    if shear_law is None:
         return
     room.forces[c] = shear[0]
     if c == 2:
@@ -368,9 +385,10 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 
 def account(
     block: BlockEquations,
+    shear_law: ShearLaw | None,
     state: BlockState,
     after: BlockState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
     sums: Vector,
@@ -378,7 +396,7 @@ def account(
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
     room = block.room
     n = len(block.K)
-    length = length_of(block, ratio)
+    length = length_of(block, shear_law, ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
@@ -389,12 +407,21 @@ def account(
         room.change[i] = after.D[i] - state.D[i]
         stiff += room.change[i] * room.change[i] * block.K[i]
     if block.rule != 2:
-        if block.law.shears:
+        if shear_law is not None:
             slides_by(block, room.change, room.slide)
         late = block.delta if block.rule == 0 else 1.0
         share = block.multiplicity
         add_contact_losses(
-            block.law, state.contacts, after.contacts, room.slide, room.base, late, length.numbers[2], share, sums
+            block.law,
+            shear_law,
+            state.contacts,
+            after.contacts,
+            room.slide,
+            room.base,
+            late,
+            length.numbers[2],
+            share,
+            sums,
         )
     if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         for i in range(n):

@@ -34,6 +34,7 @@ from dda.contact.kernel import (
     Flexibility,
     Free,
     Law,
+    ShearLaw,
     States,
     Work,
     at_rest,
@@ -265,7 +266,13 @@ def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices
 
 
 def advance(
-    body: RollingEquations, state: RollingState, after: RollingState, base: BaseRecord, begun: float, ratio: float
+    body: RollingEquations,
+    shear_law: ShearLaw | None,
+    state: RollingState,
+    after: RollingState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> tuple[int, int]:
     """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
 
@@ -283,7 +290,7 @@ def advance(
     near = nearest(body, room.near, REACH * body.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(body, matrices, state, after, near)
+        outcome, solves = settle(body, shear_law, matrices, state, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
@@ -306,16 +313,22 @@ def pair_number(at: States, near: int) -> int:
 
 
 def predict(
-    body: RollingEquations, matrices: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
+    body: RollingEquations,
+    matrices: StepMatrices,
+    state: RollingState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> None:
     """Write what is known of a step before its contact: the step without it, and where the corners come from."""
     room = body.room
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
-    base_at(base, body.step * begun, room.start)
-    base_at(base, body.step * (begun + ratio), room.base)
-    for axis in range(2):
-        room.moved[axis] = room.base[axis] - room.start[axis]
+    if base is not None:
+        base_at(base, body.step * begun, room.start)
+        base_at(base, body.step * (begun + ratio), room.base)
+        for axis in range(2):
+            room.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
     for i in range(6):
         room.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
@@ -386,14 +399,19 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 
 
 def settle(
-    body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
+    body: RollingEquations,
+    shear_law: ShearLaw | None,
+    matrices: StepMatrices,
+    state: RollingState,
+    after: RollingState,
+    near: int,
 ) -> tuple[int, int]:
     """Make the step with the corners room.at, one or two or none."""
     room = body.room
     if near == 2:
-        return settle_touching(body, body.two, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.two, matrices, state, after, near)
     if near == 1 or body.loads > 0:
-        return settle_touching(body, body.one, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.one, matrices, state, after, near)
     for i in range(6):
         room.D[i] = room.free[i]
     accept(body, body.one, matrices, state, after, near)
@@ -402,6 +420,7 @@ def settle(
 
 def settle_touching(
     body: RollingEquations,
+    shear_law: ShearLaw | None,
     pair: Touching,
     matrices: StepMatrices,
     state: RollingState,
@@ -428,7 +447,7 @@ def settle_touching(
             take_forces(pair)
             set_free(body, pair, state)
             outcome, spent = find_contacts(
-                body.law, pair.before, pair.free, pair.flexible, body.limit, pair.after, pair.work
+                body.law, shear_law, pair.before, pair.free, pair.flexible, body.limit, pair.after, pair.work
             )
             solves += spent
             if outcome != FOUND:
@@ -581,9 +600,10 @@ def accept(
 
 def account(
     body: RollingEquations,
+    shear_law: ShearLaw | None,
     state: RollingState,
     after: RollingState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
     sums: Vector,
@@ -595,6 +615,7 @@ def account(
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
         body.law,
+        shear_law,
         state.contacts,
         after.contacts,
         room.slide,

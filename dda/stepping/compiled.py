@@ -46,10 +46,11 @@ def run_loop(
     loop
         The plain function. It takes all that follows, in this order.
     records
-        Named tuples of numbers and of arrays of always the same sizes; it works on copies.
+        Named tuples of numbers and of arrays of always the same sizes; it works on copies. What a loop does only where
+        one is not None is not compiled where it is.
     series
-        Named tuples of arrays of any length, which it reads.
-    kept
+        Named tuples of arrays of any length, which it reads, or None.
+    rows
         Arrays that it fills, and numbers.
     seconds
         About how long the plain function takes.
@@ -147,7 +148,9 @@ def as_lists(value: Any) -> Any:
 
 
 def as_record(value: Any) -> Any:
-    """Return a named tuple as a record of NumPy: one block of memory, however many arrays there are."""
+    """Return a named tuple as a record of NumPy: one block of memory, however many arrays there are; None is None."""
+    if value is None:
+        return None
     record = np.recarray(1, dtype=_type_of(value))
     _fill(record.view(np.ndarray), value)
     return record[0]
