@@ -22,6 +22,7 @@ momentum M R (y1 - y).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -219,39 +220,50 @@ def length_of(block: BlockEquations, shear_law: ShearLaw | None, ratio: float) -
     return block.part
 
 
-def advance(
-    block: BlockEquations,
-    shear_law: ShearLaw | None,
-    state: BlockState,
-    after: BlockState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+def solve_at_end(
+    block: BlockEquations, shear_law: ShearLaw | None, before: Contacts, length: StepLength, after: Contacts
 ) -> tuple[int, int]:
-    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
+    """Find the contacts whose law holds at the end of the step."""
+    return find_contacts(block.law, shear_law, before, block.room.free, length, block.limit, after, block.work)
 
-    Parameters
-    ----------
-    begun, ratio
-        Where it begins and how long it is, in steps.
-    """
-    length = length_of(block, shear_law, ratio)
-    scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
-    free_step(block, shear_law, length, scheme, state, base, begun, ratio)
-    before = state.contacts
-    free = block.room.free
-    if block.rule == 2:
-        outcome, solves = conserving(block.stiffness, before, free, length, after.contacts, block.work)
-    else:
-        outcome, solves = find_contacts(
-            block.law, shear_law, before, free, length, block.limit, after.contacts, block.work
-        )
-    if outcome != FOUND:
+
+def solve_conserving(
+    block: BlockEquations, shear_law: ShearLaw | None, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts whose forces do the work of their springs, without shear."""
+    return conserving(block.stiffness, before, block.room.free, length, after, block.work)
+
+
+def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a step whose contacts are found by `solve`, one of the two functions above."""
+
+    def advance(
+        block: BlockEquations,
+        shear_law: ShearLaw | None,
+        state: BlockState,
+        after: BlockState,
+        base: BaseRecord | None,
+        begun: float,
+        ratio: float,
+    ) -> tuple[int, int]:
+        """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
+
+        Parameters
+        ----------
+        begun, ratio
+            Where it begins and how long it is, in steps.
+        """
+        length = length_of(block, shear_law, ratio)
+        scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
+        free_step(block, shear_law, length, scheme, state, base, begun, ratio)
+        outcome, solves = solve(block, shear_law, state.contacts, length, after.contacts)
+        if outcome == FOUND:
+            accept(block, shear_law, length, scheme, state, after, ratio)
+            if shear_law is not None:
+                refer(block, state.contacts, after)
         return outcome, solves
-    accept(block, shear_law, length, scheme, state, after, ratio)
-    if shear_law is not None:
-        refer(block, state.contacts, after)
-    return FOUND, solves
+
+    return advance
 
 
 def free_step(
@@ -450,4 +462,6 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
     return math.isfinite(total)
 
 
+advance = stepping(solve_at_end)
 make_steps = driver(advance, account, keep)
+make_conserving_steps = driver(stepping(solve_conserving), account, keep)
