@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import logging
 import os
 import time
 from contextlib import suppress
@@ -145,6 +146,8 @@ def run(
     before = None if baseline is None else read_verdicts(baseline)
 
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
+    if quiet:
+        logging.getLogger("dda").setLevel(logging.ERROR)
     runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(store.verdicts, names)))

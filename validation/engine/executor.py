@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
@@ -87,7 +88,9 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(),))
+    pool = ProcessPoolExecutor(
+        jobs, initializer=_initialize_worker, initargs=(os.getpid(), logging.getLogger("dda").level)
+    )
     wait = True
     try:
         yield pool
@@ -101,9 +104,10 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _initialize_worker(parent: int) -> None:
+def _initialize_worker(parent: int, log_level: int) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
     limit_process()
+    logging.getLogger("dda").setLevel(log_level)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
