@@ -61,19 +61,21 @@ class Law(NamedTuple):
     compliance: float  # 1/p [m/N]; 0 for a rigid stop
     closing: float  # gap below which an open contact closes [m]
     pull: float  # greatest tension of a closed contact [N]
+    limit: int  # solves of the open-close iteration before the states are searched
 
 
 class ShearLaw(NamedTuple):
-    """The numbers of `Unilateral` along the base; `None` stands for contacts that slide freely.
-
-    What needs this law is then left out of compiled code, which takes half the time to make.
-    """
+    """The numbers of `Unilateral` along the base."""
 
     softness: float  # 1/p_s [m/N]
     friction: float  # tan(phi) [-]
     cohesion: float  # c [N]
     slips: bool  # whether the shear has a limit
     lagged: bool  # whether that limit is that of the solve before
+
+
+Shear = ShearLaw | None
+"""None of contacts that slide freely: what needs the law is then left out of compiled code, half of what there is."""
 
 
 class Contacts(NamedTuple):
@@ -131,12 +133,12 @@ class Work(NamedTuple):
     mean: Vector  # (n,) normal forces over the step, where they are not those of its end [N]
 
 
-def law_of(law: Unilateral) -> Law:
-    """Return the numbers of a law across the base."""
-    return Law(compliance=law.compliance, closing=-law.band[0], pull=law.pull)
+def law_of(law: Unilateral, limit: int) -> Law:
+    """Return the numbers of a law across the base; `limit` bounds the solves before the states are searched."""
+    return Law(compliance=law.compliance, closing=-law.band[0], pull=law.pull, limit=limit)
 
 
-def shear_law_of(law: Unilateral) -> ShearLaw | None:
+def shear_law_of(law: Unilateral) -> Shear:
     """Return the numbers of a law along the base, None without shear."""
     if not law.shear:
         return None
@@ -182,14 +184,7 @@ def change_slides(flexibility: Matrix, change: tuple[tuple[float, float], tuple[
 
 
 def find_contacts(
-    law: Law,
-    shear_law: ShearLaw | None,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    limit: int,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts at the end of a step; return the outcome and the number of solves.
 
@@ -198,41 +193,29 @@ def find_contacts(
     law, shear_law, before, free, flexible
         Law of the contacts across and along the base, the contacts at the start of the step, the step without contact
         forces, and what forces change of it.
-    limit
-        Greatest number of solves before the states are searched.
     after
         Where the contacts at the end of the step are written.
     work
         Room for the equations.
     """
     n = len(before.gap)
-    friction = friction_of(shear_law)
     for i in range(n):
         work.tried[i] = before.state[i]
     if shear_law is not None:
         if shear_law.lagged:
-            return lagged(law, shear_law, before, free, flexible, limit, after, work)
+            return lagged(law, shear_law, before, free, flexible, after, work)
         for i in range(n):
             work.held[i] = shear_law.cohesion
-    for solve in range(1, limit + 1):
-        trial(law, shear_law, before, free, flexible, friction, after, work)
+    for solve in range(1, law.limit + 1):
+        trial(law, shear_law, before, free, flexible, after, work)
         if update_states(law, shear_law, after, work.tried, n) == 0:
             return FOUND, solve
-    if shear_law is not None:
-        choices = 4 if shear_law.slips else 2
-        if choices**n <= TRIED:
-            return every_state(law, shear_law, before, free, flexible, limit, choices, after, work)
-    return one_by_one(law, shear_law, before, free, flexible, limit, after, work)
+    if shear_law is not None and choices_of(shear_law) ** n <= TRIED:
+        return every_state(law, shear_law, before, free, flexible, after, work)
+    return one_by_one(law, shear_law, before, free, flexible, after, work)
 
 
-def friction_of(shear_law: ShearLaw | None) -> float:
-    """Return tan(phi), zero without shear."""
-    if shear_law is None:
-        return 0.0
-    return shear_law.friction
-
-
-def spring_energy(law: Law, shear_law: ShearLaw | None, contacts: Contacts, i: int) -> float:
+def spring_energy(law: Law, shear_law: Shear, contacts: Contacts, i: int) -> float:
     """Return the energy of the springs of a contact [J]."""
     N = contacts.normal[i]
     energy = N * N * law.compliance
@@ -259,9 +242,7 @@ def shear_limit(shear_law: ShearLaw, N: float) -> float:
     return shear_law.friction * max(N, 0.0) + shear_law.cohesion
 
 
-def agreed_state(
-    law: Law, shear_law: ShearLaw | None, state: int, gap: float, N: float, T: float, slipped: float
-) -> int:
+def agreed_state(law: Law, shear_law: Shear, state: int, gap: float, N: float, T: float, slipped: float) -> int:
     """Return the state that the law makes of a tried contact; with NaN another one than was tried.
 
     Parameters
@@ -282,7 +263,7 @@ def agreed_state(
     return state if state * slipped >= 0 else STICK
 
 
-def update_states(law: Law, shear_law: ShearLaw | None, after: Contacts, states: States, most: int) -> int:
+def update_states(law: Law, shear_law: Shear, after: Contacts, states: States, most: int) -> int:
     """Set the states that disagree with their forces, `most` at most; return how many disagree."""
     wrong = 0
     for i in range(len(after.gap)):
@@ -297,24 +278,17 @@ def update_states(law: Law, shear_law: ShearLaw | None, after: Contacts, states:
 
 
 def one_by_one(
-    law: Law,
-    shear_law: ShearLaw | None,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    solves: int,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
     n = len(before.gap)
     for i in range(n):
         work.saved[i] = work.tried[i]
-    friction = friction_of(shear_law)
+    solves = law.limit
     changes = 0
     next_save = 1
     while True:
-        trial(law, shear_law, before, free, flexible, friction, after, work)
+        trial(law, shear_law, before, free, flexible, after, work)
         solves += 1
         if update_states(law, shear_law, after, work.tried, 1) == 0:
             return FOUND, solves
@@ -336,23 +310,16 @@ def all_equal(states: States, saved: States, n: int) -> bool:
 
 
 def every_state(
-    law: Law,
-    shear_law: ShearLaw,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    solves: int,
-    choices: int,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Try all states; take the only ones that agree with their forces, but for rounding."""
     n = len(before.gap)
-    friction = shear_law.friction
+    solves = law.limit
+    choices = choices_of(shear_law)
     consistent = -1
     for number in range(choices**n):
         set_states(work.tried, number, choices, n)
-        trial(law, shear_law, before, free, flexible, friction, after, work)
+        trial(law, shear_law, before, free, flexible, after, work)
         solves += 1
         if update_states(law, shear_law, after, work.tried, 0) > 0:
             continue
@@ -366,8 +333,13 @@ def every_state(
     if consistent < 0:
         return NONE, solves
     set_states(work.tried, consistent, choices, n)
-    trial(law, shear_law, before, free, flexible, friction, after, work)
+    trial(law, shear_law, before, free, flexible, after, work)
     return FOUND, solves
+
+
+def choices_of(shear_law: ShearLaw) -> int:
+    """Return how many states a contact with shear may be in."""
+    return 4 if shear_law.slips else 2
 
 
 def set_states(states: States, number: int, choices: int, n: int) -> None:
@@ -393,14 +365,7 @@ def same_forces(after: Contacts, first: Vector) -> bool:
 
 
 def lagged(
-    law: Law,
-    shear_law: ShearLaw,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    limit: int,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts with friction one solve behind and out of the convergence test, as common programs do.
 
@@ -420,8 +385,8 @@ def lagged(
     for i in range(n):
         work.tried[i] = before.state[i]
         work.held[i] = shear_limit(shear_law, before.normal[i])
-    for solve in range(1, limit + 1):
-        trial(law, shear_law, before, free, flexible, 0.0, after, work)
+    for solve in range(1, law.limit + 1):
+        trial(law, shear_law, before, free, flexible, after, work)
         same = True
         for i in range(n):
             state = lagged_state(law, shear_law, before, after, i)
@@ -433,7 +398,7 @@ def lagged(
             for i in range(n):
                 restart_reference(before, after, i, work.tried[i])
             return FOUND, solve
-    return NONE, limit
+    return NONE, law.limit
 
 
 def lagged_state(law: Law, shear_law: ShearLaw, before: Contacts, after: Contacts, i: int) -> int:
@@ -458,22 +423,9 @@ def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> 
 
 
 def trial(
-    law: Law,
-    shear_law: ShearLaw | None,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    friction: float,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
-    """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not.
-
-    Parameters
-    ----------
-    friction
-        tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
-    """
+    """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not."""
     n = len(before.gap)
     closed = 0
     closing = 0
@@ -495,9 +447,9 @@ def trial(
     work.count[0] = closed
     work.count[1] = closing
     if closed > 0:
-        solve_forces(law, shear_law, before, free, flexible, friction, after, work)
+        solve_forces(law, shear_law, before, free, flexible, after, work)
         if shear_law is not None and closing > 0:
-            find_crossings(law, shear_law, before, free, flexible, friction, after, work)
+            find_crossings(law, shear_law, before, free, flexible, after, work)
     for i in range(n):
         after.stretch[i] = 0.0
         if after.state[i] != OPEN:
@@ -515,7 +467,7 @@ def trial(
                 after.slipped[i] = before.stretch[i] + moved - after.stretch[i]
 
 
-def moved_by_forces(shear_law: ShearLaw | None, row: Vector, after: Contacts) -> float:
+def moved_by_forces(shear_law: Shear, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
     n = len(after.gap)
     total = dot(row, after.normal, n)
@@ -552,14 +504,7 @@ def crossing_rate(law: Law, before: float, N: float) -> float:
 
 
 def find_crossings(
-    law: Law,
-    shear_law: ShearLaw,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    friction: float,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
     closing = work.count[1]
@@ -582,7 +527,7 @@ def find_crossings(
             work.beta[place] = min(max(work.beta[place] + change, 0.0), 1.0)
             if not abs(change) <= CROSSING_CHANGE * work.beta[place]:
                 settled = False
-        solve_forces(law, shear_law, before, free, flexible, friction, after, work)
+        solve_forces(law, shear_law, before, free, flexible, after, work)
         if settled:
             return
     for place in range(work.count[0]):
@@ -591,14 +536,7 @@ def find_crossings(
 
 
 def solve_forces(
-    law: Law,
-    shear_law: ShearLaw | None,
-    before: Contacts,
-    free: Free,
-    flexible: Flexible,
-    friction: float,
-    after: Contacts,
-    work: Work,
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
     """Write N and T of the closed contacts for given `work.beta`, and dN/dbeta of those that close."""
     closed = work.count[0]
@@ -621,14 +559,14 @@ def solve_forces(
         work.scale[place] = scale_of(work.A[place][place])
     if shear_law is not None:
         if shear_law.slips:
-            add_friction(before, flexible, friction, closed, active, work)
+            add_friction(shear_law, before, flexible, closed, active, work)
         for k in range(closing):  # a unit of force in the equation of a closing contact; T makes dN/dbeta of it
             unit_push(k, paired, closed, active, work)
     eliminate(work.A, work.right, work.scale, size, 1 + closing)
     for place in range(closed):
         after.normal[work.closed[place]] = work.right[place][0]
     if shear_law is not None:
-        write_shear(shear_law, friction, paired, closed, active, after, work)
+        write_shear(shear_law, paired, closed, active, after, work)
         for k in range(closing):
             beta = work.beta[work.closing[k]]
             T = after.shear[work.closed[work.closing[k]]]
@@ -650,7 +588,7 @@ def keeps_pair(shear_law: ShearLaw, flexible: Flexible, work: Work) -> bool:
 
 def assemble(
     law: Law,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     before: Contacts,
     free: Free,
     flexible: Flexible,
@@ -697,9 +635,12 @@ def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
     return int(n + work.closed[work.active[row - closed]])
 
 
-def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
+def add_friction(
+    shear_law: ShearLaw, before: Contacts, flexible: Flexible, closed: int, active: int, work: Work
+) -> None:
     """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
     n = len(before.gap)
+    friction = friction_of(shear_law)
     for place in range(closed):
         i = work.closed[place]
         if abs(work.tried[i]) != SLIP:
@@ -709,6 +650,11 @@ def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: 
             flexibility = direction * flexible.C[row_of(row, False, n, closed, work)][n + i]
             work.A[row][place] += friction * flexibility
             work.right[row][0] -= work.held[i] * flexibility
+
+
+def friction_of(shear_law: ShearLaw) -> float:
+    """Return tan(phi) by which T of a slipping contact follows its N beside `work.held`, which may hold the limit."""
+    return 0.0 if shear_law.lagged else shear_law.friction
 
 
 def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> None:
@@ -725,11 +671,10 @@ def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> Non
             work.right[closed + j][1 + k] = 1.0
 
 
-def write_shear(
-    shear_law: ShearLaw, friction: float, paired: bool, closed: int, active: int, after: Contacts, work: Work
-) -> None:
+def write_shear(shear_law: ShearLaw, paired: bool, closed: int, active: int, after: Contacts, work: Work) -> None:
     """Write T of the closed contacts, from their N and the solution of their equations."""
     right = work.right
+    friction = friction_of(shear_law)
     for place in range(closed):
         i = work.closed[place]
         after.shear[i] = 0.0

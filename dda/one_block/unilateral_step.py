@@ -36,7 +36,7 @@ from dda.contact.kernel import (
     Contacts,
     Free,
     Law,
-    ShearLaw,
+    Shear,
     Work,
     at_rest,
     change_slides,
@@ -107,7 +107,6 @@ class BlockEquations(NamedTuple):
     law: Law
     stiffness: float  # p [N/m]
     rule: int  # place in RULES
-    limit: int  # solves of the open-close iteration before the states are searched
     alpha: float
     delta: float
     gg: float
@@ -129,17 +128,16 @@ class BlockEquations(NamedTuple):
 
 def block_equations(
     form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
-) -> tuple[BlockEquations, ShearLaw | None]:
+) -> tuple[BlockEquations, Shear]:
     """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
     vectors += zeros(c, (n, n), n, 2, 2, n)
     block = BlockEquations(
-        law=law_of(law),
+        law=law_of(law, limit),
         stiffness=law.stiffness,
         rule=RULES.index(rule),
-        limit=limit,
         alpha=scheme.alpha,
         delta=scheme.delta,
         gg=scheme.gg,
@@ -175,7 +173,7 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
 # ---- the step --------------------------------------------------------------------------------------------------------
 
 
-def set_length(block: BlockEquations, shear_law: ShearLaw | None, ratio: float, length: StepLength) -> None:
+def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: StepLength) -> None:
     """Write everything that depends on the length of a step: S0^-1, and the flexibility of the contacts.
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
@@ -211,7 +209,7 @@ def set_length(block: BlockEquations, shear_law: ShearLaw | None, ratio: float, 
     block.made[0] += 1
 
 
-def length_of(block: BlockEquations, shear_law: ShearLaw | None, ratio: float) -> StepLength:
+def length_of(block: BlockEquations, shear_law: Shear, ratio: float) -> StepLength:
     """Return what belongs to a length, over the scheme's step."""
     if ratio == 1.0:
         return block.whole
@@ -221,14 +219,14 @@ def length_of(block: BlockEquations, shear_law: ShearLaw | None, ratio: float) -
 
 
 def solve_at_end(
-    block: BlockEquations, shear_law: ShearLaw | None, before: Contacts, length: StepLength, after: Contacts
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
 ) -> tuple[int, int]:
     """Find the contacts whose law holds at the end of the step."""
-    return find_contacts(block.law, shear_law, before, block.room.free, length, block.limit, after, block.work)
+    return find_contacts(block.law, shear_law, before, block.room.free, length, after, block.work)
 
 
 def solve_conserving(
-    block: BlockEquations, shear_law: ShearLaw | None, before: Contacts, length: StepLength, after: Contacts
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
 ) -> tuple[int, int]:
     """Find the contacts whose forces do the work of their springs, without shear."""
     return conserving(block.stiffness, before, block.room.free, length, after, block.work)
@@ -239,7 +237,7 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
 
     def advance(
         block: BlockEquations,
-        shear_law: ShearLaw | None,
+        shear_law: Shear,
         state: BlockState,
         after: BlockState,
         base: BaseRecord | None,
@@ -268,7 +266,7 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
 
 def free_step(
     block: BlockEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     length: StepLength,
     scheme: StepScheme,
     state: BlockState,
@@ -309,7 +307,7 @@ def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
 
 def accept(
     block: BlockEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     length: StepLength,
     scheme: StepScheme,
     state: BlockState,
@@ -339,7 +337,7 @@ def accept(
         after.f[i] = f1 / (ratio * ratio)
 
 
-def contact_forces(block: BlockEquations, shear_law: ShearLaw | None, normal: Vector, shear: Vector) -> None:
+def contact_forces(block: BlockEquations, shear_law: Shear, normal: Vector, shear: Vector) -> None:
     """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
     room = block.room
     c = len(block.room.slide)
@@ -397,7 +395,7 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 
 def account(
     block: BlockEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     state: BlockState,
     after: BlockState,
     base: BaseRecord | None,

@@ -34,7 +34,7 @@ from dda.contact.kernel import (
     Flexibility,
     Free,
     Law,
-    ShearLaw,
+    Shear,
     States,
     Work,
     at_rest,
@@ -138,7 +138,6 @@ class RollingEquations(NamedTuple):
 
     loads: int  # dead loads, two at most
     law: Law
-    limit: int
     exact: bool  # or first-order rotation
     alpha: float
     delta: float
@@ -172,8 +171,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
         loads=loads,
-        law=law_of(setting.law),
-        limit=setting.limit,
+        law=law_of(setting.law, setting.limit),
         exact=setting.rotation == EXACT,
         alpha=scheme.alpha,
         delta=scheme.delta,
@@ -267,7 +265,7 @@ def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices
 
 def advance(
     body: RollingEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     state: RollingState,
     after: RollingState,
     base: BaseRecord | None,
@@ -400,7 +398,7 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 
 def settle(
     body: RollingEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     matrices: StepMatrices,
     state: RollingState,
     after: RollingState,
@@ -420,7 +418,7 @@ def settle(
 
 def settle_touching(
     body: RollingEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     pair: Touching,
     matrices: StepMatrices,
     state: RollingState,
@@ -447,7 +445,7 @@ def settle_touching(
             take_forces(pair)
             set_free(body, pair, state)
             outcome, spent = find_contacts(
-                body.law, shear_law, pair.before, pair.free, pair.flexible, body.limit, pair.after, pair.work
+                body.law, shear_law, pair.before, pair.free, pair.flexible, pair.after, pair.work
             )
             solves += spent
             if outcome != FOUND:
@@ -553,12 +551,7 @@ def push_of_loads(body: RollingEquations, state: RollingState) -> None:
 
 
 def accept(
-    body: RollingEquations,
-    pair: Touching,
-    matrices: StepMatrices,
-    state: RollingState,
-    after: RollingState,
-    near: int,
+    body: RollingEquations, pair: Touching, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
 ) -> None:
     """Write the state at the end of the step."""
     room = body.room
@@ -600,7 +593,7 @@ def accept(
 
 def account(
     body: RollingEquations,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     state: RollingState,
     after: RollingState,
     base: BaseRecord | None,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
-from dda.contact.kernel import FAILURES, FOUND, Contacts, ShearLaw
+from dda.contact.kernel import FAILURES, FOUND, Contacts, Shear
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
 
@@ -104,9 +104,7 @@ def base_at(base: BaseRecord, time: float, out: Vector) -> None:
 
 
 def driver(
-    advance: Callable[..., tuple[int, int]],
-    account: Callable[..., None],
-    keep: Callable[..., bool],
+    advance: Callable[..., tuple[int, int]], account: Callable[..., None], keep: Callable[..., bool]
 ) -> Callable[..., tuple[int, int]]:
     """Return the loop over the steps of a body.
 
@@ -124,7 +122,7 @@ def driver(
 
     def make_steps(
         body: Any,
-        shear_law: ShearLaw | None,
+        shear_law: Shear,
         state: Any,
         after: Any,
         base: BaseRecord | None,

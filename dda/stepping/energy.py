@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector
-from dda.contact.kernel import Contacts, Law, ShearLaw, spring_energy
+from dda.contact.kernel import Contacts, Law, Shear, spring_energy
 from dda.contact.unilateral import OPEN, Unilateral
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ SUMS = 6
 
 def add_contact_losses(
     law: Law,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     before: Contacts,
     after: Contacts,
     slide: Vector,

@@ -27,7 +27,7 @@ from dda.contact.kernel import (
     Contacts,
     Flexibility,
     Free,
-    ShearLaw,
+    Shear,
     at_rest,
     change_slides,
     find_contacts,
@@ -183,7 +183,8 @@ class OpeningBody:
     def __init__(
         self, opening: OpeningSystem, scheme: Scheme, limit: int, columns: Sequence[str], steps: int, energies: bool
     ) -> None:
-        self.opening, self.scheme, self.limit = opening, scheme, limit
+        self.opening = opening
+        self.scheme = scheme
         points = len(opening.normals)
         self.points, self.made = points, 0
         self.lengths: dict[float, Length] = {}
@@ -191,7 +192,7 @@ class OpeningBody:
         pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
         self.pressure = pressure / opening.system.base_length
         self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
-        self.law = self.find.room(law_of(opening.law))
+        self.law = self.find.room(law_of(opening.law, limit))
         self.work = self.find.room(work_for(points))
         self.energy = SystemEnergy(opening, scheme.step) if energies else None
         self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
@@ -226,7 +227,7 @@ class OpeningBody:
 
 def advance(
     body: OpeningBody,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     state: SystemState,
     after: SystemState,
     base: BaseRecord | None,
@@ -246,9 +247,7 @@ def advance(
     if len(moved) > n:
         free.slide[:] = moved[n:] - carried[0]
         free.paired[:2] = (free.slide[0] + free.slide[-1]) / 2, free.slide[-1] - free.slide[0]
-    outcome, solves = body.find(
-        body.law, shear_law, state.contacts, free, length.flexible, body.limit, after.contacts, body.work
-    )
+    outcome, solves = body.find(body.law, shear_law, state.contacts, free, length.flexible, after.contacts, body.work)
     if outcome != FOUND:
         return outcome, solves
     forces = np.array([*after.contacts.normal, *after.contacts.shear])[: len(moved)]
@@ -268,7 +267,7 @@ def advance(
 
 def account(
     body: OpeningBody,
-    shear_law: ShearLaw | None,
+    shear_law: Shear,
     state: SystemState,
     after: SystemState,
     base: BaseRecord | None,

@@ -114,7 +114,7 @@ def any_direction(monkeypatch):
 def kept_reference(monkeypatch):
     """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
 
-    def change(found, law, shear_law, before, free, flexible, limit, contacts, work):
+    def change(found, law, shear_law, before, free, flexible, contacts, work):
         for i in range(len(contacts.gap)):
             contacts.stretch[i] += contacts.slipped[i]
         return found
@@ -140,10 +140,10 @@ def pushed_along(monkeypatch):
     """Friction pushes in the direction of the slip."""
     real = kernel.trial
 
-    def faulty(law, shear_law, before, free, flexible, friction, contacts, work):
+    def faulty(law, shear_law, before, free, flexible, contacts, work):
         tried = list(work.tried)
         work.tried[:] = [-now if abs(now) == SLIP else now for now in tried]
-        real(law, shear_law, before, free, flexible, friction, contacts, work)
+        real(law, shear_law, before, free, flexible, contacts, work)
         work.tried[:] = tried
         contacts.state[:] = tried
 

@@ -35,7 +35,7 @@ def solved(law, C, gap, slide=None, before=None, limit=6):
         kernel.change_slides(np.array(C), kernel.TO_PAIR, C_paired)
     given = (before, Free(np.array(gap), slide, paired), Flexibility(np.array(C), C_paired))
     after, work = as_lists(kernel.at_rest(np.zeros(n))), as_lists(work_for(n))
-    outcome, solves = find_contacts(law_of(law), shear_law_of(law), *map(as_lists, given), limit, after, work)
+    outcome, solves = find_contacts(law_of(law, limit), shear_law_of(law), *map(as_lists, given), after, work)
     return outcome, solves, Contacts(*map(np.array, after))
 
 

@@ -50,7 +50,7 @@ def after(monkeypatch, owner, name, change):
 def kept_shear(monkeypatch):
     """A corner that opens goes on pulling along the base."""
 
-    def change(found, law, shear_law, before, free, flexible, limit, contacts, work):
+    def change(found, law, shear_law, before, free, flexible, contacts, work):
         for i in range(len(contacts.gap)):
             if contacts.state[i] == 0:
                 contacts.shear[i] = 0.5 * before.shear[i]

@@ -116,6 +116,7 @@ def run(
     from validation.cli.printing.answer import RunAnswer, as_data
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run
+    from validation.engine.executor import solver_logs
     from validation.engine.measured import complaints, missing_gates
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
@@ -147,7 +148,8 @@ def run(
 
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
     if quiet:
-        logging.getLogger("dda").setLevel(logging.ERROR)
+        for log in solver_logs():
+            log.setLevel(logging.ERROR)
     runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(store.verdicts, names)))

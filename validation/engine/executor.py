@@ -88,9 +88,7 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool = ProcessPoolExecutor(
-        jobs, initializer=_initialize_worker, initargs=(os.getpid(), logging.getLogger("dda").level)
-    )
+    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(), solver_logs()[0].level))
     wait = True
     try:
         yield pool
@@ -104,10 +102,16 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
+def solver_logs() -> list[logging.Logger]:
+    """Return what our solvers log to, as that they compile."""
+    return [logging.getLogger(name) for name in ("dda", "fem_reference")]
+
+
 def _initialize_worker(parent: int, log_level: int) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
     limit_process()
-    logging.getLogger("dda").setLevel(log_level)
+    for log in solver_logs():
+        log.setLevel(log_level)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
