@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.stepping.one_library import one_library
+from dda.stepping.one_library import library_option
 
 Loop = Callable[..., Any]
 
@@ -249,7 +249,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
         if function is not loop and function not in _jitable:
             # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;
             # and nobody else calls any of these: they have no entry from Python or C
-            options = {"pipeline_class": one_library(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            options = {**library_option(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             register_jitable(forceinline=function in direct, **options)(function)
             _jitable.add(function)
     directory = cache_directory()
@@ -276,7 +276,7 @@ def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path
     """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
     # nothing is allocated in a loop: without the counting of references a call costs what it does
-    options = {"pipeline_class": one_library(), "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+    options = {**library_option(), "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
     try:
         if directory is not None:
             numba.config.CACHE_DIR = str(directory)

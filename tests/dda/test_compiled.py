@@ -27,7 +27,7 @@ from dda import (
 from dda.contact import kernel
 from dda.one_block import unilateral, unilateral_step
 from dda.rotation.solution import solve_rolling
-from dda.stepping import compiled
+from dda.stepping import compiled, one_library
 
 FIELDS = (
     "normal",
@@ -250,6 +250,23 @@ def test_two_loops_of_one_process_call_the_same_function(fresh):
     assert ran()[0] == compiled.COMPILED
     assert compiled.run_loop(other_loop, (Numbers(5.0),), (), (kept,), 1.0)[2] == compiled.COMPILED
     assert kept.tolist() == [2.5, 1.5, 0.5]
+
+
+def third(size):
+    return size / 3.0
+
+
+def loop_of_another_numba(numbers, kept):
+    """A loop that calls what no other one does."""
+    for i in range(len(kept)):
+        kept[i] = third(numbers.size) + i
+
+
+def test_another_numba_compiles_in_its_own_way(fresh, monkeypatch):
+    monkeypatch.setattr(one_library, "one_library", lambda: 1 / 0)
+    kept = np.zeros(2)
+    assert compiled.run_loop(loop_of_another_numba, (Numbers(6.0),), (), (kept,), 1.0)[2] == compiled.COMPILED
+    assert kept.tolist() == [2.0, 3.0]
 
 
 class MoreNumbers(kernel.NamedTuple):
