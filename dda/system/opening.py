@@ -193,6 +193,7 @@ class OpeningBody:
         self.pressure = pressure / opening.system.base_length
         self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
         self.law = self.find.room(law_of(opening.law, limit))
+        self.shear_law = self.find.room(shear_law_of(opening.law))
         self.work = self.find.room(work_for(points))
         self.energy = SystemEnergy(opening, scheme.step) if energies else None
         self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
@@ -347,7 +348,7 @@ def solve_opening_system(
     ready = perf_counter()
     with np.errstate(all="ignore"):
         reached, ended = make_steps(
-            body, shear_law_of(law), body.start_state(), body.start_state(), base, history, steps, options.cut
+            body, body.shear_law, body.start_state(), body.start_state(), base, history, steps, options.cut
         )
     history = reached_history(history, reached)
     motion = history.motion[1:]

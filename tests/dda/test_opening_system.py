@@ -25,7 +25,7 @@ from dda import (
     solve_unilateral,
     subdivided,
 )
-from dda.contact.kernel import NONE, shear_law_of
+from dda.contact.kernel import NONE
 from dda.stepping.driver import driver
 from fem_reference.events.bar_events import solve as bar_motion
 from fem_reference.events.bar_model import BarProblem
@@ -66,7 +66,7 @@ def test_two_halves_of_a_step_are_free_fall_of_the_whole():
     body = opening.OpeningBody(opening_subdivided(model, 2, 1, GLUE), scheme, 6, (), 1, False)
     state, after = body.start_state(), body.start_state()
     for share in (0.5, 1.0):
-        opening.advance(body, shear_law_of(model.contact), state, after, None, share - 0.5, 0.5)
+        opening.advance(body, body.shear_law, state, after, None, share - 0.5, 0.5)
         fallen, time = after.D.reshape(-1, 6)[:, 1], scheme.step * share
         assert fallen == pytest.approx(np.full(2, -0.5 * time - 9.81 * time**2 / 2), rel=1e-9)
         assert after.contacts.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
