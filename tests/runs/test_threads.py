@@ -16,13 +16,14 @@ import scipy.linalg  # noqa: F401 - so that both libraries are loaded
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from validation.engine.case import Case
-from validation.engine.executor import _pool, solver_logs
+from validation.engine.executor import _pool
 from validation.engine.measure import execute
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.runs.threads import VARIABLES
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.contract import Solver
+from validation.solvers.logs import solver_logs
 from validation.solvers.registry import get_solver, solve
 
 MANY = 3  # threads of this process, whatever the machine has

@@ -116,12 +116,12 @@ def run(
     from validation.cli.printing.answer import RunAnswer, as_data
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run
-    from validation.engine.executor import solver_logs
     from validation.engine.measured import complaints, missing_gates
     from validation.errors import InputError
     from validation.gates.changes import read_verdicts
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
+    from validation.solvers.logs import solver_logs
     from validation.solvers.registry import is_solver, solver_names
     from validation.studies.catalogue import STUDIES, resolve
     from validation.studies.field.programs import known

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import multiprocessing
 import os
 import signal
@@ -18,6 +17,7 @@ from validation.runs.history import History
 from validation.runs.row import Row
 from validation.runs.text import error_text
 from validation.runs.threads import limit_process
+from validation.solvers.logs import solver_logs
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 PARENT_CHECK_INTERVAL = 0.25  # s
@@ -100,11 +100,6 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         raise
     finally:
         pool.shutdown(wait=wait, cancel_futures=True)
-
-
-def solver_logs() -> list[logging.Logger]:
-    """Return what our solvers log to, as that they compile."""
-    return [logging.getLogger(name) for name in ("dda", "fem_reference")]
 
 
 def _initialize_worker(parent: int, log_level: int) -> None:
