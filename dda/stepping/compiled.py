@@ -7,8 +7,8 @@ that cannot be written, where numba is missing or does not know this Python, the
 the same: nothing is reordered or fused.
 
 Compiling takes 5 to 25 seconds, several times what the shortest history that is compiled takes in plain Python. It is
-paid once an install, and the second history of this kind has won it back: from then on 1e5 steps of a block that opens
-take 0.02 s, where plain Python takes two seconds and more. Where code cannot be kept every process would pay, and only
+paid once an install, and whoever runs one such history runs more: from then on 1e5 steps of a block that opens take
+0.02 s, where plain Python takes two seconds and more. Where code cannot be kept every process would pay, and only
 histories are compiled that take longer than that.
 
 Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
