@@ -56,17 +56,26 @@ TRIED = 256  # contact states up to which all are tried: of 8 bonded contacts, o
 
 
 class Law(NamedTuple):
-    """The numbers of `Unilateral`, for one contact."""
+    """The numbers of `Unilateral` across the base, for one contact."""
 
     compliance: float  # 1/p [m/N]; 0 for a rigid stop
+    closing: float  # gap below which an open contact closes [m]
+    pull: float  # greatest tension of a closed contact [N]
+    limit: int  # solves of the open-close iteration before the states are searched
+
+
+class ShearLaw(NamedTuple):
+    """The numbers of `Unilateral` along the base."""
+
     softness: float  # 1/p_s [m/N]
     friction: float  # tan(phi) [-]
     cohesion: float  # c [N]
-    closing: float  # gap below which an open contact closes [m]
-    pull: float  # greatest tension of a closed contact [N]
-    shears: bool  # whether a closed contact takes up shear
-    slips: bool  # whether its shear has a limit
+    slips: bool  # whether the shear has a limit
     lagged: bool  # whether that limit is that of the solve before
+
+
+Shear = ShearLaw | None
+"""None of contacts that slide freely: what needs the law is then left out of compiled code, half of what there is."""
 
 
 class Contacts(NamedTuple):
@@ -124,19 +133,21 @@ class Work(NamedTuple):
     mean: Vector  # (n,) normal forces over the step, where they are not those of its end [N]
 
 
-def law_of(law: Unilateral, slides: bool = True) -> Law:
-    """Return the numbers of a law; of contacts that cannot slide without shear."""
-    shears = bool(law.shear) and slides
-    return Law(
-        compliance=law.compliance,
-        softness=law.softness if shears else 0.0,
+def law_of(law: Unilateral, limit: int) -> Law:
+    """Return the numbers of a law across the base; `limit` bounds the solves before the states are searched."""
+    return Law(compliance=law.compliance, closing=-law.band[0], pull=law.pull, limit=limit)
+
+
+def shear_law_of(law: Unilateral) -> Shear:
+    """Return the numbers of a law along the base, None without shear."""
+    if not law.shear:
+        return None
+    return ShearLaw(
+        softness=law.softness,
         friction=law.friction or 0.0,
         cohesion=law.cohesion,
-        closing=-law.band[0],
-        pull=law.pull,
-        shears=shears,
-        slips=shears and law.friction is not None,
-        lagged=shears and law.rules == LAGGED,
+        slips=law.friction is not None,
+        lagged=law.rules == LAGGED,
     )
 
 
@@ -173,45 +184,45 @@ def change_slides(flexibility: Matrix, change: tuple[tuple[float, float], tuple[
 
 
 def find_contacts(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts at the end of a step; return the outcome and the number of solves.
 
     Parameters
     ----------
-    law, before, free, flexible
-        Law of the contacts, the contacts at the start of the step, the step without contact forces, and what forces
-        change of it.
-    limit
-        Greatest number of solves before the states are searched.
+    law, shear_law, before, free, flexible
+        Law of the contacts across and along the base, the contacts at the start of the step, the step without contact
+        forces, and what forces change of it.
     after
         Where the contacts at the end of the step are written.
     work
         Room for the equations.
     """
-    if law.lagged:
-        return lagged(law, before, free, flexible, limit, after, work)
     n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
-        work.held[i] = law.cohesion
-    for solve in range(1, limit + 1):
-        trial(law, before, free, flexible, law.friction, after, work)
-        if update_states(law, after, work.tried, n) == 0:
+    if shear_law is not None:
+        if shear_law.lagged:
+            return lagged(law, shear_law, before, free, flexible, after, work)
+        for i in range(n):
+            work.held[i] = shear_law.cohesion
+    for solve in range(1, law.limit + 1):
+        trial(law, shear_law, before, free, flexible, after, work)
+        if update_states(law, shear_law, after, work.tried, n) == 0:
             return FOUND, solve
-    if not law.shears:
-        return one_by_one(law, before, free, flexible, limit, after, work)
-    choices = 4 if law.slips else 2
-    if choices**n <= TRIED:
-        return every_state(law, before, free, flexible, limit, choices, after, work)
-    return one_by_one(law, before, free, flexible, limit, after, work)
+    if shear_law is not None and choices_of(shear_law) ** n <= TRIED:
+        return every_state(law, shear_law, before, free, flexible, after, work)
+    return one_by_one(law, shear_law, before, free, flexible, after, work)
 
 
-def spring_energy(law: Law, contacts: Contacts, i: int) -> float:
+def spring_energy(law: Law, shear_law: Shear, contacts: Contacts, i: int) -> float:
     """Return the energy of the springs of a contact [J]."""
     N = contacts.normal[i]
-    T = contacts.shear[i]
-    return float((N * N * law.compliance + T * T * law.softness) / 2)
+    energy = N * N * law.compliance
+    if shear_law is not None:
+        T = contacts.shear[i]
+        energy += T * T * shear_law.softness
+    return float(energy / 2)
 
 
 def stays_closed(law: Law, N: float) -> bool:
@@ -224,14 +235,14 @@ def closes(law: Law, w: float) -> bool:
     return w < law.closing
 
 
-def shear_limit(law: Law, N: float) -> float:
+def shear_limit(shear_law: ShearLaw, N: float) -> float:
     """Return the greatest shear force tan(phi) N + c under the normal force N [N]; a bonded contact has none."""
-    if not law.slips:
+    if not shear_law.slips:
         return math.inf
-    return law.friction * max(N, 0.0) + law.cohesion
+    return shear_law.friction * max(N, 0.0) + shear_law.cohesion
 
 
-def agreed_state(law: Law, state: int, gap: float, N: float, T: float, slipped: float) -> int:
+def agreed_state(law: Law, shear_law: Shear, state: int, gap: float, N: float, T: float, slipped: float) -> int:
     """Return the state that the law makes of a tried contact; with NaN another one than was tried.
 
     Parameters
@@ -243,23 +254,22 @@ def agreed_state(law: Law, state: int, gap: float, N: float, T: float, slipped: 
         return STICK if closes(law, gap) else OPEN
     if not stays_closed(law, N):
         return OPEN
+    if shear_law is None:
+        return STICK
     if state == STICK:
-        if abs(T) <= shear_limit(law, N) * (1 + ROUNDING):
+        if abs(T) <= shear_limit(shear_law, N) * (1 + ROUNDING):
             return STICK
         return -SLIP if T > 0 else SLIP
     return state if state * slipped >= 0 else STICK
 
 
-def agreed(law: Law, after: Contacts, i: int) -> int:
-    """Return the state that the law makes of one of the tried contacts."""
-    return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i])
-
-
-def update_states(law: Law, after: Contacts, states: States, most: int) -> int:
+def update_states(law: Law, shear_law: Shear, after: Contacts, states: States, most: int) -> int:
     """Set the states that disagree with their forces, `most` at most; return how many disagree."""
     wrong = 0
     for i in range(len(after.gap)):
-        state = agreed(law, after, i)
+        state = agreed_state(
+            law, shear_law, after.state[i], after.gap[i], after.normal[i], after.shear[i], after.slipped[i]
+        )
         if state != states[i]:
             wrong += 1
             if wrong <= most:
@@ -268,17 +278,19 @@ def update_states(law: Law, after: Contacts, states: States, most: int) -> int:
 
 
 def one_by_one(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, after: Contacts, work: Work
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
     n = len(before.gap)
     for i in range(n):
         work.saved[i] = work.tried[i]
-    changes, next_save = 0, 1
+    solves = law.limit
+    changes = 0
+    next_save = 1
     while True:
-        trial(law, before, free, flexible, law.friction, after, work)
+        trial(law, shear_law, before, free, flexible, after, work)
         solves += 1
-        if update_states(law, after, work.tried, 1) == 0:
+        if update_states(law, shear_law, after, work.tried, 1) == 0:
             return FOUND, solves
         changes += 1
         if all_equal(work.tried, work.saved, n):
@@ -298,16 +310,18 @@ def all_equal(states: States, saved: States, n: int) -> bool:
 
 
 def every_state(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, solves: int, choices: int, after: Contacts, work: Work
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Try all states; take the only ones that agree with their forces, but for rounding."""
     n = len(before.gap)
+    solves = law.limit
+    choices = choices_of(shear_law)
     consistent = -1
     for number in range(choices**n):
         set_states(work.tried, number, choices, n)
-        trial(law, before, free, flexible, law.friction, after, work)
+        trial(law, shear_law, before, free, flexible, after, work)
         solves += 1
-        if update_states(law, after, work.tried, 0) > 0:
+        if update_states(law, shear_law, after, work.tried, 0) > 0:
             continue
         if consistent < 0:
             consistent = number
@@ -319,8 +333,13 @@ def every_state(
     if consistent < 0:
         return NONE, solves
     set_states(work.tried, consistent, choices, n)
-    trial(law, before, free, flexible, law.friction, after, work)
+    trial(law, shear_law, before, free, flexible, after, work)
     return FOUND, solves
+
+
+def choices_of(shear_law: ShearLaw) -> int:
+    """Return how many states a contact with shear may be in."""
+    return 4 if shear_law.slips else 2
 
 
 def set_states(states: States, number: int, choices: int, n: int) -> None:
@@ -346,7 +365,7 @@ def same_forces(after: Contacts, first: Vector) -> bool:
 
 
 def lagged(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, limit: int, after: Contacts, work: Work
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> tuple[int, int]:
     """Find the contacts with friction one solve behind and out of the convergence test, as common programs do.
 
@@ -365,27 +384,27 @@ def lagged(
     n = len(before.gap)
     for i in range(n):
         work.tried[i] = before.state[i]
-        work.held[i] = shear_limit(law, before.normal[i])
-    for solve in range(1, limit + 1):
-        trial(law, before, free, flexible, 0.0, after, work)
+        work.held[i] = shear_limit(shear_law, before.normal[i])
+    for solve in range(1, law.limit + 1):
+        trial(law, shear_law, before, free, flexible, after, work)
         same = True
         for i in range(n):
-            state = lagged_state(law, before, after, i)
+            state = lagged_state(law, shear_law, before, after, i)
             if (state == OPEN) != (work.tried[i] == OPEN):
                 same = False
             work.tried[i] = state
-            work.held[i] = shear_limit(law, after.normal[i])
+            work.held[i] = shear_limit(shear_law, after.normal[i])
         if same:
             for i in range(n):
                 restart_reference(before, after, i, work.tried[i])
             return FOUND, solve
-    return NONE, limit
+    return NONE, law.limit
 
 
-def lagged_state(law: Law, before: Contacts, after: Contacts, i: int) -> int:
+def lagged_state(law: Law, shear_law: ShearLaw, before: Contacts, after: Contacts, i: int) -> int:
     """Return the state of a contact after a solve; its own movement within the step decides whether it slips on."""
     moved = after.slipped[i] + after.stretch[i] - before.stretch[i]
-    return agreed_state(law, after.state[i], after.gap[i], after.normal[i], after.shear[i], moved)
+    return agreed_state(law, shear_law, after.state[i], after.gap[i], after.normal[i], after.shear[i], moved)
 
 
 def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> None:
@@ -404,15 +423,9 @@ def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> 
 
 
 def trial(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
-    """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not.
-
-    Parameters
-    ----------
-    friction
-        tan(phi) by which T of a slipping contact follows its N; it carries `work.held` besides [-].
-    """
+    """Write the contacts at the end of the step in the states `work.tried`, whether their forces agree or not."""
     n = len(before.gap)
     closed = 0
     closing = 0
@@ -424,39 +437,41 @@ def trial(
         after.slipped[i] = 0.0
         after.reference[i] = before.reference[i]
         if state != OPEN:
-            sticks = law.shears and state == STICK
             work.closed[closed] = i
-            work.beta[closed] = 1.0 if sticks else 0.0
-            if sticks and before.state[i] == OPEN:
-                work.closing[closing] = closed
-                closing += 1
+            if shear_law is not None:
+                work.beta[closed] = 1.0 if state == STICK else 0.0
+                if state == STICK and before.state[i] == OPEN:
+                    work.closing[closing] = closed
+                    closing += 1
             closed += 1
     work.count[0] = closed
     work.count[1] = closing
     if closed > 0:
-        solve_forces(law, before, free, flexible, friction, after, work)
-        if closing > 0:
-            find_crossings(law, before, free, flexible, friction, after, work)
+        solve_forces(law, shear_law, before, free, flexible, after, work)
+        if shear_law is not None and closing > 0:
+            find_crossings(law, shear_law, before, free, flexible, after, work)
     for i in range(n):
-        after.stretch[i] = 0.0 - after.shear[i] * law.softness
+        after.stretch[i] = 0.0
         if after.state[i] != OPEN:
             after.gap[i] = 0.0 - after.normal[i] * law.compliance  # no sum: a closed contact keeps its digits
         else:
             after.gap[i] = free.gap[i]
             if closed > 0:
-                after.gap[i] += moved_by_forces(law, flexible.C[i], after)
-        if abs(after.state[i]) == SLIP:
-            moved = free.slide[i] + moved_by_forces(law, flexible.C[n + i], after)
-            if before.state[i] == OPEN:
-                moved *= crossing_share(law, before.gap[i], after.normal[i])
-            after.slipped[i] = before.stretch[i] + moved - after.stretch[i]
+                after.gap[i] += moved_by_forces(shear_law, flexible.C[i], after)
+        if shear_law is not None:
+            after.stretch[i] = 0.0 - after.shear[i] * shear_law.softness
+            if abs(after.state[i]) == SLIP:
+                moved = free.slide[i] + moved_by_forces(shear_law, flexible.C[n + i], after)
+                if before.state[i] == OPEN:
+                    moved *= crossing_share(law, before.gap[i], after.normal[i])
+                after.slipped[i] = before.stretch[i] + moved - after.stretch[i]
 
 
-def moved_by_forces(law: Law, row: Vector, after: Contacts) -> float:
+def moved_by_forces(shear_law: Shear, row: Vector, after: Contacts) -> float:
     """Return a row of C times the forces [m]."""
     n = len(after.gap)
     total = dot(row, after.normal, n)
-    if law.shears:
+    if shear_law is not None:
         for j in range(n):
             total += row[n + j] * after.shear[j]
     return total
@@ -489,7 +504,7 @@ def crossing_rate(law: Law, before: float, N: float) -> float:
 
 
 def find_crossings(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
+    law: Law, shear_law: ShearLaw, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
     closing = work.count[1]
@@ -512,7 +527,7 @@ def find_crossings(
             work.beta[place] = min(max(work.beta[place] + change, 0.0), 1.0)
             if not abs(change) <= CROSSING_CHANGE * work.beta[place]:
                 settled = False
-        solve_forces(law, before, free, flexible, friction, after, work)
+        solve_forces(law, shear_law, before, free, flexible, after, work)
         if settled:
             return
     for place in range(work.count[0]):
@@ -521,51 +536,66 @@ def find_crossings(
 
 
 def solve_forces(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, friction: float, after: Contacts, work: Work
+    law: Law, shear_law: Shear, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
 ) -> None:
     """Write N and T of the closed contacts for given `work.beta`, and dN/dbeta of those that close."""
     closed = work.count[0]
     closing = work.count[1]
-    if closed == 1 and not law.shears:
+    if shear_law is None and closed == 1:
         i = work.closed[0]
         after.normal[i] = (0.0 - free.gap[i]) / (flexible.C[i][i] + law.compliance)
         return
     active = 0
-    for place in range(closed):
-        if work.beta[place] > 0:
-            work.active[active] = place
-            active += 1
+    paired = False
+    if shear_law is not None:
+        for place in range(closed):
+            if work.beta[place] > 0:
+                work.active[active] = place
+                active += 1
+        paired = active == 2 and len(before.gap) == 2 and keeps_pair(shear_law, flexible, work)
     size = closed + active
-    paired = active == 2 and len(before.gap) == 2 and keeps_pair(law, flexible, work)
-    assemble(law, before, free, flexible, paired, closed, active, work)
+    assemble(law, shear_law, before, free, flexible, paired, closed, active, work)
     for place in range(size):
         work.scale[place] = scale_of(work.A[place][place])
-    if law.slips:
-        add_friction(before, flexible, friction, closed, active, work)
-    for k in range(closing):  # what a unit of force in the equation of a closing contact does; T makes dN/dbeta of it
-        unit_push(k, paired, closed, active, work)
+    if shear_law is not None:
+        if shear_law.slips:
+            add_friction(shear_law, before, flexible, closed, active, work)
+        for k in range(closing):  # a unit of force in the equation of a closing contact; T makes dN/dbeta of it
+            unit_push(k, paired, closed, active, work)
     eliminate(work.A, work.right, work.scale, size, 1 + closing)
-    write_forces(law, friction, paired, closed, active, after, work)
-    for k in range(closing):
-        beta = work.beta[work.closing[k]]
-        strength = after.shear[work.closed[work.closing[k]]] * law.softness / (beta * beta) if beta > 0 else 0.0
-        for j in range(closing):
-            work.slope[j][k] = work.right[work.closing[j]][1 + k] * strength
+    for place in range(closed):
+        after.normal[work.closed[place]] = work.right[place][0]
+    if shear_law is not None:
+        write_shear(shear_law, paired, closed, active, after, work)
+        for k in range(closing):
+            beta = work.beta[work.closing[k]]
+            T = after.shear[work.closed[work.closing[k]]]
+            strength = T * shear_law.softness / (beta * beta) if beta > 0 else 0.0
+            for j in range(closing):
+                work.slope[j][k] = work.right[work.closing[j]][1 + k] * strength
 
 
-def keeps_pair(law: Law, flexible: Flexible, work: Work) -> bool:
+def keeps_pair(shear_law: ShearLaw, flexible: Flexible, work: Work) -> bool:
     """Tell whether the equations of two sticking contacts are those of H and G.
 
     These keep apart the rigid and the elastic flexibility, but mix unequal softnesses: beyond the rigid flexibility
     softness decides, and the contacts' own forces keep the digits.
     """
-    first = law.softness / work.beta[0]
-    second = law.softness / work.beta[1]
+    first = shear_law.softness / work.beta[0]
+    second = shear_law.softness / work.beta[1]
     return bool(first == second or max(first, second) <= flexible.C_paired[2][2])
 
 
 def assemble(
-    law: Law, before: Contacts, free: Free, flexible: Flexible, paired: bool, closed: int, active: int, work: Work
+    law: Law,
+    shear_law: Shear,
+    before: Contacts,
+    free: Free,
+    flexible: Flexible,
+    paired: bool,
+    closed: int,
+    active: int,
+    work: Work,
 ) -> None:
     """Write the equations of N of the closed contacts and T of those that stick, without the slipping ones' T."""
     n = len(before.gap)
@@ -578,9 +608,11 @@ def assemble(
     for place in range(closed):
         A[place][place] += law.compliance
         work.right[place][0] = 0.0 - free.gap[work.closed[place]]
+    if shear_law is None:
+        return
     if paired:
-        first = law.softness / work.beta[0]
-        second = law.softness / work.beta[1]
+        first = shear_law.softness / work.beta[0]
+        second = shear_law.softness / work.beta[1]
         A[2][2] += (first + second) / 4
         A[2][3] += (second - first) / 2
         A[3][2] += (second - first) / 2
@@ -590,7 +622,7 @@ def assemble(
         return
     for k in range(active):
         i = work.closed[work.active[k]]
-        A[closed + k][closed + k] += law.softness / work.beta[work.active[k]]
+        A[closed + k][closed + k] += shear_law.softness / work.beta[work.active[k]]
         work.right[closed + k][0] = 0.0 - (before.stretch[i] + free.slide[i])
 
 
@@ -603,9 +635,12 @@ def row_of(row: int, paired: bool, n: int, closed: int, work: Work) -> int:
     return int(n + work.closed[work.active[row - closed]])
 
 
-def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: int, active: int, work: Work) -> None:
+def add_friction(
+    shear_law: ShearLaw, before: Contacts, flexible: Flexible, closed: int, active: int, work: Work
+) -> None:
     """Add T = -sigma (tan(phi) N + c) of the slipping contacts; the matrix is no longer symmetric."""
     n = len(before.gap)
+    friction = friction_of(shear_law)
     for place in range(closed):
         i = work.closed[place]
         if abs(work.tried[i]) != SLIP:
@@ -615,6 +650,11 @@ def add_friction(before: Contacts, flexible: Flexible, friction: float, closed: 
             flexibility = direction * flexible.C[row_of(row, False, n, closed, work)][n + i]
             work.A[row][place] += friction * flexibility
             work.right[row][0] -= work.held[i] * flexibility
+
+
+def friction_of(shear_law: ShearLaw) -> float:
+    """Return tan(phi) by which T of a slipping contact follows its N beside `work.held`, which may hold the limit."""
+    return 0.0 if shear_law.lagged else shear_law.friction
 
 
 def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> None:
@@ -631,16 +671,14 @@ def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> Non
             work.right[closed + j][1 + k] = 1.0
 
 
-def write_forces(
-    law: Law, friction: float, paired: bool, closed: int, active: int, after: Contacts, work: Work
-) -> None:
-    """Write N and T of the closed contacts from the solution of their equations."""
+def write_shear(shear_law: ShearLaw, paired: bool, closed: int, active: int, after: Contacts, work: Work) -> None:
+    """Write T of the closed contacts, from their N and the solution of their equations."""
     right = work.right
+    friction = friction_of(shear_law)
     for place in range(closed):
         i = work.closed[place]
-        after.normal[i] = right[place][0]
         after.shear[i] = 0.0
-        if law.slips and abs(work.tried[i]) == SLIP:
+        if shear_law.slips and abs(work.tried[i]) == SLIP:
             limit = friction * right[place][0] + work.held[i]
             after.shear[i] = 0.0 - limit if work.tried[i] > 0 else limit
     if paired:

@@ -23,7 +23,15 @@ from dda.one_block.contact_result import ContactResult, contact_parts, run_field
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.unilateral_step import CONSERVING, NEWMARK, RULES, block_equations, make_steps, start_state
+from dda.one_block.unilateral_step import (
+    CONSERVING,
+    NEWMARK,
+    RULES,
+    block_equations,
+    make_conserving_steps,
+    make_steps,
+    start_state,
+)
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
@@ -129,14 +137,19 @@ def solve_unilateral(
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     motion = model.load.motion
-    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None)
+    block, shear_law = block_equations(form, law, scheme, options.rule, options.solve_limit)
     state = start_state(form, law, scheme, model.velocity, options.rule)
     base = base_record(motion and motion.along(form.axes))
     history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
     ready = perf_counter()
+    loop = make_conserving_steps if options.rule == CONSERVING else make_steps
     (reached, ended), left, how = run_loop(
-        make_steps, (block, state, state), (base,), (history, steps, options.cut), seconds
+        loop,
+        (block, shear_law, state, state),
+        (base,),
+        (history, steps, options.cut),
+        seconds,
     )
     history = reached_history(history, reached)
     with np.errstate(all="ignore"):

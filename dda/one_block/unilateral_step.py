@@ -22,6 +22,7 @@ momentum M R (y1 - y).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,11 +36,13 @@ from dda.contact.kernel import (
     Contacts,
     Free,
     Law,
+    Shear,
     Work,
     at_rest,
     change_slides,
     find_contacts,
     law_of,
+    shear_law_of,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -104,7 +107,6 @@ class BlockEquations(NamedTuple):
     law: Law
     stiffness: float  # p [N/m]
     rule: int  # place in RULES
-    limit: int  # solves of the open-close iteration before the states are searched
     alpha: float
     delta: float
     gg: float
@@ -116,7 +118,6 @@ class BlockEquations(NamedTuple):
     multiplicity: float
     translation: Matrix  # (n, 2) R, along and away from the base
     carried: Matrix  # (n, 2) M R
-    moves: bool  # whether the base does
     inverse_mass: Matrix  # (n, n)
     whole: StepLength  # of a whole step
     part: StepLength  # of the last part of a step
@@ -126,18 +127,17 @@ class BlockEquations(NamedTuple):
 
 
 def block_equations(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int, moves: bool
-) -> BlockEquations:
-    """Return the equations as numbers, with the matrices of a whole step."""
+    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
+) -> tuple[BlockEquations, Shear]:
+    """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
     vectors += zeros(c, (n, n), n, 2, 2, n)
     block = BlockEquations(
-        law=law_of(law, slides=q > c),
+        law=law_of(law, limit),
         stiffness=law.stiffness,
         rule=RULES.index(rule),
-        limit=limit,
         alpha=scheme.alpha,
         delta=scheme.delta,
         gg=scheme.gg,
@@ -149,7 +149,6 @@ def block_equations(
         multiplicity=form.multiplicity,
         translation=form.translation,
         carried=form.M @ form.translation,
-        moves=moves,
         inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
         whole=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
         part=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
@@ -157,8 +156,9 @@ def block_equations(
         room=Room(*vectors),
         work=work_for(c),
     )
-    set_length(block, 1.0, block.whole)
-    return block
+    shear_law = shear_law_of(law) if q > c else None
+    set_length(block, shear_law, 1.0, block.whole)
+    return block, shear_law
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -173,7 +173,7 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
 # ---- the step --------------------------------------------------------------------------------------------------------
 
 
-def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
+def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: StepLength) -> None:
     """Write everything that depends on the length of a step: S0^-1, and the flexibility of the contacts.
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
@@ -202,55 +202,75 @@ def set_length(block: BlockEquations, ratio: float, length: StepLength) -> None:
             for k in range(n):
                 total += block.B[i][k] * length.pushed[k][j]
             length.C_paired[i][j] = total
-    if q == 4:
+    if shear_law is not None and q == 4:
         change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C, q)
     block.made[0] += 1
 
 
-def length_of(block: BlockEquations, ratio: float) -> StepLength:
+def length_of(block: BlockEquations, shear_law: Shear, ratio: float) -> StepLength:
     """Return what belongs to a length, over the scheme's step."""
     if ratio == 1.0:
         return block.whole
     if block.part.numbers[0] != ratio:
-        set_length(block, ratio, block.part)
+        set_length(block, shear_law, ratio, block.part)
     return block.part
 
 
-def advance(
-    block: BlockEquations, state: BlockState, after: BlockState, base: BaseRecord, begun: float, ratio: float
+def solve_at_end(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
 ) -> tuple[int, int]:
-    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
+    """Find the contacts whose law holds at the end of the step."""
+    return find_contacts(block.law, shear_law, before, block.room.free, length, after, block.work)
 
-    Parameters
-    ----------
-    begun, ratio
-        Where it begins and how long it is, in steps.
-    """
-    length = length_of(block, ratio)
-    scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
-    free_step(block, length, scheme, state, base, begun, ratio)
-    before = state.contacts
-    free = block.room.free
-    if block.rule == 2:
-        outcome, solves = conserving(block.stiffness, before, free, length, after.contacts, block.work)
-    else:
-        outcome, solves = find_contacts(block.law, before, free, length, block.limit, after.contacts, block.work)
-    if outcome != FOUND:
+
+def solve_conserving(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts whose forces do the work of their springs, without shear."""
+    return conserving(block.stiffness, before, block.room.free, length, after, block.work)
+
+
+def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a step whose contacts are found by `solve`, one of the two functions above."""
+
+    def advance(
+        block: BlockEquations,
+        shear_law: Shear,
+        state: BlockState,
+        after: BlockState,
+        base: BaseRecord | None,
+        begun: float,
+        ratio: float,
+    ) -> tuple[int, int]:
+        """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
+
+        Parameters
+        ----------
+        begun, ratio
+            Where it begins and how long it is, in steps.
+        """
+        length = length_of(block, shear_law, ratio)
+        scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
+        free_step(block, shear_law, length, scheme, state, base, begun, ratio)
+        outcome, solves = solve(block, shear_law, state.contacts, length, after.contacts)
+        if outcome == FOUND:
+            accept(block, shear_law, length, scheme, state, after, ratio)
+            if shear_law is not None:
+                refer(block, state.contacts, after)
         return outcome, solves
-    accept(block, length, scheme, state, after, ratio)
-    if block.law.shears:
-        refer(block, state.contacts, after)
-    return FOUND, solves
+
+    return advance
 
 
 def free_step(
     block: BlockEquations,
+    shear_law: Shear,
     length: StepLength,
     scheme: StepScheme,
     state: BlockState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
 ) -> None:
@@ -262,14 +282,14 @@ def free_step(
         room.P[i] = ratio * state.P[i]
         room.f[i] = ratio * ratio * state.f[i]
         room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
-    if block.moves:
+    if base is not None:
         base_displacement(base, block.step, begun, ratio, room.start, room.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], room.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
     for i in range(c):  # the gaps are the last unknowns
         room.free.gap[i] = state.D[n - c + i] + room.x[n - c + i]
-    if block.law.shears:
+    if shear_law is not None:
         slides_by(block, room.x, room.free.slide)
 
 
@@ -286,13 +306,20 @@ def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
 
 
 def accept(
-    block: BlockEquations, length: StepLength, scheme: StepScheme, state: BlockState, after: BlockState, ratio: float
+    block: BlockEquations,
+    shear_law: Shear,
+    length: StepLength,
+    scheme: StepScheme,
+    state: BlockState,
+    after: BlockState,
+    ratio: float,
 ) -> None:
     """Write (D, P, f) at the end of the step under the contact forces."""
     room = block.room
     n = len(block.K)
     c = len(block.room.slide)
-    contact_forces(block, block.work.mean if block.rule == 2 else after.contacts.normal, after.contacts.shear)
+    normal = block.work.mean if block.rule == 2 else after.contacts.normal
+    contact_forces(block, shear_law, normal, after.contacts.shear)
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
         after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
@@ -310,13 +337,13 @@ def accept(
         after.f[i] = f1 / (ratio * ratio)
 
 
-def contact_forces(block: BlockEquations, normal: Vector, shear: Vector) -> None:
+def contact_forces(block: BlockEquations, shear_law: Shear, normal: Vector, shear: Vector) -> None:
     """Write the forces in the coordinates of B: N, then T, or H = T_M + T_N and G = (T_N - T_M)/2."""
     room = block.room
     c = len(block.room.slide)
     for i in range(c):
         room.forces[i] = normal[i]
-    if not block.law.shears:
+    if shear_law is None:
         return
     room.forces[c] = shear[0]
     if c == 2:
@@ -368,9 +395,10 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 
 def account(
     block: BlockEquations,
+    shear_law: Shear,
     state: BlockState,
     after: BlockState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
     sums: Vector,
@@ -378,7 +406,7 @@ def account(
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
     room = block.room
     n = len(block.K)
-    length = length_of(block, ratio)
+    length = length_of(block, shear_law, ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
@@ -389,12 +417,21 @@ def account(
         room.change[i] = after.D[i] - state.D[i]
         stiff += room.change[i] * room.change[i] * block.K[i]
     if block.rule != 2:
-        if block.law.shears:
+        if shear_law is not None:
             slides_by(block, room.change, room.slide)
         late = block.delta if block.rule == 0 else 1.0
         share = block.multiplicity
         add_contact_losses(
-            block.law, state.contacts, after.contacts, room.slide, room.base, late, length.numbers[2], share, sums
+            block.law,
+            shear_law,
+            state.contacts,
+            after.contacts,
+            room.slide,
+            room.base,
+            late,
+            length.numbers[2],
+            share,
+            sums,
         )
     if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         for i in range(n):
@@ -423,4 +460,6 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
     return math.isfinite(total)
 
 
+advance = stepping(solve_at_end)
 make_steps = driver(advance, account, keep)
+make_conserving_steps = driver(stepping(solve_conserving), account, keep)

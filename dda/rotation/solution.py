@@ -8,6 +8,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.contact.kernel import shear_law_of
 from dda.model.load import BaseMotion
 from dda.one_block.contact_result import contact_parts, run_fields
 from dda.one_block.solution import check_damping, check_request
@@ -67,10 +68,15 @@ def solve_rolling(
     start = model.start(setting, scheme)
     base = base_motion(model)
     body = rolling_equations(setting, scheme)
+    shear_law = shear_law_of(setting.law)
     history = history_of(steps, STATE, len(body.xi), energies=True)
     ready = perf_counter()
     (reached, ended), left, how = run_loop(
-        make_steps, (body, start, start), (base_record(base),), (history, steps, options.cut), steps * PLAIN_STEP
+        make_steps,
+        (body, shear_law, start, start),
+        (base_record(base),),
+        (history, steps, options.cut),
+        steps * PLAIN_STEP,
     )
     history = reached_history(history, reached)
     motion = motion_of(history.motion)
@@ -85,7 +91,7 @@ def solve_rolling(
 
     parts = contact_parts(
         history,
-        body.law.softness,
+        setting.law.softness,
         slide=slide,
         slipped=lambda: np.abs(history.slipped[1:].T),
         horizontal_velocity=lambda: velocity[:, 0],

@@ -34,6 +34,7 @@ from dda.contact.kernel import (
     Flexibility,
     Free,
     Law,
+    Shear,
     States,
     Work,
     at_rest,
@@ -137,7 +138,6 @@ class RollingEquations(NamedTuple):
 
     loads: int  # dead loads, two at most
     law: Law
-    limit: int
     exact: bool  # or first-order rotation
     alpha: float
     delta: float
@@ -171,8 +171,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
         loads=loads,
-        law=law_of(setting.law),
-        limit=setting.limit,
+        law=law_of(setting.law, setting.limit),
         exact=setting.rotation == EXACT,
         alpha=scheme.alpha,
         delta=scheme.delta,
@@ -265,7 +264,13 @@ def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices
 
 
 def advance(
-    body: RollingEquations, state: RollingState, after: RollingState, base: BaseRecord, begun: float, ratio: float
+    body: RollingEquations,
+    shear_law: Shear,
+    state: RollingState,
+    after: RollingState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> tuple[int, int]:
     """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
 
@@ -283,7 +288,7 @@ def advance(
     near = nearest(body, room.near, REACH * body.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(body, matrices, state, after, near)
+        outcome, solves = settle(body, shear_law, matrices, state, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
@@ -306,16 +311,22 @@ def pair_number(at: States, near: int) -> int:
 
 
 def predict(
-    body: RollingEquations, matrices: StepMatrices, state: RollingState, base: BaseRecord, begun: float, ratio: float
+    body: RollingEquations,
+    matrices: StepMatrices,
+    state: RollingState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> None:
     """Write what is known of a step before its contact: the step without it, and where the corners come from."""
     room = body.room
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
-    base_at(base, body.step * begun, room.start)
-    base_at(base, body.step * (begun + ratio), room.base)
-    for axis in range(2):
-        room.moved[axis] = room.base[axis] - room.start[axis]
+    if base is not None:
+        base_at(base, body.step * begun, room.start)
+        base_at(base, body.step * (begun + ratio), room.base)
+        for axis in range(2):
+            room.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
     for i in range(6):
         room.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
@@ -386,14 +397,19 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 
 
 def settle(
-    body: RollingEquations, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
+    body: RollingEquations,
+    shear_law: Shear,
+    matrices: StepMatrices,
+    state: RollingState,
+    after: RollingState,
+    near: int,
 ) -> tuple[int, int]:
     """Make the step with the corners room.at, one or two or none."""
     room = body.room
     if near == 2:
-        return settle_touching(body, body.two, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.two, matrices, state, after, near)
     if near == 1 or body.loads > 0:
-        return settle_touching(body, body.one, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.one, matrices, state, after, near)
     for i in range(6):
         room.D[i] = room.free[i]
     accept(body, body.one, matrices, state, after, near)
@@ -402,6 +418,7 @@ def settle(
 
 def settle_touching(
     body: RollingEquations,
+    shear_law: Shear,
     pair: Touching,
     matrices: StepMatrices,
     state: RollingState,
@@ -428,7 +445,7 @@ def settle_touching(
             take_forces(pair)
             set_free(body, pair, state)
             outcome, spent = find_contacts(
-                body.law, pair.before, pair.free, pair.flexible, body.limit, pair.after, pair.work
+                body.law, shear_law, pair.before, pair.free, pair.flexible, pair.after, pair.work
             )
             solves += spent
             if outcome != FOUND:
@@ -534,12 +551,7 @@ def push_of_loads(body: RollingEquations, state: RollingState) -> None:
 
 
 def accept(
-    body: RollingEquations,
-    pair: Touching,
-    matrices: StepMatrices,
-    state: RollingState,
-    after: RollingState,
-    near: int,
+    body: RollingEquations, pair: Touching, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
 ) -> None:
     """Write the state at the end of the step."""
     room = body.room
@@ -581,9 +593,10 @@ def accept(
 
 def account(
     body: RollingEquations,
+    shear_law: Shear,
     state: RollingState,
     after: RollingState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
     sums: Vector,
@@ -595,6 +608,7 @@ def account(
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
         body.law,
+        shear_law,
         state.contacts,
         after.contacts,
         room.slide,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
-from dda.contact.kernel import FAILURES, FOUND, Contacts
+from dda.contact.kernel import FAILURES, FOUND, Contacts, Shear
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
 
@@ -63,11 +63,12 @@ class BaseRecord(NamedTuple):
     latest: Any  # (1,) number of the instant before the time that was looked up last
 
 
-def base_record(motion: BaseMotion | None) -> BaseRecord:
-    """Return the record of a base that moves, or of one at rest."""
-    record = motion or BaseMotion([0.0], [[0.0, 0.0]])
-    displacement = np.array(record.displacement, dtype=float, order="C")
-    return BaseRecord(np.array(record.time, dtype=float), displacement, np.zeros(1, dtype=np.int64))
+def base_record(motion: BaseMotion | None) -> BaseRecord | None:
+    """Return the record of a base that moves, None of one at rest."""
+    if motion is None:
+        return None
+    displacement = np.array(motion.displacement, dtype=float, order="C")
+    return BaseRecord(np.array(motion.time, dtype=float), displacement, np.zeros(1, dtype=np.int64))
 
 
 def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, start: Vector, out: Vector) -> None:
@@ -103,25 +104,31 @@ def base_at(base: BaseRecord, time: float, out: Vector) -> None:
 
 
 def driver(
-    advance: Callable[..., tuple[int, int]],
-    account: Callable[..., None],
-    keep: Callable[..., bool],
+    advance: Callable[..., tuple[int, int]], account: Callable[..., None], keep: Callable[..., bool]
 ) -> Callable[..., tuple[int, int]]:
     """Return the loop over the steps of a body.
 
     Parameters
     ----------
     advance
-        Makes a step, or a part of one: (body, state, after, base, begun, ratio) -> outcome and solves, with where it
-        begins and how long it is, in steps. It writes `after` and leaves `state` as it is.
+        Makes a step, or a part of one: (body, shear_law, state, after, base, begun, ratio) -> outcome and solves, with
+        where it begins and how long it is, in steps. It writes `after` and leaves `state` as it is.
     account
-        Adds what an accepted part of a step loses to the sums: (body, state, after, base, begun, ratio, sums).
+        Adds what an accepted part of a step loses to the sums: (body, shear_law, state, after, base, begun,
+        ratio, sums).
     keep
         Writes the state at the end of a step into a row, (body, state, rows, number), and tells whether it is finite.
     """
 
     def make_steps(
-        body: Any, state: Any, after: Any, base: Any, history: History, steps: int, cut: float
+        body: Any,
+        shear_law: Shear,
+        state: Any,
+        after: Any,
+        base: BaseRecord | None,
+        history: History,
+        steps: int,
+        cut: float,
     ) -> tuple[int, int]:
         """Make the steps that are reached; return how many, and how it ended."""
         keep(body, state, history.motion, 0)
@@ -134,7 +141,7 @@ def driver(
                 for k in range(SUMS):
                     history.sums[row, k] = history.sums[number, k]
             while True:
-                outcome, solves = advance(body, state, after, base, number + (1.0 - remainder), ratio)
+                outcome, solves = advance(body, shear_law, state, after, base, number + (1.0 - remainder), ratio)
                 history.solves[row] += solves
                 if outcome != FOUND:
                     if ratio <= SHORTEST:
@@ -143,7 +150,7 @@ def driver(
                     history.cuts[row] += 1
                     continue
                 if len(history.sums) > 0:
-                    account(body, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
+                    account(body, shear_law, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
                 for i in range(len(after.contacts.gap)):
                     history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state

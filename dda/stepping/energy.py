@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector
-from dda.contact.kernel import Contacts, Law, spring_energy
+from dda.contact.kernel import Contacts, Law, Shear, spring_energy
 from dda.contact.unilateral import OPEN, Unilateral
 
 Array = NDArray[np.float64]
@@ -33,6 +33,7 @@ SUMS = 6
 
 def add_contact_losses(
     law: Law,
+    shear_law: Shear,
     before: Contacts,
     after: Contacts,
     slide: Vector,
@@ -58,7 +59,8 @@ def add_contact_losses(
         T = (1 - late) * before.shear[i] + late * after.shear[i]
         friction = 0.0 - after.shear[i] * after.slipped[i]
         work = N * (after.gap[i] - before.gap[i]) + T * slide[i]
-        lost = spring_energy(law, before, i) - spring_energy(law, after, i) - work - friction
+        released = spring_energy(law, shear_law, before, i) - spring_energy(law, shear_law, after, i)
+        lost = released - work - friction
         keeps_state = (before.state[i] == OPEN) == (after.state[i] == OPEN)
         sums[ALGORITHMIC if keeps_state else SWITCHING] += share * lost
         sums[FRICTION] += share * friction

@@ -27,10 +27,12 @@ from dda.contact.kernel import (
     Contacts,
     Flexibility,
     Free,
+    Shear,
     at_rest,
     change_slides,
     find_contacts,
     law_of,
+    shear_law_of,
     work_for,
 )
 from dda.contact.springs import Contact, base_directions
@@ -181,7 +183,8 @@ class OpeningBody:
     def __init__(
         self, opening: OpeningSystem, scheme: Scheme, limit: int, columns: Sequence[str], steps: int, energies: bool
     ) -> None:
-        self.opening, self.scheme, self.limit = opening, scheme, limit
+        self.opening = opening
+        self.scheme = scheme
         points = len(opening.normals)
         self.points, self.made = points, 0
         self.lengths: dict[float, Length] = {}
@@ -189,7 +192,9 @@ class OpeningBody:
         pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
         self.pressure = pressure / opening.system.base_length
         self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
-        self.law, self.work = self.find.room(law_of(opening.law)), self.find.room(work_for(points))
+        self.law = self.find.room(law_of(opening.law, limit))
+        self.shear_law = self.find.room(shear_law_of(opening.law))
+        self.work = self.find.room(work_for(points))
         self.energy = SystemEnergy(opening, scheme.step) if energies else None
         self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
 
@@ -214,14 +219,21 @@ class OpeningBody:
         contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
-    def moved_base(self, base: BaseRecord, begun: float, ratio: float) -> Array:
+    def moved_base(self, base: BaseRecord | None, begun: float, ratio: float) -> Array:
         """Return how far the base moves in a part of a step, along and away from itself [m]."""
-        base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
+        if base is not None:
+            base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
         return self.carried
 
 
 def advance(
-    body: OpeningBody, state: SystemState, after: SystemState, base: BaseRecord, begun: float, ratio: float
+    body: OpeningBody,
+    shear_law: Shear,
+    state: SystemState,
+    after: SystemState,
+    base: BaseRecord | None,
+    begun: float,
+    ratio: float,
 ) -> tuple[int, int]:
     """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves."""
     length = body.length(ratio)
@@ -236,7 +248,7 @@ def advance(
     if len(moved) > n:
         free.slide[:] = moved[n:] - carried[0]
         free.paired[:2] = (free.slide[0] + free.slide[-1]) / 2, free.slide[-1] - free.slide[0]
-    outcome, solves = body.find(body.law, state.contacts, free, length.flexible, body.limit, after.contacts, body.work)
+    outcome, solves = body.find(body.law, shear_law, state.contacts, free, length.flexible, after.contacts, body.work)
     if outcome != FOUND:
         return outcome, solves
     forces = np.array([*after.contacts.normal, *after.contacts.shear])[: len(moved)]
@@ -256,9 +268,10 @@ def advance(
 
 def account(
     body: OpeningBody,
+    shear_law: Shear,
     state: SystemState,
     after: SystemState,
-    base: BaseRecord,
+    base: BaseRecord | None,
     begun: float,
     ratio: float,
     sums: Array,
@@ -274,7 +287,9 @@ def account(
     carried = body.moved_base(base, begun, ratio)
     moved = after.D - state.D
     slide = opening.tangents @ moved - carried[0]
-    add_contact_losses(body.law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums)
+    add_contact_losses(
+        body.law, shear_law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums
+    )
     sums[DAMPING] += (1 - scheme.gg**2) * energy.kinetic(state.P / body.scheme.step)
     R0, R1 = state.f / dt2, after.f / dt2
     internal = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
@@ -332,7 +347,9 @@ def solve_opening_system(
     base = base_record(opening.motion and opening.motion.along(opening.axes))
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        reached, ended = make_steps(body, body.start_state(), body.start_state(), base, history, steps, options.cut)
+        reached, ended = make_steps(
+            body, body.shear_law, body.start_state(), body.start_state(), base, history, steps, options.cut
+        )
     history = reached_history(history, reached)
     motion = history.motion[1:]
     mass = math.fsum(block.total_mass for block in opening.system.blocks)

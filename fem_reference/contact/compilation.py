@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import logging
+import threading
 from collections.abc import Callable
 from types import FunctionType
 from typing import Any
@@ -13,6 +15,9 @@ from fem_reference.contact import kernel
 
 LONG = 50_000
 """Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
+MESSAGE_DELAY = 2.0
+"""Seconds of compiling before it is said; code that was kept is read in less."""
+logger = logging.getLogger("fem_reference")
 FUNCTIONS = {
     name: value
     for name, value in vars(kernel).items()
@@ -51,6 +56,9 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
     except Exception as error:  # a numba that is too old for this Python or numpy
         return None, f"contact in plain Python: numba cannot be imported ({type(error).__name__})"
     reason = ""
+    timer = threading.Timer(MESSAGE_DELAY, logger.warning, ["compiling the contact of the elements, once an install"])
+    timer.daemon = True
+    timer.start()
     for cache in (True, False):
         namespace = dict(vars(kernel))
         try:
@@ -62,7 +70,9 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
         except Exception as error:  # of any kind: a Python that numba does not know, a directory that is read-only
             reason = f"contact in plain Python: numba {numba.__version__} fails with {type(error).__name__}"
         else:
+            timer.cancel()
             return namespace["march"], f"contact compiled by numba {numba.__version__}"
+    timer.cancel()
     return None, reason
 
 

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,11 +13,21 @@ from oracles.frictional import rubbing_model, shaken
 from oracles.rolling import random_rolling
 from oracles.unilateral_checks import DT, random_model
 
-from dda import Scheme, Unilateral, UnilateralOptions, opening_subdivided, solve_opening_system, solve_unilateral
+from dda import (
+    Block,
+    Material,
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    UnilateralOptions,
+    opening_subdivided,
+    solve_opening_system,
+    solve_unilateral,
+)
 from dda.contact import kernel
-from dda.one_block import unilateral_step
+from dda.one_block import unilateral, unilateral_step
 from dda.rotation.solution import solve_rolling
-from dda.stepping import compiled
+from dda.stepping import compiled, one_library
 
 FIELDS = (
     "normal",
@@ -177,6 +188,85 @@ def test_what_is_kept_is_read_for_shorter_histories_than_are_compiled(fresh, mon
     assert ran(4.0)[0] == compiled.COMPILED
     assert ran(2.0)[0] == compiled.COMPILED
     assert ran(0.5)[0] == compiled.PLAIN
+
+
+def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeypatch, caplog):
+    monkeypatch.setattr(compiled, "MESSAGE_DELAY", 0.0)
+    ran()
+    assert [record.getMessage() for record in caplog.records] == ["compiling the loop over steps, once an install"]
+    monkeypatch.setattr(compiled, "loops", {})
+    ran()
+    assert len(caplog.records) == 1
+
+
+def test_a_hundred_thousand_steps_of_a_block_that_opens_are_compiled_on_the_first_run(monkeypatch):
+    monkeypatch.setattr(compiled, "loops", {})
+    monkeypatch.setattr(compiled, "is_kept", lambda loop, types: False)
+    model = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
+    estimates = []
+
+    class Estimated(Exception):
+        pass
+
+    def estimate(loop, records, series, rows, seconds):
+        estimates.append((loop, seconds))
+        raise Estimated
+
+    monkeypatch.setattr(unilateral, "run_loop", estimate)
+    for steps in (20_000, 100_000):
+        with pytest.raises(Estimated):
+            solve_unilateral(model, SCHEMES[0], steps)
+    monkeypatch.setattr(compiled, "cache_directory", lambda: Path())
+    assert [compiled.is_worthwhile(*one) for one in estimates] == [False, True]
+    monkeypatch.setattr(compiled, "cache_directory", lambda: None)
+    assert [compiled.is_worthwhile(*one) for one in estimates] == [False, False]
+
+
+def optional_loop(numbers, more, kept):
+    """A loop that numba can compile only where it leaves out what None makes needless."""
+    for i in range(len(kept)):
+        kept[i] = halved(numbers.size)
+        if more is not None:
+            kept[i] += float(str(more.size))  # a number from a text, which numba does not know
+
+
+def test_what_is_none_is_left_out_of_compiled_code(fresh):
+    kept = np.zeros(3)
+    assert compiled.run_loop(optional_loop, (Numbers(5.0), None), (), (kept,), 1.0)[2] == compiled.COMPILED
+    assert kept.tolist() == [2.5] * 3
+    more = Numbers(11.0)
+    assert compiled.run_loop(optional_loop, (Numbers(5.0), more), (), (kept,), 1.0)[2] == compiled.PLAIN
+    assert kept.tolist() == [13.5] * 3
+
+
+def other_loop(numbers, kept):
+    """A loop that calls what another one has had compiled."""
+    for i in range(len(kept)):
+        kept[i] = halved(numbers.size) - i
+
+
+def test_two_loops_of_one_process_call_the_same_function(fresh):
+    kept = np.zeros(3)
+    assert ran()[0] == compiled.COMPILED
+    assert compiled.run_loop(other_loop, (Numbers(5.0),), (), (kept,), 1.0)[2] == compiled.COMPILED
+    assert kept.tolist() == [2.5, 1.5, 0.5]
+
+
+def third(size):
+    return size / 3.0
+
+
+def loop_of_another_numba(numbers, kept):
+    """A loop that calls what no other one does."""
+    for i in range(len(kept)):
+        kept[i] = third(numbers.size) + i
+
+
+def test_another_numba_compiles_in_its_own_way(fresh, monkeypatch):
+    monkeypatch.setattr(one_library, "one_library", lambda: 1 / 0)
+    kept = np.zeros(2)
+    assert compiled.run_loop(loop_of_another_numba, (Numbers(6.0),), (), (kept,), 1.0)[2] == compiled.COMPILED
+    assert kept.tolist() == [2.0, 3.0]
 
 
 class MoreNumbers(kernel.NamedTuple):

@@ -238,14 +238,14 @@ def test_cohesion_holds_what_friction_does_not():
 def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
     saved, ratios = [], []
 
-    def stubborn(block, state, after, base, begun, ratio):
+    def stubborn(block, shear_law, state, after, base, begun, ratio):
         ratios.append(ratio)
-        outcome, solves = step.advance(block, state, after, base, begun, ratio)
+        outcome, solves = step.advance(block, shear_law, state, after, base, begun, ratio)
         if len(ratios) in (40, 41, 42):
             saved.append(deepcopy(state))
         if len(ratios) == 42:
             first = deepcopy(after)
-            step.advance(block, state, after, base, begun, ratio)
+            step.advance(block, shear_law, state, after, base, begun, ratio)
             assert first == after
         return (NONE if len(ratios) in (40, 41) else outcome), solves
 
@@ -262,12 +262,12 @@ def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
 
 def test_a_step_without_one_state_is_named(monkeypatch):
     other = {OPEN: STICK}
-    monkeypatch.setattr(kernel, "agreed_state", lambda law, state, *given: other.get(state, OPEN))
+    monkeypatch.setattr(kernel, "agreed_state", lambda law, shear_law, state, *given: other.get(state, OPEN))
     result = solve_unilateral(KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-3), 5)
     assert result.outcome == OUTCOMES[NONE] and len(result.time) == 0
     calls = []
 
-    def every_one_agrees_later(law, state, *given):
+    def every_one_agrees_later(law, shear_law, state, *given):
         calls.append(state)
         return state if len(calls) > 12 else other.get(state, OPEN)
 

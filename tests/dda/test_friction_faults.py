@@ -85,13 +85,17 @@ CHECKS = (invariants, events, identity, cutting, points)
 def of_the_solve_before(monkeypatch):
     """Friction takes N of the solve before."""
     real = step.find_contacts
-    monkeypatch.setattr(step, "find_contacts", lambda law, *given: real(law._replace(lagged=law.slips), *given))
+
+    def faulty(law, shear_law, *given):
+        return real(law, shear_law and shear_law._replace(lagged=shear_law.slips), *given)
+
+    monkeypatch.setattr(step, "find_contacts", faulty)
 
 
 def outside_the_test(monkeypatch):
     """The iteration ends where nothing opens or closes, whatever sticks and slips."""
 
-    def change(agreed, law, state, *given):
+    def change(agreed, law, shear_law, state, *given):
         return state if (agreed == OPEN) == (state == OPEN) else agreed
 
     after(monkeypatch, kernel, "agreed_state", change)
@@ -100,15 +104,17 @@ def outside_the_test(monkeypatch):
 def any_direction(monkeypatch):
     """A contact goes on slipping in its direction, wherever it moves."""
     real = kernel.agreed_state
-    monkeypatch.setattr(
-        kernel, "agreed_state", lambda law, state, gap, N, T, slipped: real(law, state, gap, N, T, abs(slipped) * state)
-    )
+
+    def faulty(law, shear_law, state, gap, N, T, slipped):
+        return real(law, shear_law, state, gap, N, T, abs(slipped) * state)
+
+    monkeypatch.setattr(kernel, "agreed_state", faulty)
 
 
 def kept_reference(monkeypatch):
     """A contact that slips keeps its reference: the spring of its next stick remembers all of its way."""
 
-    def change(found, law, before, free, flexible, limit, contacts, work):
+    def change(found, law, shear_law, before, free, flexible, contacts, work):
         for i in range(len(contacts.gap)):
             contacts.stretch[i] += contacts.slipped[i]
         return found
@@ -120,12 +126,12 @@ def old_reference(monkeypatch):
     """A contact that closes again is held from where it was when it opened."""
     real, kept = step.find_contacts, {}
 
-    def faulty(law, before, *given):
+    def faulty(law, shear_law, before, *given):
         for i in range(len(before.gap)):
             kept[i] = before.reference[i] if before.state[i] != OPEN else kept.get(i, 0.0)
         moved = [before.stretch[i] + before.reference[i] - kept[i] for i in range(len(before.gap))]
         state = [now if now != OPEN else STICK for now in before.state[: len(before.gap)]]
-        return real(law, before._replace(stretch=moved, state=state), *given)
+        return real(law, shear_law, before._replace(stretch=moved, state=state), *given)
 
     monkeypatch.setattr(step, "find_contacts", faulty)
 
@@ -134,10 +140,10 @@ def pushed_along(monkeypatch):
     """Friction pushes in the direction of the slip."""
     real = kernel.trial
 
-    def faulty(law, before, free, flexible, friction, contacts, work):
+    def faulty(law, shear_law, before, free, flexible, contacts, work):
         tried = list(work.tried)
         work.tried[:] = [-now if abs(now) == SLIP else now for now in tried]
-        real(law, before, free, flexible, friction, contacts, work)
+        real(law, shear_law, before, free, flexible, contacts, work)
         work.tried[:] = tried
         contacts.state[:] = tried
 

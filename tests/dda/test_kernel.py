@@ -8,7 +8,18 @@ import pytest
 import dda
 from dda import Unilateral
 from dda.contact import kernel
-from dda.contact.kernel import FOUND, NONE, SEVERAL, Contacts, Flexibility, Free, find_contacts, law_of, work_for
+from dda.contact.kernel import (
+    FOUND,
+    NONE,
+    SEVERAL,
+    Contacts,
+    Flexibility,
+    Free,
+    find_contacts,
+    law_of,
+    shear_law_of,
+    work_for,
+)
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.stepping.compiled import as_lists
 
@@ -24,7 +35,7 @@ def solved(law, C, gap, slide=None, before=None, limit=6):
         kernel.change_slides(np.array(C), kernel.TO_PAIR, C_paired)
     given = (before, Free(np.array(gap), slide, paired), Flexibility(np.array(C), C_paired))
     after, work = as_lists(kernel.at_rest(np.zeros(n))), as_lists(work_for(n))
-    outcome, solves = find_contacts(law_of(law), *map(as_lists, given), limit, after, work)
+    outcome, solves = find_contacts(law_of(law, limit), shear_law_of(law), *map(as_lists, given), after, work)
     return outcome, solves, Contacts(*map(np.array, after))
 
 
@@ -91,7 +102,7 @@ def test_one_by_one_finds_what_all_at_once_finds():
     assert singly[2].normal == pytest.approx(whole[2].normal, rel=1e-12)
 
 
-def never_agrees(law, state, *given):
+def never_agrees(law, shear_law, state, *given):
     return STICK if state == OPEN else OPEN
 
 
@@ -102,9 +113,9 @@ def test_what_does_not_end_has_no_state_or_several(monkeypatch):
     assert solved(*problem, limit=2)[:2] == (NONE, 2 + 4**3)
     calls = []
 
-    def agrees_later(law, state, *given):
+    def agrees_later(law, shear_law, state, *given):
         calls.append(1)
-        return state if len(calls) > 20 else never_agrees(law, state)
+        return state if len(calls) > 20 else never_agrees(law, shear_law, state)
 
     monkeypatch.setattr(kernel, "agreed_state", agrees_later)
     assert solved(*problem, limit=2)[0] == SEVERAL

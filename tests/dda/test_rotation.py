@@ -181,11 +181,11 @@ def test_a_dead_load_keeps_its_direction_and_its_point():
 def test_a_step_leaves_the_state_that_it_starts_from_and_is_bitwise_the_same_again():
     checked = []
 
-    def twice(body, state, after, *given):
+    def twice(body, shear_law, state, after, *given):
         saved = deepcopy(state)
-        outcome = step.advance(body, state, after, *given)
+        outcome = step.advance(body, shear_law, state, after, *given)
         first = deepcopy(after)
-        assert state == saved and step.advance(body, state, after, *given) == outcome and first == after
+        assert state == saved and step.advance(body, shear_law, state, after, *given) == outcome and first == after
         checked.append(outcome)
         return outcome
 
@@ -197,7 +197,7 @@ def test_a_step_leaves_the_state_that_it_starts_from_and_is_bitwise_the_same_aga
 def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
     tried = []
 
-    def refused(body, state, after, base, begun, ratio):
+    def refused(body, shear_law, state, after, base, begun, ratio):
         made = step.matrices_of(body, state.Q, ratio)
         tried.append(list(made.numbers))
         return NONE, 3
@@ -212,8 +212,8 @@ def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
 def test_the_parts_of_a_cut_step_are_a_whole_step():
     failed, bases = [], []
 
-    def once(body, state, after, base, begun, ratio):
-        outcome, solves = step.advance(body, state, after, base, begun, ratio)
+    def once(body, shear_law, state, after, base, begun, ratio):
+        outcome, solves = step.advance(body, shear_law, state, after, base, begun, ratio)
         if not failed and ratio == 1 and state.q[2] != 0:
             failed.append(begun)
             return NONE, 1

@@ -107,13 +107,13 @@ def old_reference(monkeypatch):
     """A corner that closes again keeps the stretch that it opened with."""
     real, kept = kernel.trial, {}
 
-    def faulty(law, before, free, flexible, friction, contacts, work):
+    def faulty(law, shear_law, before, free, flexible, contacts, work):
         for i in range(len(before.gap)):
             if before.state[i] != OPEN:
                 kept[i] = before.stretch[i]
         stretch = [kept.get(i, 0.0) for i in range(len(before.gap))]
         closed = before._replace(state=[STICK] * len(before.gap), stretch=stretch)
-        real(law, closed, free, flexible, friction, contacts, work)
+        real(law, shear_law, closed, free, flexible, contacts, work)
 
     monkeypatch.setattr(kernel, "trial", faulty)
 
@@ -156,8 +156,8 @@ def points_keep_shear(monkeypatch):
     """A point that opens goes on pulling along the base."""
     real = kernel.trial
 
-    def faulty(law, before, free, flexible, friction, contacts, work):
-        real(law, before, free, flexible, friction, contacts, work)
+    def faulty(law, shear_law, before, free, flexible, contacts, work):
+        real(law, shear_law, before, free, flexible, contacts, work)
         for i in range(len(before.gap)):
             if contacts.state[i] == OPEN:
                 contacts.shear[i] = before.shear[i] / 2

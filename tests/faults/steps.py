@@ -22,8 +22,8 @@ def damped_again(monkeypatch):
     """Gg stands in a shorter step as in a whole one."""
     real = step.set_length
 
-    def faulty(block, ratio, length):
-        real(block, ratio, length)
+    def faulty(block, shear_law, ratio, length):
+        real(block, shear_law, ratio, length)
         length.numbers[1] = block.gg
 
     monkeypatch.setattr(step, "set_length", faulty)
@@ -33,8 +33,8 @@ def velocity_twice(monkeypatch):
     """A step that is repeated begins with the velocity of the failed one."""
     real = step.accept
 
-    def faulty(block, length, scheme, state, after, ratio):
-        real(block, length, scheme, state, after, ratio)
+    def faulty(block, shear_law, length, scheme, state, after, ratio):
+        real(block, shear_law, length, scheme, state, after, ratio)
         if ratio == 1:
             state.P[:] = after.P
 
@@ -50,7 +50,7 @@ def after(monkeypatch, owner, name, change):
 def kept_shear(monkeypatch):
     """A corner that opens goes on pulling along the base."""
 
-    def change(found, law, before, free, flexible, limit, contacts, work):
+    def change(found, law, shear_law, before, free, flexible, contacts, work):
         for i in range(len(contacts.gap)):
             if contacts.state[i] == 0:
                 contacts.shear[i] = 0.5 * before.shear[i]
@@ -63,9 +63,9 @@ def gap_of_the_increment(monkeypatch):
     """A force is the sum of p times increments: contact remembers tension, or is pressed by a whole step's approach."""
     real = step.find_contacts
 
-    def faulty(law, before, free, *given):
+    def faulty(law, shear_law, before, free, *given):
         gap = [free.gap[i] - (before.gap[i] if before.state[i] == 0 else 0.0) for i in range(len(before.gap))]
-        return real(law, before, free._replace(gap=gap), *given)
+        return real(law, shear_law, before, free._replace(gap=gap), *given)
 
     monkeypatch.setattr(step, "find_contacts", faulty)
 
@@ -85,9 +85,9 @@ def stopped(first, times, run):
     """Return what a run gives whose steps fail so often after the first ones, and what each try of a step was given."""
     calls = []
 
-    def stubborn(block, state, after, base, begun, ratio):
+    def stubborn(block, shear_law, state, after, base, begun, ratio):
         calls.append(deepcopy(state))
-        outcome, solves = step.advance(block, state, after, base, begun, ratio)
+        outcome, solves = step.advance(block, shear_law, state, after, base, begun, ratio)
         return (NONE, solves) if first < len(calls) <= first + times else (outcome, solves)
 
     with patch.object(unilateral, "make_steps", stepping_by(stubborn)):

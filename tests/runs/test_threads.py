@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import subprocess
@@ -22,6 +23,7 @@ from validation.runs.run import Outcome, Run
 from validation.runs.threads import VARIABLES
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.contract import Solver
+from validation.solvers.logs import solver_logs
 from validation.solvers.registry import get_solver, solve
 
 MANY = 3  # threads of this process, whatever the machine has
@@ -102,6 +104,23 @@ def test_a_worker_process_has_one_thread(many_threads: None, monkeypatch: pytest
 def threads_of_worker() -> set[int]:
     """Return what a worker sees; imported by a worker that is no copy of this process."""
     return threads()
+
+
+def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    for log in solver_logs():
+        monkeypatch.setattr(log, "level", logging.ERROR)
+    before = multiprocessing.get_start_method()
+    multiprocessing.set_start_method("spawn", force=True)
+    try:
+        with _pool(None, 1) as pool:
+            assert pool.submit(log_levels).result() == [logging.ERROR] * 2
+    finally:
+        multiprocessing.set_start_method(before, force=True)
+
+
+def log_levels() -> list[int]:
+    """Return from which level on a worker shows what our solvers log."""
+    return [log.level for log in solver_logs()]
 
 
 def run_python(code: str, **environment: str) -> str:

@@ -48,8 +48,8 @@ def quicker(share: float) -> Wrapper:
     """Add a share to the velocities in every step."""
 
     def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def faulty(body: Any, state: Any, after: Any, *given: Any) -> tuple[int, int]:
-            outcome, solves = step.advance(body, state, after, *given)
+        def faulty(body: Any, shear_law: Any, state: Any, after: Any, *given: Any) -> tuple[int, int]:
+            outcome, solves = step.advance(body, shear_law, state, after, *given)
             after.V[:] = [(1 + share) * v for v in after.V]
             return outcome, solves
 

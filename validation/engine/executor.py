@@ -17,6 +17,7 @@ from validation.runs.history import History
 from validation.runs.row import Row
 from validation.runs.text import error_text
 from validation.runs.threads import limit_process
+from validation.solvers.logs import solver_logs
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 PARENT_CHECK_INTERVAL = 0.25  # s
@@ -87,7 +88,7 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(),))
+    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(), solver_logs()[0].level))
     wait = True
     try:
         yield pool
@@ -101,9 +102,11 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _initialize_worker(parent: int) -> None:
+def _initialize_worker(parent: int, log_level: int) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
     limit_process()
+    for log in solver_logs():
+        log.setLevel(log_level)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
