@@ -51,7 +51,7 @@ SPRING = {"contact.stiffness": 1e9}
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"contact.law": "locked"}, "goes with law"),
+        ({"contact.law": "locked"}, "stiffness must be finite with law"),
         ({"contact.shear_stiffness": None}, "shear_stiffness is required where stiffness = inf"),
         ({"contact.band": [0.0, 1e-6]}, "band must open at once"),
         (
