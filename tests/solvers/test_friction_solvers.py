@@ -59,7 +59,7 @@ def test_lagged_friction_and_its_bands_are_taken():
     with pytest.raises(InputError, match="is frictional under lagged rules only"):
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
     with pytest.raises(InputError, match="lagged friction together with sub-blocks"):
-        DDA().build(scene({"rules": "lagged"}, block={"subdivide": [2, 1]}), False)
+        DDA().prepare(scene({"rules": "lagged"}, block={"subdivide": [2, 1]}))
 
 
 def test_a_slope_is_a_turned_weight_on_locked_springs_too():

@@ -23,6 +23,8 @@ class Feature:
     of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
 
 
+Apart = tuple[tuple[str, frozenset[str]], ...]  # a feature to those that a solver does not take together with it
+
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
@@ -51,6 +53,11 @@ FEATURES = (
 )
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
+# Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
+DAMPING_APART: Apart = (
+    (DAMPING, frozenset({BASE_MOTION, UNILATERAL, COLUMN})),
+    (ADAPTIVE, frozenset({BASE_MOTION, UNILATERAL, COLUMN, DAMPING})),
+)
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
 
 
@@ -69,16 +76,12 @@ def linear(scene: Scene) -> bool:
     return all(feature.linear for feature in _present(scene))
 
 
-def damping_apart(scene: Scene) -> str | None:
-    """Return None, or what viscous damping, or a discount that adapts, does not go together with.
-
-    Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
-    """
-    own = of(scene)
-    for damping, more in ((DAMPING, ()), (ADAPTIVE, (DAMPING,))):
-        others = [name for name in own if name in (BASE_MOTION, UNILATERAL, COLUMN, *more)]
-        if damping in own and others:
-            return f"it does not handle {', '.join(sorted(others))} together with {damping}"
+def clash(scene: Scene, apart: Apart) -> str | None:
+    """Return None, or which features of a scene do not go together by the table of a solver, in words."""
+    scene_features = set(of(scene))
+    for name, others in apart:
+        if name in scene_features and (incompatible := scene_features & others):
+            return f"it does not handle {', '.join(sorted(incompatible))} together with {name}"
     return None
 
 

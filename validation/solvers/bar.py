@@ -130,6 +130,7 @@ class ExactBar(Solver):
 
     name = "bar"
     handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING})
+    apart = features.DAMPING_APART
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
@@ -147,8 +148,7 @@ class ExactBar(Solver):
         from fem_reference.scheme import modal
 
         exact = opening_bar if features.UNILATERAL in features.of(scene) else bar
-        apart = features.damping_apart(scene)
-        return apart or exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
+        return exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar, on a locked spring or on one that carries no tension."""

@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.errors import InputError
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
@@ -289,6 +288,7 @@ class FiniteElements(Solver):
             features.ADAPTIVE,
         }
     )
+    apart = features.DAMPING_APART
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
@@ -305,14 +305,8 @@ class FiniteElements(Solver):
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
-    def applicable(self, scene: Scene) -> str | None:
-        """Return None, or what does not go together with damping."""
-        return features.damping_apart(scene)
-
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
-        if reason := self.applicable(scene):
-            raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         if scene.column is not None:
             from validation.solvers.columns.elements import LineColumn
 
