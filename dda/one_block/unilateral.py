@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.unilateral import SLIP, Unilateral
+from dda.model.load import at_once, load_share
 from dda.model.loaded import LoadedBlock
 from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
 from dda.one_block.solution import check_request, step_times
@@ -129,8 +130,9 @@ def solve_unilateral(
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     motion = model.load.motion
-    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None)
-    state = start_state(form, law, scheme, model.velocity, options.rule)
+    ramp = model.load.ramp
+    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None, ramp)
+    state = start_state(form, law, scheme, model.velocity, options.rule, load_share(ramp, 0.0))
     base = base_record(motion and motion.along(form.axes))
     history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
@@ -241,6 +243,8 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
             f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
             f"got stiffness = {law.stiffness:g} and band = {law.band}"
         )
+    if options.rule == CONSERVING:
+        at_once(model.load, f"{CONSERVING} contact")
     if options.rule == CONSERVING and model.load.motion is not None:
         raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
     if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:

@@ -26,6 +26,7 @@ class Feature:
 Apart = tuple[tuple[str, frozenset[str]], ...]  # a feature to those that a solver does not take together with it
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
+RAMP = "ramped load"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
 COLUMN = "column"
@@ -35,6 +36,7 @@ FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
     Feature(WEIGHT, lambda scene: scene.load.gravity != 0),
+    Feature(RAMP, lambda scene: scene.load.ramp > 0),
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
@@ -125,6 +127,18 @@ def refuse_damping(scene: Scene, what: str) -> None:
     """
     if scene.damping.present:
         raise InputError(f"{what} takes scenes without damping tables only", source=scene.name, value="one with them")
+
+
+def refuse_ramp(scene: Scene, what: str) -> None:
+    """Refuse a scene with a ramp where the answer knows loads only that act at once.
+
+    Raises
+    ------
+    InputError
+        The load rises in a ramp.
+    """
+    if scene.load.ramp:
+        raise InputError(f"{what} takes loads that act at once only", source=scene.name, value="a ramp")
 
 
 def refuse_column(scene: Scene, what: str) -> None:

@@ -230,6 +230,7 @@ class LoadSection(Section):
     slope: Annotated[Angle, Key("deg", "of the base: gravity acts as g (sin, -cos) in x and y", "β", ("gravity",))] = (
         0.0
     )
+    ramp: Annotated[NonNegative, Key("s", "in which pressure, traction and gravity rise linearly from zero")] = 0.0
     base_motion: Annotated[str | None, Key("", "CSV file with the header time,x or time,y or time,x,y, in s and m")] = (
         None
     )

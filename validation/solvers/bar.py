@@ -129,8 +129,10 @@ class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
-    handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING})
-    apart = features.DAMPING_APART
+    handles: frozenset[str] = frozenset(
+        {features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING, features.RAMP}
+    )
+    apart = ((features.RAMP, frozenset({features.UNILATERAL})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)

@@ -198,14 +198,15 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
+        | {features.RAMP}
         | features.LOADS
         | features.RULES
     )
     apart: features.Apart = (
         (features.ROTATION, handles - COMPATIBLE),
-        (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED}),
-        (features.CONSERVING, frozenset({features.BASE_MOTION})),
-        (features.ADAPTIVE, frozenset({features.SUB_BLOCKS})),
+        (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
+        (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
+        (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
         *features.DAMPING_APART,
     )
     sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")

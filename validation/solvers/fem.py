@@ -69,6 +69,7 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
             gravity=q.gravity,
             motion=motion,
             slope=q.slope,
+            ramp=q.ramp,
         )
 
 
@@ -286,9 +287,10 @@ class FiniteElements(Solver):
             features.COLUMN,
             features.DAMPING,
             features.ADAPTIVE,
+            features.RAMP,
         }
     )
-    apart = features.DAMPING_APART
+    apart = ((features.RAMP, frozenset({features.UNILATERAL, features.ADAPTIVE})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
