@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from validation.errors import InputError
 from validation.runs.history import Array
-from validation.theory.waves import Stepping
+from validation.theory.stepping import Stepping
 
 STARTS = 30  # of the search for a scheme, where the leading order does not lead to one
 ROUNDING = 1e-9  # of a discount that is 0 or 1, or of a ratio
