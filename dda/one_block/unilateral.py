@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.unilateral import SLIP, Unilateral
-from dda.model.load import at_once, load_share
+from dda.model.load import at_once
 from dda.model.loaded import LoadedBlock
 from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
 from dda.one_block.solution import check_request, step_times
@@ -130,9 +130,8 @@ def solve_unilateral(
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     motion = model.load.motion
-    ramp = model.load.ramp
-    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None, ramp)
-    state = start_state(form, law, scheme, model.velocity, options.rule, load_share(ramp, 0.0))
+    block = block_equations(form, law, scheme, options.rule, options.solve_limit, motion is not None)
+    state = start_state(form, law, scheme, model.velocity, options.rule)
     base = base_record(motion and motion.along(form.axes))
     history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))

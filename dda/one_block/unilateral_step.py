@@ -128,7 +128,7 @@ class BlockEquations(NamedTuple):
 
 
 def block_equations(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int, moves: bool, ramp: float
+    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int, moves: bool
 ) -> BlockEquations:
     """Return the equations as numbers, with the matrices of a whole step."""
     n, c, q = len(form.unknowns), form.contacts, len(form.B)
@@ -147,7 +147,7 @@ def block_equations(
         M=form.M,
         K=form.K,
         load=form.F,
-        ramp=ramp,
+        ramp=form.ramp,
         B=form.B,
         multiplicity=form.multiplicity,
         translation=form.translation,
@@ -164,13 +164,11 @@ def block_equations(
     return block
 
 
-def start_state(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str, share: float
-) -> BlockState:
-    """Return the state at t = 0 under a share of the load: unstrained, without contact force, at the starting gap."""
+def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
+    """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap."""
     dt = scheme.step
     P = (dt * velocity) * (form.M @ (form.translation @ form.axes[:, 1]))
-    F = share * (dt * dt * form.F)
+    F = load_share(form.ramp, 0.0) * (dt * dt * form.F)
     f = F if rule == CONSERVING else initial_acceleration(scheme, F)
     return BlockState(form.start, P, f, at_rest(np.full(form.contacts, law.gap)))
 
@@ -234,10 +232,6 @@ def advance(
         Where it begins and how long it is, in steps.
     """
     length = length_of(block, ratio)
-    if block.ramp > 0:
-        share = load_share(block.ramp, (begun + ratio) * block.step)
-        for i in range(len(block.K)):
-            length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
     free_step(block, length, scheme, state, base, begun, ratio)
     before = state.contacts
@@ -267,6 +261,10 @@ def free_step(
     room = block.room
     n = len(block.K)
     c = len(block.room.slide)
+    if block.ramp > 0:
+        share = load_share(block.ramp, (begun + ratio) * block.step)
+        for i in range(n):
+            length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     for i in range(n):
         room.P[i] = ratio * state.P[i]
         room.f[i] = ratio * ratio * state.f[i]
