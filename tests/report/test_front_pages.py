@@ -22,7 +22,7 @@ from validation.report.front import decisions, first
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.registry import get_solver
-from validation.theory import damped, spectra, statics
+from validation.theory import closed, spectra, statics
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 OTHER = PAPER.with_values(
@@ -43,35 +43,35 @@ def test_a_damping_ratio_is_that_of_the_schemes_own_formulas(scene: Scene, value
     changed = scene.with_values(values)
     frequency, t = spectra.dda_frequency(changed), changed.time
     wanted = float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
-    assert damped.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
-    assert math.isnan(damped.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
+    assert closed.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
+    assert math.isnan(closed.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
 
 
 def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
     for ratio, frequency in FREQUENCIES.items():
-        scene = damped.stiffer(PAPER, ratio)
-        step = damped.step_for(scene, 0.05)
-        assert step is not None and damped.first_damping(damped.timed(scene, step=step)) == pytest.approx(
+        scene = closed.stiffer(PAPER, ratio)
+        step = closed.step_for(scene, 0.05)
+        assert step is not None and closed.first_damping(closed.timed(scene, step=step)) == pytest.approx(
             0.05, rel=1e-9
         )
         assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
-    assert damped.step_for(PAPER, 0.5) is None  # 0.373 is the greatest
-    assert damped.step_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), 0.05) is None
+    assert closed.step_for(PAPER, 0.5) is None  # 0.373 is the greatest
+    assert closed.step_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), 0.05) is None
 
 
 def test_what_a_discount_does_is_what_the_scheme_does() -> None:
     light = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98})
-    below = damped.overdamped_below(light)
+    below = closed.overdamped_below(light)
     assert below == pytest.approx(2.93e-5, rel=2e-3)
     for factor, over in ((0.99, True), (1.01, False)):
         omega = FREQUENCIES[1.0] * below * factor
         assert (float(spectral.damping_ratio(omega, 0.25, 0.5, 0.98)) >= 1) is over
-    assert damped.overdamped_below(PAPER) is None
-    rate = damped.rate_for(PAPER, 0.05)
+    assert closed.overdamped_below(PAPER) is None
+    rate = closed.rate_for(PAPER, 0.05)
     held = light.with_values({"time.gg": 1.0}).with_values({"time.gg_rate": rate, "time.step": 1e-5})
-    assert damped.first_damping(held) == pytest.approx(0.05, rel=1e-3)
+    assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
     assert spectra.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
-    assert damped.penetration(damped.stiffer(PAPER, 10)) == pytest.approx(5e-4)
+    assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
 
 
 def test_a_wave_runs_through_the_height_and_the_load_stands_on_the_width() -> None:
@@ -79,14 +79,14 @@ def test_a_wave_runs_through_the_height_and_the_load_stands_on_the_width() -> No
     del data["block"]["side"]
     oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
     assert spectra.transit(oblong) == pytest.approx(1.25 / math.sqrt(1e9 / 2700))
-    assert damped.penetration(oblong) == pytest.approx(3.0 * 5e6 / (2 * 1e9))
+    assert closed.penetration(oblong) == pytest.approx(3.0 * 5e6 / (2 * 1e9))
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------
 
 
 def case(step: float = 2e-3, ratio: float = 1.0, **metrics: Any) -> Any:
-    scene = damped.stiffer(PAPER, ratio).with_values({"time.step": step, "contact.stiffness": ratio * 1e9}, label=True)
+    scene = closed.stiffer(PAPER, ratio).with_values({"time.step": step, "contact.stiffness": ratio * 1e9}, label=True)
     return made_case(scene, {"dda": {name.replace("__", "."): value for name, value in metrics.items()}})
 
 
@@ -183,12 +183,12 @@ def test_the_first_frequency_is_too_high_before_it_is_stepped_and_on_springs_tha
         for step in (1e-4, 2e-3, 5e-3):
             root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
             stepped = np.abs(np.log(root[np.abs(root) > 1e-9])).max() / step
-            scene = damped.stiffer(PAPER, ratio).with_values({"time.step": step, "contact.stiffness": p})
+            scene = closed.stiffer(PAPER, ratio).with_values({"time.step": step, "contact.stiffness": p})
             assert first.stepped_frequency(scene) == pytest.approx(stepped, rel=1e-9)
     assert natural[0.1] == pytest.approx(0.008, abs=2e-4)
     assert natural[1.0] == pytest.approx(0.0515, abs=1e-4) and natural[100.0] == pytest.approx(0.102, abs=1e-4)
     for step, excess in ((1e-4, 0.0514), (2e-3, 0.0146), (5e-3, -0.0978)):
-        assert first.stepped_frequency(damped.timed(PAPER, step=step)) / 327.682 - 1 == pytest.approx(excess, abs=5e-5)
+        assert first.stepped_frequency(closed.timed(PAPER, step=step)) / 327.682 - 1 == pytest.approx(excess, abs=5e-5)
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_results_without_a_finished_paper_scene_have_no_such_page() -> None:
 
 
 def test_the_steps_of_the_table_are_those_of_their_stiffness() -> None:
-    scenes = [damped.stiffer(PAPER, ratio) for ratio in FREQUENCIES]
+    scenes = [closed.stiffer(PAPER, ratio) for ratio in FREQUENCIES]
     table = decisions.step_table(scenes)
     assert [c.title for c in table.columns] == ["Wanted ξ", "p = 1E", "p = 10E", "p = 100E"]
     rows = {row[0]: row[1:] for row in table.rows}
@@ -250,7 +250,7 @@ def test_what_steps_cost_reads_across_as_its_heads_say() -> None:
 
 
 def test_the_table_of_springs_joins_closed_forms_and_steps_as_run() -> None:
-    base = damped.timed(PAPER, step=2e-3)
+    base = closed.timed(PAPER, step=2e-3)
     rows = {row[0]: row[1:] for row in decisions.spring_table(FOUND, base).rows}
     assert rows["1E"][:3] == ("−10.000", "5", "16\u00a0%") and rows["1E"][5:] == ("–",) * 4
     assert rows["10E"][5:] == ("22", "25", "–", "–")
@@ -267,7 +267,7 @@ def test_the_table_of_springs_joins_closed_forms_and_steps_as_run() -> None:
 
 
 def test_the_table_of_discounts_is_that_of_the_scheme() -> None:
-    base = damped.timed(PAPER, alpha=0.25, delta=0.5, gg=1.0)
+    base = closed.timed(PAPER, alpha=0.25, delta=0.5, gg=1.0)
     rows = {row[0]: row[1:] for row in decisions.discount_table(base).rows}
     assert rows["1.00"] == ("0\u00a0%", "0\u00a0%", "0\u00a0%", "–", "0")
     assert rows["0.98"] == ("1.52\u00a0%", "2.96\u00a0%", "29.3\u00a0%", "0.0293", "20.2")
@@ -276,7 +276,7 @@ def test_the_table_of_discounts_is_that_of_the_scheme() -> None:
 
 def test_the_rule_on_springs_names_a_step_below_which_the_contact_does_not_flip() -> None:
     """4 / w of the contact mode, w = 8658 rad/s at p = 100E: 0.462 ms, as the table says."""
-    stiff = damped.stiffer(PAPER, 100.0)
+    stiff = closed.stiffer(PAPER, 100.0)
     w = spectra.contact_frequency(stiff)
     below, above = (spectral.eigenvalues(w * step, 0.5, 1.0, 1.0) for step in (0.46e-3, 0.4625e-3))
     assert np.abs(np.imag(below)).max() > 0 and np.abs(np.imag(above)).max() == 0
@@ -290,22 +290,22 @@ def test_how_far_springs_give_way_depends_on_the_shape(width: float, height: flo
     """Against statics: v = -(w q / 2p) - (h q / 2E), the first part over the second."""
     data = PAPER.definition()
     del data["block"]["side"]
-    scene = damped.stiffer(parse_scene(data | {"block": data["block"] | {"width": width, "height": height}}, "s"), 10)
+    scene = closed.stiffer(parse_scene(data | {"block": data["block"] | {"width": width, "height": height}}, "s"), 10)
     q, p, E = 5e6, 1e10, 1e9
     springs, block = width * q / (2 * p), height * q / (2 * E)
     assert statics.static_displacement(scene) == pytest.approx(-springs - block)
-    assert damped.spring_share(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
+    assert closed.spring_share(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
 
 
 @pytest.mark.parametrize("ratio", [10.0, 100.0])
 def test_the_contact_flips_each_step_beyond_four_over_its_frequency_and_not_before(ratio: float) -> None:
-    scene = damped.stiffer(PAPER, ratio)
-    w, limit = spectra.contact_frequency(scene), damped.sign_change_step(scene)
+    scene = closed.stiffer(PAPER, ratio)
+    w, limit = spectra.contact_frequency(scene), closed.sign_change_step(scene)
     for step, flips in ((0.99 * limit, False), (1.01 * limit, True), (2e-3, True)):
         root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
         nearest = root[np.argmin(np.real(root))]
         assert bool(abs(np.imag(nearest)) < 1e-9 and np.real(nearest) < 0) is flips
-    assert damped.contact_radius(damped.stiffer(PAPER, 10.0)) == pytest.approx(0.7533, abs=1e-4)  # at 2 ms
+    assert closed.contact_radius(closed.stiffer(PAPER, 10.0)) == pytest.approx(0.7533, abs=1e-4)  # at 2 ms
 
 
 @pytest.mark.parametrize("delta", [0.6, 0.8, 1.0, 1.5])
@@ -320,21 +320,21 @@ def test_schemes_with_complex_roots_damp_a_stiff_contact_and_others_let_it_ring(
 
 def test_a_rate_damps_alike_while_the_step_is_short() -> None:
     base = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5})
-    rate = damped.rate_for(base, 0.05)
+    rate = closed.rate_for(base, 0.05)
     for step, wanted in ((1e-4, 0.0500), (1e-3, 0.0505), (2e-3, 0.0519), (1e-2, 0.0818), (2e-2, 0.1275)):
         omega = FREQUENCIES[1.0] * step
         xi = float(spectral.damping_ratio(omega, 0.25, 0.5, math.exp(-rate * step)))
         assert xi == pytest.approx(wanted, abs=5e-5)
         assert (abs(xi / 0.05 - 1) < 0.1) is (omega < 1)
-        held = damped.timed(base, gg_rate=rate, step=step)
-        assert damped.first_damping(held) == pytest.approx(xi, rel=1e-6)
+        held = closed.timed(base, gg_rate=rate, step=step)
+        assert closed.first_damping(held) == pytest.approx(xi, rel=1e-6)
 
 
 def test_the_rule_of_four_holds_up_to_ten_per_cent() -> None:
     for xi, within in ((0.01, True), (0.1, True), (0.2, False)):
-        step = damped.step_for(PAPER, xi)
+        step = closed.step_for(PAPER, xi)
         assert (abs(step * FREQUENCIES[1.0] / (4 * xi) - 1) < 0.03) is within
-    assert damped.most_damped(PAPER) == pytest.approx(3.27, abs=5e-3)
+    assert closed.most_damped(PAPER) == pytest.approx(3.27, abs=5e-3)
     around = [float(spectral.damping_ratio(omega, 0.5, 1.0)) for omega in (3.17, 3.27, 3.37)]
     assert max(around) == around[1] == pytest.approx(0.373, abs=5e-4)
     before, beyond = (spectral.eigenvalues(omega, 0.5, 1.0, 1.0) for omega in (3.99, 4.01))

@@ -16,7 +16,7 @@ from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartP
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
 from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
-from validation.theory import damped, spectra, statics
+from validation.theory import closed, spectra, statics
 
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
 TARGET_DAMPING = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
@@ -53,14 +53,14 @@ def _rule(text: str) -> Callout:
 
 def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the time step."""
-    scenes = [damped.stiffer(damped.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
+    scenes = [closed.stiffer(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0), r) for r in RATIOS]
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
     lines = [
-        ChartLine(f"p = {r:g}E", 1e3 * grid, 100 * damped.over_steps(scene, grid), color)
+        ChartLine(f"p = {r:g}E", 1e3 * grid, 100 * closed.over_steps(scene, grid), color)
         for r, scene, color in zip(RATIOS, scenes, SETTINGS, strict=False)
     ]
     greatest = max(float(np.nanmax(line.y)) for line in lines)
-    turn = damped.most_damped(scenes[0])
+    turn = closed.most_damped(scenes[0])
     transit = 1e3 * spectra.transit(paper)
     chart = ChartPanel(
         "Damping ratio of the first axial mode [%], constant acceleration",
@@ -78,7 +78,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
         "beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
         "vertical: the time a wave takes from top to base; a longer step cannot resolve it."
     )
-    step = damped.step_for(scenes[0], 0.05)
+    step = closed.step_for(scenes[0], 0.05)
     example = f": for 5\u00a0% at p = 1E, dt = {1e3 * step:.3g}\u00a0ms" if step else ""
     return [
         Heading("Decision 1: which time step?", 2),
@@ -97,13 +97,13 @@ def step_table(scenes: Sequence[Scene]) -> Table:
     """Return the time step for a damping ratio, a column for each stiffness."""
     rows = []
     for xi in TARGET_DAMPING:
-        steps = [damped.step_for(scene, xi) for scene in scenes]
+        steps = [closed.step_for(scene, xi) for scene in scenes]
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
     titles = (
         TableColumn("Wanted ξ"),
-        *columns("decimal", *(f"p = {damped.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
+        *columns("decimal", *(f"p = {closed.ratio_of(s):g}E" for s in scenes), group="dt [ms]"),
     )
     return Table(titles, tuple(rows), "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.")
 
@@ -121,7 +121,7 @@ def _as_run(groups: Groups) -> list[Block]:
         minimum = case.number("dda", "pressure.minimum")
         tension = DASH
         if minimum is not None:
-            hidden = minimum < -damped.NOISE * case.scene.load.pressure
+            hidden = minimum < -closed.NOISE * case.scene.load.pressure
             tension = plain(minimum / 1e6, 3) if hidden else "none"
         excess = peak_excess(case)
         peak = DASH if excess is None else signed_percent(excess)
@@ -155,10 +155,10 @@ def _as_run(groups: Groups) -> list[Block]:
 
 def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the stiffness of the springs."""
-    base = damped.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
+    base = closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0, step=STEP)
     grid = np.geomspace(0.1, 1e5, 240)
-    scenes = [damped.stiffer(base, float(r)) for r in grid]
-    share = np.array([100 * damped.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
+    scenes = [closed.stiffer(base, float(r)) for r in grid]
+    share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
     high = np.array([100 * (spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1) for s in scenes])
     marks = {f"{r:g}E": r for r in RATIOS}
     axes: dict[str, Any] = {"x_range": (0.1, 1e5), "logarithmic": (True, False), "marks": marks}
@@ -169,8 +169,8 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     deflection = ChartPanel("What the springs add [%]", "p / E", "", additions, y_range=(0.0, 100.0), **axes)
     radii = []
     for (name, (alpha, delta)), color in zip(SCHEMES.items(), SETTINGS[1:], strict=False):
-        stepped = [damped.timed(s, alpha=alpha, delta=delta) for s in scenes]
-        radii.append(ChartLine(name, grid, np.array([damped.contact_radius(s) for s in stepped]), color))
+        stepped = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
+        radii.append(ChartLine(name, grid, np.array([closed.contact_radius(s) for s in stepped]), color))
     title = f"|λ| of the contact at dt = {milliseconds(STEP)}"
     ringing = ChartPanel(title, "p / E", "", radii, y_range=(0.0, 1.05), **axes)
     caption = (
@@ -193,7 +193,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
 
 def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
-    usual, stiff = (damped.stiffer(base, ratio) for ratio in RATIOS[1:])
+    usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
     case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
     displacement, pressure = cells(FINE_SETTLING, case)
     as_run = ""
@@ -202,13 +202,13 @@ def spring_rule(groups: Groups, base: Scene) -> str:
             f" (as run: {pressure} steps until the pressure is within 0.01\u00a0%, {displacement} for the displacement)"
         )
     return (
-        f"For a locked square block take p = 10E: the springs then deflect by {1e3 * damped.penetration(usual):.3g}"
-        f"\u00a0mm at rest, {percent(damped.spring_share(usual))} of what the block shortens by; for another shape it "
-        f"is (w/h) E/p. At p = 100E they deflect by {1e3 * damped.penetration(stiff):.3g}\u00a0mm. Beyond dt = 4/ω of "
-        f"the contact, {milliseconds(damped.sign_change_step(usual))} at 10E and "
-        f"{milliseconds(damped.sign_change_step(stiff))} at 100E, the contact force flips sign each step: at "
-        f"dt = {milliseconds(STEP)} it keeps {percent(damped.contact_radius(usual))} of its amplitude at 10E and "
-        f"{percent(damped.contact_radius(stiff))} at 100E{as_run}. "
+        f"For a locked square block take p = 10E: the springs then deflect by {1e3 * closed.penetration(usual):.3g}"
+        f"\u00a0mm at rest, {percent(closed.spring_share(usual))} of what the block shortens by; for another shape it "
+        f"is (w/h) E/p. At p = 100E they deflect by {1e3 * closed.penetration(stiff):.3g}\u00a0mm. Beyond dt = 4/ω of "
+        f"the contact, {milliseconds(closed.sign_change_step(usual))} at 10E and "
+        f"{milliseconds(closed.sign_change_step(stiff))} at 100E, the contact force flips sign each step: at "
+        f"dt = {milliseconds(STEP)} it keeps {percent(closed.contact_radius(usual))} of its amplitude at 10E and "
+        f"{percent(closed.contact_radius(stiff))} at 100E{as_run}. "
         "If stiff springs are a must, take a step below 4/ω, or δ > 1/2 with α = (1/2 + δ)²/4, as (9/16, 1). Where the "
         "contact opens, the peak force of a landing in DDA grows as √p: this is no rule there."
     )
@@ -218,13 +218,13 @@ def spring_table(groups: Groups, base: Scene) -> Table:
     """Return what a stiffness makes of the answer: closed forms, and steps to settle as run."""
     rows = []
     for ratio in RATIOS:
-        scene = damped.stiffer(base, ratio)
+        scene = closed.stiffer(base, ratio)
         case, fine = (case_where(groups.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
         closed_form_cells = (
             f"{1e3 * statics.static_displacement(scene):.3f}".replace("-", "−"),
-            f"{1e3 * damped.penetration(scene):.3g}",
-            percent(damped.first_damping(scene)),
-            f"{damped.contact_radius(scene):.4f}",
+            f"{1e3 * closed.penetration(scene):.3g}",
+            percent(closed.first_damping(scene)),
+            f"{closed.contact_radius(scene):.4f}",
             f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
         )
         settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
@@ -245,16 +245,16 @@ def spring_table(groups: Groups, base: Scene) -> Table:
 
 def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
     """Return the page on the discount."""
-    base = damped.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
+    base = closed.timed(paper, alpha=0.25, delta=0.5, gg=1.0)
     grid = np.geomspace(RANGE[0] / 1e3, RANGE[1] / 1e3, 240)
     lines = []
     for gg, color in zip(DISCOUNTS[1:], SETTINGS, strict=False):
-        scene = damped.timed(base, gg=gg)
-        lines.append(ChartLine(f"gg = {gg:g}", 1e3 * grid, 100 * damped.over_steps(scene, grid), color))
-    rate = damped.rate_for(base, 0.05)
-    at_rate = damped.timed(base, gg_rate=rate, gg=1.0)
+        scene = closed.timed(base, gg=gg)
+        lines.append(ChartLine(f"gg = {gg:g}", 1e3 * grid, 100 * closed.over_steps(scene, grid), color))
+    rate = closed.rate_for(base, 0.05)
+    at_rate = closed.timed(base, gg_rate=rate, gg=1.0)
     lines.append(
-        ChartLine(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * damped.over_steps(at_rate, grid), SETTINGS[3], DASHED)
+        ChartLine(f"gg = exp(−{rate:.3g} dt)", 1e3 * grid, 100 * closed.over_steps(at_rate, grid), SETTINGS[3], DASHED)
     )
     turns = ", ".join(short(spectra.dda_frequency(at_rate) * step, 2) for step in RATE_STEPS)
     chart = ChartPanel(
@@ -273,8 +273,8 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> list[Block]:
         f"the block alike while ω₁ dt is small: asked for 5 %, it is {damping_at_steps(at_rate, RATE_STEPS)} "
         f"(ω₁ dt = {turns})."
     )
-    per_step = damped.timed(base, gg=0.98)
-    overdamped_below = damped.overdamped_below(per_step)
+    per_step = closed.timed(base, gg=0.98)
+    overdamped_below = closed.overdamped_below(per_step)
     creep = ""
     if overdamped_below:
         creep = f", and below dt = {1e3 * overdamped_below:.3g}\u00a0ms the block creeps instead of oscillating"
@@ -301,10 +301,10 @@ def discount_table(base: Scene) -> Table:
     """Return the damping of each discount at each step, where it overdamps, and the rate it amounts to."""
     rows = []
     for gg in DISCOUNTS:
-        scene = damped.timed(base, gg=gg)
-        ratios = [damped.first_damping(damped.timed(scene, step=step)) for step in STEPS[1:]]
+        scene = closed.timed(base, gg=gg)
+        ratios = [closed.first_damping(closed.timed(scene, step=step)) for step in STEPS[1:]]
         damping_cells = [percent(xi) if xi > 1e-12 else "0\u00a0%" for xi in ratios]
-        overdamped_below = damped.overdamped_below(scene)
+        overdamped_below = closed.overdamped_below(scene)
         step = DASH if overdamped_below is None else f"{1e3 * overdamped_below:.3g}"
         rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
         rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))

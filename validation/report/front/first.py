@@ -22,7 +22,7 @@ from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, cas
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
-from validation.theory import damped, spectra
+from validation.theory import closed, spectra
 
 TARGET_DAMPING = 0.05  # damping ratio that the answer names a time step for
 STIFF = 100.0  # p/E of the answer on stiff springs
@@ -106,7 +106,7 @@ def force(groups: Groups) -> tuple[str, str] | None:
     return (
         "Is DDA's force right?",
         f"{at_rest}; {moving} "
-        f"(p = {damped.ratio_of(scene):g}E): one strain in place of a wave, which the damping of a long step hides."
+        f"(p = {closed.ratio_of(scene):g}E): one strain in place of a wave, which the damping of a long step hides."
         f"{_windows(groups, rows[-1])}",
     )
 
@@ -147,7 +147,7 @@ def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
     for case in by_step(groups.get(PAPER)):
         if (xi := case.number("dda", "mode1.damping")) is not None:
             measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
-    step = damped.step_for(paper, TARGET_DAMPING)
+    step = closed.step_for(paper, TARGET_DAMPING)
     advice = "see decision 1"
     if step:
         advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {1e3 * step:.3g}\u00a0ms (decision 1)"
@@ -155,7 +155,7 @@ def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
         "Which time step?",
         f"The step is the damping: constant acceleration, in DDA's usage (1/2, 1) (texts on finite elements mean "
         f"(1/4, 1/2)), damps the first mode by {', '.join(measured)} of "
-        f"critical at p = {damped.ratio_of(paper):g}E; {advice}.",
+        f"critical at p = {closed.ratio_of(paper):g}E; {advice}.",
     )
 
 
@@ -174,14 +174,14 @@ def springs(groups: Groups) -> tuple[str, str] | None:
     if len(texts) < len(settling_steps):
         return None
     usual_steps, stiff_steps, fine_displacement, fine_pressure = texts
-    radius = damped.contact_radius(stiff.scene)
-    constant = damped.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
-    share = percent(damped.spring_share(constant))
+    radius = closed.contact_radius(stiff.scene)
+    constant = closed.timed(usual.scene, alpha=0.5, delta=1.0, gg=1.0)
+    share = percent(closed.spring_share(constant))
     return (
         "Which springs?",
         f"About p = {STIFF / 10:g}E for a locked square block: the springs then add {share} "
         "to what it shortens by itself; their force flips sign each step only beyond "
-        f"dt = {milliseconds(damped.sign_change_step(constant))}. At p = {STIFF:g}E the displacement hardly changes "
+        f"dt = {milliseconds(closed.sign_change_step(constant))}. At p = {STIFF:g}E the displacement hardly changes "
         f"(settled within 1\u00a0% after {stiff_steps} steps instead of {usual_steps}), but the contact rings: it "
         f"flips sign each step and keeps {percent(radius)} of its swing, so that the pressure needs {fine_pressure} "
         f"steps to come within 0.01\u00a0% of rest and the displacement {fine_displacement}, at "
@@ -191,7 +191,7 @@ def springs(groups: Groups) -> tuple[str, str] | None:
 
 def discount(paper: Scene) -> tuple[str, str]:
     """Say what gg = 0.98 does."""
-    kinetic = damped.timed(paper, alpha=0.25, delta=0.5, gg=DISCOUNT)
+    kinetic = closed.timed(paper, alpha=0.25, delta=0.5, gg=DISCOUNT)
     ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
     return (
         f"What does gg = {DISCOUNT:g} do?",
@@ -203,7 +203,7 @@ def discount(paper: Scene) -> tuple[str, str]:
 
 def damping_at_steps(scene: Scene, steps: Iterable[float]) -> str:
     """Return the damping ratio of the first axial mode at some steps [s], ``1.2 % at 2 ms, 2.5 % at 1 ms``."""
-    ratios = {step: damped.first_damping(damped.timed(scene, step=step)) for step in steps}
+    ratios = {step: closed.first_damping(closed.timed(scene, step=step)) for step in steps}
     return ", ".join(f"{percent(xi)} at {milliseconds(step)}" for step, xi in ratios.items())
 
 
@@ -216,7 +216,7 @@ def beware(groups: Groups) -> tuple[str, str] | None:
     time_error = groups["model-form"].number_of_pair(longest, "bar", "continuum", "displacement.l2")
     both_off = "" if time_error is None else f", while both are {percent(time_error)} off the continuum"
     minima = [value for case, _, _ in rows if (value := case.number("dda", "pressure.minimum")) is not None]
-    stiffer = [damped.stiffer(longest.scene, ratio) for ratio in STIFFNESSES]
+    stiffer = [closed.stiffer(longest.scene, ratio) for ratio in STIFFNESSES]
     excesses = [spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1 for s in stiffer]
     return (
         "What should I not trust?",
@@ -225,7 +225,7 @@ def beware(groups: Groups) -> tuple[str, str] | None:
         f"MPa in DDA); and the first frequency: one strain makes the natural one {percent(min(excesses))} to "
         f"{percent(max(excesses))} too high from p = {STIFFNESSES[0]:g}E to {STIFFNESSES[-1]:g}E (softer springs "
         f"less), and the step lowers it: {_stepped_frequencies(longest.scene)} against the exact one at "
-        f"p = {damped.ratio_of(longest.scene):g}E.",
+        f"p = {closed.ratio_of(longest.scene):g}E.",
     )
 
 
@@ -233,7 +233,7 @@ def _stepped_frequencies(scene: Scene) -> str:
     """Say what the step makes of DDA's first frequency against the exact bar's, at a short and at a longer step."""
     parts = []
     for step in STEPS:
-        excess = stepped_frequency(damped.timed(scene, step=step)) / spectra.bar_frequency(scene) - 1
+        excess = stepped_frequency(closed.timed(scene, step=step)) / spectra.bar_frequency(scene) - 1
         parts.append(f"{percent(abs(excess))} {'above' if excess > 0 else 'below'} at {milliseconds(step)}")
     return ", ".join(parts)
 
@@ -262,7 +262,7 @@ def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
         "time step dt [ms]",
         "",
         (
-            ChartLine("DDA", 1e3 * grid, 100 * damped.over_steps(paper, grid), orange),
+            ChartLine("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
             ChartLine("", dots[0], dots[1], orange, width=0, dots=DOTS),
         ),
         y_range=(0.2, 100.0),
@@ -297,13 +297,13 @@ def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Arra
 def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(groups)
-    turn = damped.most_damped(damped.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
+    turn = closed.most_damped(closed.timed(paper, alpha=0.5, delta=1.0, gg=1.0))
     claim = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
     if len(rows) > 1:
         claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
         claim += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
     return (
-        f"{claim}. What the step itself spoils grows instead. p = {damped.ratio_of(paper):g}E, constant acceleration. "
+        f"{claim}. What the step itself spoils grows instead. p = {closed.ratio_of(paper):g}E, constant acceleration. "
         "Line: closed form; dots: as run, right in relative L2; dashed: the paper's steps."
     )
 

@@ -8,7 +8,7 @@ from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
 from validation.runs.results import Results
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.theory.damped import ratio_of
+from validation.theory.closed import ratio_of
 
 Groups = Mapping[str, CaseGroup]
 PAPER = "figures-3-4"
