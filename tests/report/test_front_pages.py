@@ -18,11 +18,11 @@ from validation.report.blocks import Callout
 from validation.report.figures import charts
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
-from validation.report.front import decisions, first
+from validation.report.front import closed, decisions, first
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.registry import get_solver
-from validation.theory import closed, spectra, statics
+from validation.theory import spectra, statics
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 OTHER = PAPER.with_values(

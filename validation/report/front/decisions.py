@@ -13,10 +13,11 @@ from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
+from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
 from validation.report.front.groups import Groups, at_ratio, by_step, case_where, milliseconds
 from validation.scenes.scene import Scene
-from validation.theory import closed, spectra, statics
+from validation.theory import spectra, statics
 
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
 TARGET_DAMPING = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for

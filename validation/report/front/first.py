@@ -18,11 +18,12 @@ from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
+from validation.report.front import closed
 from validation.report.front.groups import PAPER, Groups, at_ratio, by_step, case_where, milliseconds
 from validation.runs.history import Array
 from validation.runs.records import VerdictRecord
 from validation.scenes.scene import Scene
-from validation.theory import closed, spectra
+from validation.theory import spectra
 
 TARGET_DAMPING = 0.05  # damping ratio that the answer names a time step for
 STIFF = 100.0  # p/E of the answer on stiff springs

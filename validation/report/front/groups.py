@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from validation.report.chapters.data import CaseGroup, CaseResults, case_groups
+from validation.report.front.closed import ratio_of
 from validation.runs.results import Results
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.theory.closed import ratio_of
 
 Groups = Mapping[str, CaseGroup]
 PAPER = "figures-3-4"
