@@ -1,10 +1,12 @@
 """A load that rises in a ramp: the closed form of each mode, exact flights, energies, and who refuses it."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conftest import refused, typed
 
 import dda
 from dda.one_block.natural_modes import modal_form
@@ -153,7 +155,7 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
     scheme = dda.Scheme(0.5, 1.0, 1.0, 1e-3)
     average = dda.Scheme(0.25, 0.5, 1.0, 1e-3)
     opens = dda.UnilateralModel(block, dda.Unilateral(1e9, 0.0), load)
-    for refused in (
+    for unknown in (
         lambda: dda.subdivided(model, 2, 2, 1e15),
         lambda: dda.opening_subdivided(opens, 2, 2, 1e15),
         lambda: dda.solve_adaptive(model, scheme, 5),
@@ -161,7 +163,17 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
         lambda: dda.solve_unilateral(opens, average, 5, options=dda.UnilateralOptions("energy-conserving")),
     ):
         with pytest.raises(ValueError, match=r"ramp: does not go|at once"):
-            refused()
+            unknown()
     for ramp in (-1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="ramp: must be finite and not negative"):
             dda.Load(ramp=ramp)
+
+
+def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path: Path) -> None:
+    values = ("--set", "time.step=0.002", "--set", f"load.ramp={RAMP}")
+    history = tmp_path / "ramped.csv"
+    assert typed("solve", "figures-3-4", *values, "--solver", "dda", "--csv", history).returncode == 0
+    assert typed("compare", "figures-3-4", history, *values).returncode == 0  # the scene's own history
+    assert typed("compare", "figures-3-4", history, *values[:2]).returncode == 1
+    polygon = ("--set", "block.vertices=[[0.0, 0.0], [2.0, 0.0], [1.8, 2.0], [0.2, 2.0]]")
+    assert "loads that act at once only" in refused("compare", "figures-3-4", history, *values, *polygon)
