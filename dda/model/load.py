@@ -46,7 +46,7 @@ class BaseMotion:
 
 @dataclass(frozen=True)
 class Load:
-    """Loads of one block or of a system of blocks, all switched on at t = 0; each alone or together.
+    """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp.
 
     Raises
     ------
@@ -60,6 +60,7 @@ class Load:
     gravity: float = 0.0  # g, downwards [m/s^2]
     motion: BaseMotion | None = None  # of the springs' base ends
     slope: float = 0.0  # by which gravity is turned, so that the block stands on its incline [deg]
+    ramp: float = 0.0  # time in which pressure, traction and gravity rise linearly from zero; 0: at once [s]
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -69,6 +70,8 @@ class Load:
                 raise ValueError(f"{field}: must be finite, got {value!r}")
         if not -90 < self.slope < 90:
             raise ValueError(f"slope: must be between -90 and 90 degrees, got {self.slope!r}")
+        if not (math.isfinite(self.ramp) and self.ramp >= 0):
+            raise ValueError(f"ramp: must be finite and not negative, got {self.ramp!r}")
 
     @property
     def falling(self) -> tuple[float, float]:
@@ -78,6 +81,17 @@ class Load:
     def size(self, weight: float) -> float:
         """Return the largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
         return max(abs(self.pressure), abs(self.traction), abs(weight * self.gravity))
+
+
+def load_share(ramp: float, time: float) -> float:
+    """Return the share of the loads that acts at a time, min(1, t / ramp); all of them at once without a ramp."""
+    return 1.0 if time >= ramp else time / ramp
+
+
+def at_once(load: Load, what: str) -> None:
+    """Raise ValueError for a ramp where something knows loads only that act at once."""
+    if load.ramp:
+        raise ValueError(f"ramp: does not go with {what}, got {load.ramp!r}")
 
 
 def falling(slope: float) -> tuple[float, float]:

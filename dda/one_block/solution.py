@@ -12,6 +12,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.model.load import Load, at_once, load_share
 from dda.one_block.gap_form import COLUMNS, GapForm
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
@@ -78,7 +79,10 @@ def solve(
         rows = np.array([form.observers[name] @ modal.shapes for name in columns])
         stepped = _why_stepped(model, scheme, modal, full)
         ready = perf_counter()
-        observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
+        if model.load.ramp:
+            observed = rows @ _ramped_modes(model.load, scheme, modal, steps)
+        else:
+            observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
         observed *= model.load_size
         observed += 0.0
         overflow = bound_overflow(observed, model.load_size)
@@ -157,6 +161,7 @@ def solve_adaptive(
 def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
     if not 0 <= floor <= 1:
         raise ValueError(f"floor: must be between 0 and 1, got {floor!r}")
+    at_once(model.load, "self-adaptive damping")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
     if scheme.damped or model.load.motion is not None:
@@ -167,7 +172,15 @@ def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: b
     """Return why the history is stepped, in words; None where it is blocked."""
     if full:
         return "all savings off"
+    if model.load.ramp:
+        return "the load rises in a ramp"
     return "the base moves" if model.load.motion is not None else why_stepped(scheme, modal.frequencies)
+
+
+def _ramped_modes(load: Load, scheme: Scheme, modal: ModalForm, steps: int) -> Array:
+    """Return the modes of every step under loads that rise in a ramp, (n, steps)."""
+    shares = [load_share(load.ramp, scheme.step * number) for number in range(steps + 1)]
+    return stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
 
 
 def _carried(

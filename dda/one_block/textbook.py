@@ -30,8 +30,8 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
     if scheme.alpha * scheme.step**2 == 0:
         return "eq. (6) divides by alpha, which is zero" if scheme.alpha == 0 else "alpha dt^2 of eq. (9) vanishes"
     load = model.load
-    if load.traction or load.gravity or load.eccentricity or load.motion is not None:
-        return "eq. (31), (32) hold for a centred pressure only"
+    if load.traction or load.gravity or load.eccentricity or load.ramp or load.motion is not None:
+        return "eq. (31), (32) hold for a centred pressure only, switched on at once"
     corners = np.roll(model.block.corners, -model.base, axis=0)
     x, y = corners.T
     upright = len(x) == 4 and y[0] == y[1] and x[1] == x[2] and y[2] == y[3] and x[3] == x[0]

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.unilateral import SLIP, Unilateral
+from dda.model.load import at_once
 from dda.model.loaded import LoadedBlock
 from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
 from dda.one_block.solution import check_request, step_times
@@ -254,6 +255,8 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
             f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
             f"got stiffness = {law.stiffness:g} and band = {law.band}"
         )
+    if options.rule == CONSERVING:
+        at_once(model.load, f"{CONSERVING} contact")
     if options.rule == CONSERVING and model.load.motion is not None:
         raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
     if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:

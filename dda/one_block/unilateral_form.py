@@ -51,7 +51,8 @@ class UnilateralForm:
     unknowns: tuple[str, ...]  # names of x: strains, then lengths [m]; the last c are the gaps
     M: Array  # (n, n) inertia
     K: Array  # (n,) diagonal of the elastic stiffness
-    F: Array  # (n,) constant load
+    F: Array  # (n,) load
+    ramp: float  # time in which it rises from zero [s]
     translation: Array  # (n, 2) R, x of a rigid translation by 1 m along the base and away from it
     axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the block
     B: Array  # (c, n), or (2c, n) with shear: gaps, then slides in the coordinates of dda.contact.kernel.Free [m]
@@ -91,6 +92,7 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
         M=(M + M.T) / 2,
         K=np.array([_modulus(block, name) for name in names]),
         F=T.T @ form.F,
+        ramp=load.ramp,
         translation=np.column_stack([[1.0 * (name == "U") for name in names], 1.0 * gaps]),
         axes=axes,
         B=B,

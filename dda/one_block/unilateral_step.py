@@ -46,6 +46,7 @@ from dda.contact.kernel import (
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
+from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
@@ -56,7 +57,7 @@ from dda.scheme.newmark import (
     velocity_corrector,
 )
 from dda.stepping.driver import BaseRecord, base_displacement, driver
-from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss
+from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
 Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
@@ -68,7 +69,7 @@ class StepLength(NamedTuple):
 
     numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
     k: Vector  # (n,) h^2 K0
-    F: Vector  # (n,) h^2 F
+    F: Vector  # (n,) h^2 F; where the load rises in a ramp, that at the end of the step which was made last
     inverse: Matrix  # (n, n) of S0
     pushed: Matrix  # (n, q) weight h^2 S0^-1 multiplicity B': displacement of unit forces
     C: Matrix  # flexibility of the contacts in their own slides [m/N]
@@ -114,6 +115,7 @@ class BlockEquations(NamedTuple):
     M: Matrix  # (n, n)
     K: Vector  # (n,)
     load: Vector  # (n,) F
+    ramp: float  # time in which it rises [s]
     B: Matrix  # (q, n) gaps, then slides by the unknowns
     multiplicity: float
     translation: Matrix  # (n, 2) R, along and away from the base
@@ -145,6 +147,7 @@ def block_equations(
         M=form.M,
         K=form.K,
         load=form.F,
+        ramp=form.ramp,
         B=form.B,
         multiplicity=form.multiplicity,
         translation=form.translation,
@@ -165,7 +168,7 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap."""
     dt = scheme.step
     P = (dt * velocity) * (form.M @ (form.translation @ form.axes[:, 1]))
-    F = dt * dt * form.F
+    F = load_share(form.ramp, 0.0) * (dt * dt * form.F)
     f = F if rule == CONSERVING else initial_acceleration(scheme, F)
     return BlockState(form.start, P, f, at_rest(np.full(form.contacts, law.gap)))
 
@@ -278,6 +281,10 @@ def free_step(
     room = block.room
     n = len(block.K)
     c = len(block.room.slide)
+    if block.ramp > 0:
+        share = load_share(block.ramp, (begun + ratio) * block.step)
+        for i in range(n):
+            length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     for i in range(n):
         room.P[i] = ratio * state.P[i]
         room.f[i] = ratio * ratio * state.f[i]
@@ -433,9 +440,16 @@ def account(
             share,
             sums,
         )
-    if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+    if block.ramp > 0:  # what a load that rises does beside the work of the whole one
+        share = (1 - block.delta) * load_share(block.ramp, begun * block.step)
+        share += block.delta * load_share(block.ramp, (begun + ratio) * block.step)
         for i in range(n):
-            missing = length.F[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
+            moved = room.change[i] + dot(block.translation[i], room.base, 2)
+            sums[GIVEN] += (share - 1) * block.load[i] * moved
+    if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+        share = load_share(block.ramp, 0.0)
+        for i in range(n):
+            missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
             moved = room.change[i] + dot(block.translation[i], room.base, 2)
             sums[ALGORITHMIC] += (1 - block.delta) * moved * missing / h2
     kinetic = 0.0

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dda.contact.kernel import at_rest
 from dda.contact.unilateral import Unilateral
-from dda.model.load import pressed_part
+from dda.model.load import at_once, pressed_part
 from dda.model.loaded import LoadedBlock
 from dda.one_block.unilateral import check_iteration
 from dda.rotation.body import EXACT, FIRST_ORDER, Body, body, directions, turned
@@ -41,6 +41,7 @@ class RollingModel(LoadedBlock):
     def check(self) -> None:
         """Check the numbers and the edges."""
         super().check()
+        at_once(self.load, "updated geometry")
         for name in ("tilt", "spin", "velocity"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")

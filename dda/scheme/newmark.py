@@ -19,9 +19,9 @@ does so without a loop over the steps, from the same lines.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, repeat
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -149,8 +149,10 @@ def viscosity(scheme: Scheme, k: Real) -> Real:
     return scheme.mass_damping * scheme.step + scheme.stiffness_damping / scheme.step * k
 
 
-def modal_displacements(scheme: Scheme, omega: float, F: float) -> Iterator[float]:
-    """Yield D of step 1, 2, ... of one mode from rest under a constant load.
+def modal_displacements(
+    scheme: Scheme, omega: float, F: float, shares: Iterable[float] = repeat(1.0)
+) -> Iterator[float]:
+    """Yield D of step 1, 2, ... of one mode from rest under a load.
 
     Parameters
     ----------
@@ -158,21 +160,26 @@ def modal_displacements(scheme: Scheme, omega: float, F: float) -> Iterator[floa
         w dt [-].
     F : float
         dt^2 times the modal load.
+    shares
+        Of the load that act at t = 0, dt, 2 dt, ...
     """
     k = omega * omega
     S = effective_matrix(scheme, 1.0, k)
-    state = (0.0, 0.0, initial_acceleration(scheme, F))
-    while True:
-        state = modal_step(scheme, S, k, F, state)
+    coming = iter(shares)
+    state = (0.0, 0.0, initial_acceleration(scheme, next(coming) * F))
+    for share in coming:
+        state = modal_step(scheme, S, k, share * F, state)
         yield state[0]
 
 
-def stepped_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int) -> Array:
-    """Return D of every mode and step, (n, steps), from rest under a constant modal load."""
+def stepped_modes(
+    scheme: Scheme, frequencies: Array, load: Array, steps: int, shares: Iterable[float] = repeat(1.0)
+) -> Array:
+    """Return D of every mode and step, (n, steps), from rest under a modal load; see `modal_displacements`."""
     dt = scheme.step
     histories = np.empty((len(load), steps))
     for row, w, F in zip(histories, frequencies.tolist(), load.tolist(), strict=True):
-        row[:] = np.fromiter(islice(modal_displacements(scheme, dt * w, dt * dt * F), steps), float, steps)
+        row[:] = np.fromiter(islice(modal_displacements(scheme, dt * w, dt * dt * F, shares), steps), float, steps)
     return histories
 
 

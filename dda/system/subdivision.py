@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dda.contact.springs import base_directions
 from dda.model.block import Block
-from dda.model.load import pressed_part
+from dda.model.load import at_once, pressed_part
 from dda.one_block.two_block import TwoBlockModel
 from dda.system.joints import FIXED, Joint
 from dda.system.system import BlockSystem, SurfaceLoad
@@ -83,6 +83,7 @@ def base_share(length: float, a: float) -> float:
 
 
 def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: str) -> None:
+    at_once(model.load, "sub-blocks")
     for field, count in (("columns", columns), ("rows", rows)):
         if count < 1:
             raise ValueError(f"{field}: must be at least 1, got {count!r}")

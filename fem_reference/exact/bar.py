@@ -19,7 +19,7 @@ faster than any power of the number of modes, also for the modes far beyond the 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,6 +55,7 @@ class Bar:
     young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
     base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
     pressure: float  # pressure q on the top [Pa], downwards; the load is q W
+    ramp: float = 0.0  # time in which it rises linearly from zero [s]
 
     def __post_init__(self) -> None:
         for name in ("height", "width", "density", "young", "base_stiffness"):
@@ -77,7 +78,7 @@ class Bar:
         if reason is not None or problem.rectangle is None:
             raise ValueError(f"problem: must reduce to a bar, but {reason}")
         width, height = problem.rectangle
-        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, problem.pressure)
+        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, problem.pressure, problem.ramp)
 
     @property
     def kappa(self) -> float:
@@ -146,7 +147,10 @@ class Bar:
         b = wave_numbers(self.kappa, count)
         weights = np.array([shares(name, b, self.kappa) for name in columns])
         cut = np.vstack([weights * cut_off(count, count), weights * cut_off(count, count // 2)])
-        history = bar_scheme.weighted_response(b / self.travel * scheme.step, cut, scheme, steps)
+        at_once = replace(scheme, start="zero") if self.ramp else scheme  # no load acts at t = 0
+        history = bar_scheme.weighted_response(b / self.travel * scheme.step, cut, at_once, steps)
+        if self.ramp:
+            history = ramped(history, self.ramp / scheme.step)
         fine, coarse = history[: len(columns)], history[len(columns) :]
         error = np.abs(fine - coarse).max(axis=1, initial=0.0)
         scale = np.maximum(np.abs(fine).max(axis=1, initial=0.0), BEGUN * min(1.0, self.kappa))
@@ -160,9 +164,11 @@ class Bar:
         Raises
         ------
         ValueError
-            If gg is zero, or `steps` or `columns` are not valid.
+            If gg is zero, the load rises in a ramp, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
+        if self.ramp:
+            raise ValueError(f"ramp: must be 0 for a bar in continuous time, got {self.ramp!r}")
         if scheme.gg == 0:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         began = time.perf_counter()
@@ -191,6 +197,16 @@ class Bar:
             stepping_seconds=time.perf_counter() - began,
             estimate=estimate,
         )
+
+
+def ramped(history: Array, steps: float) -> Array:
+    """Histories under a load that rises within so many steps, from those under one that acts from step 1 on.
+
+    The scheme is linear and the same in every step: the load min(1, n / steps) is a sum of constant ones, the first
+    from step 1 on, each as large as what the load rises by in its step.
+    """
+    shares = np.minimum(np.arange(np.ceil(steps) + 1) / steps, 1.0)
+    return np.array([np.convolve(row, np.diff(shares))[: len(row)] for row in history])
 
 
 def applicable(problem: Problem) -> str | None:

@@ -137,6 +137,8 @@ class OpeningResult:
 
 def applicable(problem: Problem) -> str | None:
     """Why the bar is not exact for a problem, in words; None if it is."""
+    if problem.ramp:
+        return "its load is constant, and that of the problem rises in a ramp"
     if not problem.vertical or problem.motion is not None:
         return "the bar carries a centred pressure and its weight only"
     if problem.rectangle is None:

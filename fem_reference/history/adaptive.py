@@ -85,8 +85,8 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
         raise ValueError(f"floor: must be from 0 to 1, got {floor!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
-    if scheme.damped or problem.motion is not None:
-        raise ValueError("adaptive discount: does not go with viscous damping or a moving base, got it")
+    if scheme.damped or problem.motion is not None or problem.ramp:
+        raise ValueError("adaptive discount: does not go with viscous damping, a moving base or a ramp, got it")
 
 
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:

@@ -55,8 +55,10 @@ def solve(
     ready = time.perf_counter()
     small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
     if isinstance(small, str):
-        moved = None if problem.motion is None else problem.motion(scheme.step * np.arange(steps + 1.0))
-        history, estimate = run(stepper, model, steps, tuple(columns), writer, moved), None
+        instants = scheme.step * np.arange(steps + 1.0)
+        moved = None if problem.motion is None else problem.motion(instants)
+        shares = problem.load_shares(instants) if problem.ramp else None
+        history, estimate = run(stepper, model, steps, tuple(columns), writer, moved, shares), None
     else:
         history, estimate = small.history, small.estimate
     history = bounded(history, problem.load_size)
@@ -89,6 +91,8 @@ def _in_small_space(
     """The history in a Krylov space, or why it must be stepped."""
     if problem.motion is not None:
         return "the base moves"
+    if problem.ramp:
+        return "the load rises in a ramp"
     if writer is not None:
         return "fields are written"
     if stepper.scheme.damped:
@@ -108,14 +112,18 @@ def run(
     columns: tuple[str, ...],
     writer: FieldWriter | None,
     moved: Array | None = None,
+    shares: Array | None = None,
 ) -> Array:
     """Observe every step for a load of unit size; shape (columns, steps).
 
-    `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed.
+    `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed, and
+    `shares` is what acts of the load then, shape (steps + 1,), None where it is constant.
     """
     rows = _rows(model, columns)
     history = np.empty((len(columns), steps))
-    forces = None if moved is None else model.F + moved @ model.base_force.T
+    forces = None if shares is None else shares[:, None] * model.F
+    if moved is not None:
+        forces = (model.F if forces is None else forces) + moved @ model.base_force.T
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
         state = stepper.start(None if forces is None else forces[0])

@@ -119,6 +119,8 @@ def solve_unilateral(
     """
     if steps < 1:
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
+    if problem.ramp:
+        raise ValueError(f"ramp: does not go with contact that opens, got {problem.ramp!r}")
     contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)

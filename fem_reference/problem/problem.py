@@ -38,7 +38,7 @@ class Rectangle(NamedTuple):
 
 @dataclass(frozen=True)
 class Problem:
-    """One elastic block on a locked elastic foundation under loads that are switched on at t = 0.
+    """One elastic block on a locked elastic foundation under loads that come on at t = 0, at once or in a ramp.
 
     The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
     edge; a pressure acts vertically downwards and a traction sideways per unit length of the top edge,
@@ -71,6 +71,7 @@ class Problem:
     gravity: float = 0.0  # acceleration of gravity g [m/s2], downwards where there is no slope
     motion: Motion | None = None  # motion of the fixed side of the foundation
     slope: float = 0.0  # angle b of the incline that the block stands on [deg]: gravity is g (sin b, -cos b) in x, y
+    ramp: float = 0.0  # time in which pressure, traction and gravity rise linearly from zero [s]
 
     def __post_init__(self) -> None:
         self._check_polygon()
@@ -103,9 +104,10 @@ class Problem:
         _require(self.poisson > -1 and below, "poisson", rule, self.poisson)
 
     def _check_loads(self) -> None:
-        for field in ("pressure", "eccentricity", "traction", "gravity", "slope"):
+        for field in ("pressure", "eccentricity", "traction", "gravity", "slope", "ramp"):
             _finite(field, getattr(self, field))
         _require(abs(self.slope) < 90, "slope", "must be between -90 and 90", self.slope)
+        _require(self.ramp >= 0, "ramp", "must not be negative", self.ramp)
         inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
         rule = f"must be below half the top edge, {self.top_length / 2:g}"
         _require(inside, "eccentricity", rule, self.eccentricity)
@@ -166,6 +168,10 @@ class Problem:
             return 1.0
         weight = self.density * self.gravity * float(np.sqrt(self.area))
         return max(abs(self.pressure), abs(self.traction), abs(weight))
+
+    def load_shares(self, instants: Array) -> Array:
+        """Shares of the loads that act at some instants [-]."""
+        return np.minimum(instants / self.ramp, 1.0) if self.ramp else np.ones_like(instants)
 
     @property
     def unit(self) -> Problem:

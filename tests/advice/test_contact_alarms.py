@@ -20,6 +20,7 @@ from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, parse_scene
+from validation.theory import landing
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}
@@ -124,7 +125,7 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float
 )
 def test_the_opening_is_hidden_from_the_limit_on(values: dict[str, Any]) -> None:
     scene = PAPER.with_values(values)
-    limit = contact.hidden_from(scene)
+    limit = landing.hidden_from(scene)
     assert limit is not None
     for factor, opens in ((0.999, True), (1.001, False)):
         row, _ = execute(Case(scene.with_values({"time.step": factor * limit, "time.steps": 1}), "dda"), "", "")
@@ -132,17 +133,17 @@ def test_the_opening_is_hidden_from_the_limit_on(values: dict[str, Any]) -> None
 
 
 def test_the_opening_is_hidden_at_the_known_limits() -> None:
-    assert contact.hidden_from(PAPER) == pytest.approx(1.8973665961e-3, rel=1e-10)
-    assert contact.hidden_from(PAPER.with_values(AVERAGE)) == pytest.approx(2.6832815730e-3, rel=1e-10)
+    assert landing.hidden_from(PAPER) == pytest.approx(1.8973665961e-3, rel=1e-10)
+    assert landing.hidden_from(PAPER.with_values(AVERAGE)) == pytest.approx(2.6832815730e-3, rel=1e-10)
     for none in ({"contact.gap": 0.1}, {"block.velocity": -1.0}, {"load.gravity": 2000.0}, {"load.pressure": -1.0}):
-        assert contact.hidden_from(PAPER.with_values(none)) is None
+        assert landing.hidden_from(PAPER.with_values(none)) is None
 
 
 def test_the_opening_is_hidden_by_the_height_and_not_the_width() -> None:
     data = PAPER.definition()
     del data["block"]["side"]
     oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
-    assert contact.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
+    assert landing.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
 
 
 def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_one() -> None:
@@ -150,8 +151,8 @@ def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_on
     cannot = {(0.5, 1.0), (0.75, 1.0), (0.6, 1.2), (0.75, 1.5)}
     for alpha, delta in may | cannot:
         scene = PAPER.with_values({"time.alpha": alpha, "time.delta": delta, "time.allow_unstable": True})
-        assert contact.cannot_gain(scene) == ((alpha, delta) in cannot)
-    assert contact.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
+        assert landing.cannot_gain(scene) == ((alpha, delta) in cannot)
+    assert landing.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
 
 
 @pytest.mark.parametrize(
@@ -209,13 +210,13 @@ def test_forces_of_an_impact() -> None:
     """The second contact is the greatest at p = 100 E, 1.47 times that of a quarter of the mass."""
     scene = PAPER.with_values(STIFF | {"load.pressure": 0.0, "block.velocity": -2.0, "time.step": 1e-5})
     row, _ = execute(Case(scene.with_values({"time.steps": 600}), "block-events"), "", "")
-    assert row.metrics["contact.peak_force"] == pytest.approx(contact.impact_force(scene, -2.0), rel=0.02)
-    assert contact.impact_force(scene, -2.0) == pytest.approx(1.471 * contact.quarter_mass_force(scene, 2.0), rel=1e-3)
+    assert row.metrics["contact.peak_force"] == pytest.approx(landing.impact_force(scene, -2.0), rel=0.02)
+    assert landing.impact_force(scene, -2.0) == pytest.approx(1.471 * landing.quarter_mass_force(scene, 2.0), rel=1e-3)
     soft = scene.with_values({"contact.stiffness": 1e7})
-    assert contact.impact_force(soft, 1.0) == pytest.approx(2 * contact.quarter_mass_force(soft, 1.0), rel=1e-2)
+    assert landing.impact_force(soft, 1.0) == pytest.approx(2 * landing.quarter_mass_force(soft, 1.0), rel=1e-2)
     stop = scene.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
-    assert math.isinf(contact.impact_force(stop, 1.0))
-    assert contact.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
+    assert math.isinf(landing.impact_force(stop, 1.0))
+    assert landing.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
     assert scene.block.mass == 10800
 
 

@@ -21,6 +21,7 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.theory import friction
+from validation.theory.friction import distance_share
 
 SLIDES = load_scene("slope-drag").expand()[0]
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
@@ -94,8 +95,8 @@ def test_what_a_discount_leaves_of_a_way_is_what_dda_slides(gg: float, step: flo
     assert found.braked == pytest.approx(cut, abs=6e-5)
     run = solve(case, "dda").history.columns["horizontal_displacement"][-1]
     assert run == pytest.approx(found.braked + found.offset, rel=1e-6)
-    assert advice.distance_share(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
-    assert advice.distance_share(1.0, step, 1.0) == 1
+    assert distance_share(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
+    assert distance_share(1.0, step, 1.0) == 1
 
 
 def test_the_command_contact_says_it(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 from validation.advice import rayleigh
 from validation.advice.rayleigh import Rayleigh
 from validation.errors import InputError
-from validation.theory.waves import Stepping
+from validation.theory.stepping import Stepping
 
 CONSTANT = Stepping(0.01, 0.5, 1.0)
 MIXED = Stepping(0.002, 0.45, 0.8, 0.98)

@@ -14,7 +14,7 @@ from validation.advice.wave_advice import advise_wave
 from validation.cli.app import app
 from validation.errors import InputError
 from validation.scenes.scene import Scene
-from validation.theory.waves import Stepping
+from validation.theory.stepping import Stepping
 
 COLUMN = load_scene("figures-3-4").with_values(
     {"time.step": 0.01, "block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 50]}
@@ -27,7 +27,7 @@ def passage(scene: Scene, found: wave_advice.WaveAdvice, blocks: int, step: floa
     """Return what becomes of the advised way with other blocks or another step."""
     layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
     way = wave_advice._WavePath((layer,), found.frequency, found.distance / 100.0)
-    return way.passage(wave_advice._stepping(scene, step))
+    return way.passage(Stepping.of(scene).at(step))
 
 
 @pytest.mark.parametrize(

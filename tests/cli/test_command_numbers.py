@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import typed
-from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
-from oracles.made_cases import between, kept_study, line_in, made_history, made_row
+from oracles.made_cases import between, kept_study, made_history, made_row
 from oracles.pages import table
 
 from validation import load_scene
@@ -20,8 +18,6 @@ from validation.cli.printing import tables
 from validation.cli.run import _status
 from validation.gates.changes import against, changes, markdown
 from validation.gates.gate import Gate, Status, Verdict, judge
-from validation.report.figures import histories as figures
-from validation.report.figures.curves import style_of
 from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -168,21 +164,6 @@ def test_rows_are_written_under_their_names(made: Results, tmp_path: Path) -> No
         ("dda", "100", "3.5", "6000002.0", "0.1"),
         ("bar", "", "9.0", "", ""),
     ]
-
-
-def test_plot_draws_x_over_y_and_leaves_out_what_is_not_positive(
-    made: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    caught: list[Figure] = []
-    monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure) or path)
-    columns = ("--x", "work.solves", "--y", "bar:displacement.l2")
-    assert typed("plot", "made", *columns, "--out", tmp_path / "a.svg", "--results", made.directory).returncode == 0
-    (axes,) = caught[0].axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("work.solves", "bar:displacement.l2")
-    x, y = line_in(axes, to_hex(style_of("figures-3-4 dda").color))
-    assert (list(x), list(y)) == ([1, 10, 100], pytest.approx([0.3, 0.2, 0.1]))
-    nothing = typed("plot", "made", "--y", "bar:pressure.l2", "--results", made.directory)
-    assert nothing.returncode == 2 and "must be columns with positive numbers" in nothing.stderr
 
 
 @pytest.mark.parametrize(

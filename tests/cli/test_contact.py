@@ -11,13 +11,14 @@ from conftest import SCENE, refused, typed
 from oracles.made_cases import made_row
 
 from validation import load_scene
-from validation.advice import contact_page, friction
+from validation.advice import contact_page
 from validation.cli import app
 from validation.cli import contact as command
 from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.runs.run import Outcome
+from validation.theory.friction import distance_share
 
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
@@ -131,7 +132,7 @@ def test_what_is_needed_is_told_with_its_own_step_depth_and_returns() -> None:
     none = steps | {"longest": None, "best": 0.4}
     assert contact_page._allowed(none, 0.99).startswith("none with gg = 0.99; the least error is 40 %")
     assert contact_page._allowed(None, 1.0).startswith("not known")
-    left = 100 * friction.distance_share(0.9, 0.01, 1.0)
+    left = 100 * distance_share(0.9, 0.01, 1.0)
     assert f"it leaves {left:.3g} % of the distance covered from rest in a second" in text[-1]
     assert contact_page._depth(need | {"depth": 1e-5}, 1e-5).endswith("penetrates 1e-05 m")
 

@@ -88,8 +88,7 @@ def test_paragraphs_of_a_help_page_are_broken_by_the_terminal_alone() -> None:
         assert not re.search(r"[^\n]\n[^\n]", command.help or "")
 
 
-def test_a_report_is_a_pdf_and_a_plot_an_svg(tmp_path: Path) -> None:
+def test_a_report_is_a_pdf(tmp_path: Path) -> None:
     text = tmp_path / "x.txt"
     assert "--out: must end in .pdf" in refused("report", "--out", text)
-    assert "--out: must end in .svg" in refused("plot", "core", "--out", text)
     assert not text.exists()

@@ -8,7 +8,9 @@ from conftest import refused, typed
 
 from validation.cli.printing.listing import in_columns
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
-from validation.scenes.scene import load_scene, scene_names
+from validation.scenes.keys import default_of, keys_of, range_of
+from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
+from validation.scenes.tables import ContactSection
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
 from validation.studies.catalogue import STUDIES, get_study
@@ -90,7 +92,39 @@ def test_the_plain_list_names_all_four_with_their_titles() -> None:
 
 
 def test_another_word_is_bad_input() -> None:
-    assert refused("list", "gates") == "error: list: must be one of metrics, scenes, solvers, studies, got 'gates'\n"
+    assert (
+        refused("list", "gates") == "error: list: must be one of keys, metrics, scenes, solvers, studies, got 'gates'\n"
+    )
+
+
+def test_every_key_of_a_scene_is_described_once() -> None:
+    names = set()
+    for place, table in tables_of_scenes().items():
+        described_names = {name for name, _, _ in keys_of(table)}
+        tables = {name for name in table.model_fields if f"{place}.{name}" in tables_of_scenes()}
+        assert place == "gate" or described_names == set(table.model_fields) - tables
+        names |= {f"{place}.{name}" for name in described_names}
+    lines = [line.split(maxsplit=1)[0] for line in typed("list", "keys").stdout.splitlines() if line.strip()]
+    assert names <= {*lines}
+
+
+def test_bounds_units_and_defaults_of_keys_are_those_of_the_schema() -> None:
+    fields = {name: (default_of(field), range_of(field), key.unit) for name, field, key in keys_of(ContactSection)}
+    assert fields["friction"] == ("-", "> -90 and < 90 and >= 0", "deg")
+    assert fields["cut"] == ("0.3", "> 0 and < 1", "")
+    assert fields["stiffness"] == ("required", "> 0", "N/m")
+    assert fields["rules"] == ("consistent", '"consistent" or "lagged"', "")
+
+
+@pytest.mark.parametrize("place", [place for place in tables_of_scenes() if place != "gate"])
+def test_what_a_key_goes_with_is_a_key_and_one_of_its_words(place: str) -> None:
+    for name, _, key in keys_of(tables_of_scenes()[place]):
+        for requirement in key.needs:
+            field, _, words = requirement.partition(" = ")
+            section, _, partner = field.rpartition(".")
+            ranges = {name: range_of(field) for name, field, _ in keys_of(tables_of_scenes()[section or place])}
+            assert partner in ranges, (name, requirement)
+            assert set(words.split(" or ")) <= {"", *ranges[partner].split(" or ")}, (name, requirement)
 
 
 def row(metric: Metric) -> str:

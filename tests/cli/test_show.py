@@ -154,6 +154,12 @@ def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
     assert "over all" not in typed("show", "figures-3-4", "--set", "time.step=0.002").stdout
 
 
+def test_a_key_that_is_not_drawn_is_named_with_its_unit(scene_file: Path) -> None:
+    scene_file.write_text(SCENE.replace("[load]", 'law = "unilateral"\ncut = 0.25\nband = [1e-3, 0.0]\n\n[load]'))
+    text = typed("show", scene_file).stdout
+    assert "keys      band = 0.001, 0 m, cut = 0.25\n" in text
+
+
 def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
     scene_file.write_text(SCENE + "[damping]\nmass = 2.0\n[run]\nsolvers = ['dda']\n")
     text = typed("show", scene_file).stdout

@@ -11,6 +11,7 @@ from dda.column.column import Column, Layer, Motion, Spring
 from dda.column.stepping import Drive, solve_column
 from validation.metrics.transform import spectrum
 from validation.theory import waves
+from validation.theory.stepping import Stepping
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 HEIGHT, DENSITY, YOUNG, BLOCKS = 0.5, 2000.0, 1.8e9, 12
@@ -51,7 +52,7 @@ def wavenumber(
     omega = 2 * np.pi * frequency
     low, middle, high = (spectrum(found.time, found.columns[name], omega) for name in NAMES)
     guide = waves.Column(HEIGHT, DENSITY, modulus, glue)
-    exact = guide.wavenumber(waves.Stepping(step, *scheme, gg).squared_frequency(omega))
+    exact = guide.wavenumber(Stepping(step, *scheme, gg).squared_frequency(omega))
     half_sine = np.sqrt((1 - (low + high) / (2 * middle)) / 2)
     return complex(2 * np.arcsin(half_sine) / HEIGHT), complex(exact)
 
@@ -123,7 +124,7 @@ def test_the_surface_over_a_rigid_base_answers_by_mass_and_stiffness() -> None:
     time = step * np.arange(4000)
     drive = ricker(time, 60.0)
     found = solve_column(column, dda.Scheme(0.5, 1.0, 1.0, step), drive)
-    A, B = waves.Column(HEIGHT, DENSITY, YOUNG).ends(waves.Stepping(step).squared_frequency(omega))
+    A, B = waves.Column(HEIGHT, DENSITY, YOUNG).ends(Stepping(step).squared_frequency(omega))
     a, b = waves.Column(HEIGHT, DENSITY, YOUNG).ends(omega**2)
     matrix = np.diag([2 * A] * (n - 1) + [A]) + np.diag([B] * (n - 1), 1) + np.diag([B] * (n - 1), -1)
     x = np.linalg.solve(matrix, [-b, *[0.0] * (n - 1)])

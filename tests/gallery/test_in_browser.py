@@ -29,7 +29,8 @@ from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.catalogue import scene_study
 from validation.theory import landing, spectra
-from validation.theory.waves import Column, Stepping
+from validation.theory.stepping import Stepping
+from validation.theory.waves import Column
 
 pytestmark = [
     pytest.mark.long,

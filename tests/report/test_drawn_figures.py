@@ -216,18 +216,6 @@ def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_no
     assert notes == {"1": (1.0, 0.5), "2": (10.0, 0.1), "8": (20.0, 0.01), "3": (2.0, 0.4)}
 
 
-def test_two_columns_are_drawn_as_x_and_y_and_named_at_the_largest_x() -> None:
-    series = {"s dda": [(100.0, 2.0), (1.0, 50.0)], "s bar": [(2.0, 1.0), (30.0, 9.0)]}
-    (axes,) = cost.columns_figure(("work", "error"), series).axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("work", "error")
-    assert names_at(axes) == {
-        "s dda": (pytest.approx(2.0), color("s dda")),
-        "s bar": (pytest.approx(9.0), color("s bar")),
-    }
-    x, y = line_in(axes, color("s dda"))
-    assert (list(x), list(y)) == ([1.0, 100.0], [50.0, 2.0])
-
-
 def point(method: str, step: float, seconds: float, errors: dict[tuple[str, str], float]) -> Point:
     scene = load_scene("figures-3-4").with_values({"time.step": step})
     work = {"unknowns": 6, "steps": round(0.1 / step)}

@@ -18,6 +18,7 @@ from fem_reference.problem.result import Result as FemResult
 from validation import load_scene, response
 from validation.errors import InputError
 from validation.theory import waves
+from validation.theory.stepping import Stepping
 
 NAMES = ("displacement", "contact_pressure")
 Drawn = tuple[Column, Ground, list[int], dict[str, float]]
@@ -106,7 +107,7 @@ def test_blocks_on_a_rigid_base_answer_as_their_wavenumber_says(scheme: dict[str
     column = {"motion": "shear", "layer": [{"thickness": 30.0, "density": 2000.0, "young": 1e9, "blocks": 12}]}
     scene = scene.with_values({"column": column, "run.columns": ["displacement"]} | scheme)
     f = np.array([2.0, 11.0, 37.0])
-    stepping = waves.Stepping.of(scene)
+    stepping = Stepping.of(scene)
     k = waves.Column(2.5, 2000.0, 5e8).wavenumber(stepping.squared_frequency(2 * np.pi * f))
     w = 2 * np.pi * f  # the told base's own inertia follows w^2, the free blocks' W2: not the same for coarse blocks
     difference = stepping.squared_frequency(w) - w * w

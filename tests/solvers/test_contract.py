@@ -98,6 +98,14 @@ def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
     assert registry.rank("jointed") < registry.rank("dda")
 
 
+@pytest.mark.parametrize("name", registry.BUILT_IN)
+def test_what_a_solver_takes_apart_only_are_features_of_scenes(name: str) -> None:
+    names = {feature.name for feature in features.FEATURES}
+    for feature, others in get_solver(name).apart:
+        assert feature not in others
+        assert {feature, *others} <= names
+
+
 TABLES = {features.DAMPING: {"damping"}, features.ADAPTIVE: {"damping"}, features.COLUMN: {"column", "input"}}
 
 

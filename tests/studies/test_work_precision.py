@@ -99,17 +99,12 @@ def test_front_and_cheapest(results):
     assert all(p.seconds >= best.seconds for p in found if max(p.errors.values()) <= 0.1)
 
 
-def test_rows_and_any_pair_of_columns(few, tmp_path):
+def test_rows_are_a_table_of_every_run(few, tmp_path):
     where = ["--results", str(few.directory)]
     assert CliRunner().invoke(app, ["rows", "work-precision", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
     lines = table(tmp_path / "a.csv")
     assert len(lines) == len(PAIRS) == 4 * LEVELS
     assert {"seconds.setup", "work.solves", "continuum:displacement.l2", "estimate"} <= set(lines[0])
-    pair = ["--x", "work.solves", "--y", "bar:pressure.max", "--out", str(tmp_path / "a.svg")]
-    assert CliRunner().invoke(app, ["plot", "work-precision", *pair, *where]).exit_code == 0
-    assert (tmp_path / "a.svg").stat().st_size > 1000
-    wrong = CliRunner().invoke(app, ["plot", "work-precision", "--x", "nothing", *where])
-    assert isinstance(wrong.exception, InputError) and "must be a column" in str(wrong.exception)
     assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
 
 

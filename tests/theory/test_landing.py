@@ -14,6 +14,7 @@ from validation.engine.measure import execute
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.theory import landing, spectra
+from validation.theory.stepping import Stepping
 
 UNLOADED = (
     load_scene("impact")
@@ -110,7 +111,7 @@ def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> Non
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
 def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
-    stepping = landing.Stepping.of(on_springs(ratio, **scheme))
+    stepping = Stepping.of(on_springs(ratio, **scheme))
     for omega in (0.1, 0.7, 3.0):
         step = omega / landing.contact_frequency(on_springs(ratio))
         for phase in (0.15, 0.5, 0.8):
@@ -121,7 +122,7 @@ def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) 
 def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
     """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
     for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
-        scheme = landing.Stepping(alpha, delta, lambda _: 1.0)
+        scheme = Stepping(1.0, alpha, delta, 1.0)
         for omega in (0.3, 2.0, 7.0):
             step = omega / math.sqrt(1e-8)
             phases = np.array([0.1, 0.45, 0.9])
@@ -134,7 +135,7 @@ def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
     """The ends of the phase count half: 0.50 of stiff springs under constant acceleration, 1.67 under average."""
     for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
         for omega in (0.3, 10.0, 1000.0):
-            landed = landing.stepped_landing(landing.Stepping(alpha, delta, lambda _: 1.0), 1e-8, omega * 1e4, 1.0)
+            landed = landing.stepped_landing(Stepping(1.0, alpha, delta, 1.0), 1e-8, omega * 1e4, 1.0)
             mean, _, _, square = impact_statistics(alpha, delta, 1.0, omega)
             assert (landed.mean, landed.energy) == pytest.approx((mean, square), rel=6e-3)
 
@@ -142,7 +143,7 @@ def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
 @pytest.mark.parametrize("gg", [0.95, 0.99])
 def test_a_rigid_block_under_a_discount_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
     for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
-        scheme = landing.Stepping(alpha, delta, lambda _: gg)
+        scheme = Stepping(1.0, alpha, delta, gg)
         for omega in (0.3, 2.0, 7.0):
             phases = np.array([0.1, 0.45, 0.9, 0.99])
             found = landing.restitutions(scheme, 1e-8, omega / math.sqrt(1e-8), 1.0, phases)
@@ -163,7 +164,7 @@ def test_a_contact_that_a_discount_holds_for_ever_takes_few_windows(monkeypatch:
         return settled
 
     monkeypatch.setattr(landing._Settling, "stays", counted)
-    landed = landing.stepped_landing(landing.Stepping(0.5, 1.0, lambda _: gg), ratio, step, 1.0)
+    landed = landing.stepped_landing(Stepping(1.0, 0.5, 1.0, gg), ratio, step, 1.0)
     assert landed.high == 0 and len(windows) < 500  # 9,710 without looking at how the gap settles
     assert windows[-1].all()
 
@@ -171,7 +172,7 @@ def test_a_contact_that_a_discount_holds_for_ever_takes_few_windows(monkeypatch:
 def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -> None:
     """Random states of a closed block: those said to stay are stepped on, and their free gap keeps its sign."""
     ratio, gg, tau = 50.0, 0.9, 2e-3
-    _, closed, free_gap = landing._step_matrices(landing.Stepping(0.5, 1.0, lambda _: gg), gg, tau, ratio)
+    _, closed, free_gap = landing._step_matrices(Stepping(1.0, 0.5, 1.0, gg), gg, tau, ratio)
     settling = landing._Settling.of(closed, free_gap)
     assert settling is not None
     random = np.random.default_rng(3)
@@ -189,7 +190,7 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
         ends |= moving @ free_gap > 1e-12
     assert 20 < stays.sum() < len(states) - 20 and ends.any()
     assert not (ends & stays).any()
-    undamped = landing._step_matrices(landing.Stepping(0.25, 0.5, lambda _: 1.0), 1.0, tau, ratio)[1]
+    undamped = landing._step_matrices(Stepping(1.0, 0.25, 0.5, 1.0), 1.0, tau, ratio)[1]
     assert landing._Settling.of(undamped, free_gap) is None
 
 
@@ -199,7 +200,7 @@ def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does
     ratio: float, scheme: dict[str, Any]
 ) -> None:
     error = 0.05
-    stepping = landing.Stepping.of(on_springs(ratio, **scheme))
+    stepping = Stepping.of(on_springs(ratio, **scheme))
     found = landing.allowed_steps(stepping, 2 * ratio, TRANSIT, error)
     assert found.longest is not None and found.shortest is None
     own = landing.own_landing(2 * ratio).restitution
@@ -219,7 +220,7 @@ def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does
 
 def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
     """Gg = 0.9999: too many steps take too much, too long ones as well; gg = 0.99 has none that keeps 2 %."""
-    stepping = landing.Stepping(0.5, 1.0, lambda _: 0.9999)
+    stepping = Stepping(1.0, 0.5, 1.0, 0.9999)
     found = landing.allowed_steps(stepping, 2.0, TRANSIT, 0.05)
     assert found.shortest is not None and found.longest is not None and found.shortest < found.longest
 
@@ -228,15 +229,15 @@ def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
 
     assert off(0.9 * found.shortest) > 0.05 > off(1.1 * found.shortest)
     assert off(0.9 * found.longest) < 0.05 < off(1.1 * found.longest)
-    none = landing.allowed_steps(landing.Stepping(0.5, 1.0, lambda _: 0.99), 2.0, TRANSIT, 0.02)
+    none = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, 0.99), 2.0, TRANSIT, 0.02)
     assert none.longest is None and none.best > 0.15
-    rate = landing.allowed_steps(landing.Stepping(0.5, 1.0, lambda step: math.exp(-1.0 * step)), 2.0, TRANSIT, 0.05)
+    rate = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, rate=1.0), 2.0, TRANSIT, 0.05)
     assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
 
 
 def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
     for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
-        stepping = landing.Stepping(alpha, delta, lambda _: 1.0)
+        stepping = Stepping(1.0, alpha, delta, 1.0)
         coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-4, 2e-6))
         assert coarse is not None and fine is not None
         assert math.log(coarse / fine, 100) == pytest.approx(1 / order, rel=0.1)
@@ -257,7 +258,7 @@ def test_opening_gains_only_below_delta_of_one_or_alpha_of_half_of_it() -> None:
     """The rigid landing on stiff springs: e <= 1 with delta >= 1 and 2 alpha >= delta, above it otherwise."""
 
     def largest(alpha: float, delta: float) -> float:
-        scheme = landing.Stepping(alpha, delta, lambda _: 1.0)
+        scheme = Stepping(1.0, alpha, delta, 1.0)
         matrices = landing._step_matrices(scheme, 1.0, 1e-3, math.inf)
         assert np.isfinite(matrices[1]).all()
         return max(rigid(alpha, delta, phase) for phase in np.linspace(0.001, 0.999, 500))

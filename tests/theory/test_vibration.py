@@ -6,7 +6,7 @@ import pytest
 from validation import load_scene
 from validation.theory import vibration
 from validation.theory.statics import static_displacement
-from validation.theory.waves import Stepping
+from validation.theory.stepping import Stepping
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002})
 W = 2 * np.pi * np.array([20.0, 52.0, 80.0, 150.0])

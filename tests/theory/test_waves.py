@@ -5,6 +5,7 @@ import pytest
 
 from dda.scheme import spectral
 from validation.theory import waves
+from validation.theory.stepping import Stepping
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 SQUARED = [
@@ -36,13 +37,13 @@ COLUMN = waves.Column(height=0.5, density=2000.0, modulus=1.8e9)
 SPEED = (1.8e9 / 2000.0) ** 0.5
 
 
-def wave(blocks: float, courant: float, scheme: tuple[float, float], gg: float = 1.0) -> tuple[waves.Stepping, float]:
+def wave(blocks: float, courant: float, scheme: tuple[float, float], gg: float = 1.0) -> tuple[Stepping, float]:
     """Return the stepping and w of a wave of some blocks of `COLUMN` a wavelength."""
-    return waves.Stepping(courant * 0.5 / SPEED, *scheme, gg), 2 * np.pi * SPEED / (blocks * 0.5)
+    return Stepping(courant * 0.5 / SPEED, *scheme, gg), 2 * np.pi * SPEED / (blocks * 0.5)
 
 
 def test_squared_frequencies_are_those_of_the_independent_computation() -> None:
-    found = [waves.Stepping(1e-3, *scheme, gg).squared_frequency(200.0) for scheme, gg, _ in SQUARED]
+    found = [Stepping(1e-3, *scheme, gg).squared_frequency(200.0) for scheme, gg, _ in SQUARED]
     assert np.allclose(found, [value for _, _, value in SQUARED], rtol=1e-13)
 
 
@@ -50,7 +51,7 @@ def test_squared_frequencies_are_those_of_the_independent_computation() -> None:
 @pytest.mark.parametrize("gg", [1.0, 0.9, 0.0])
 def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float, float], gg: float) -> None:
     alpha, delta, dt = *scheme, 3e-3
-    stepping, w = waves.Stepping(dt, alpha, delta, gg), np.array([0.3, 20.0, 700.0])
+    stepping, w = Stepping(dt, alpha, delta, gg), np.array([0.3, 20.0, 700.0])
     A, V, z = -stepping.squared_frequency(w), stepping.velocity_factor(w), np.exp(1j * w * dt)
     assert np.allclose((z - gg) * V, dt * ((1 - delta) + delta * z) * A, rtol=1e-10)
     assert np.allclose(z - 1, gg * dt * V + dt**2 * ((0.5 - alpha) + alpha * z) * A, rtol=1e-10)
@@ -61,15 +62,15 @@ def test_damping_of_constant_acceleration_is_the_sine_of_a_quarter_step() -> Non
     assert steady_ratio(3.1, CONSTANT) == pytest.approx(np.sin(3.1 / 4), rel=1e-12)
     assert abs(steady_ratio(4.0, CONSTANT)) == pytest.approx(np.sin((2 * np.pi - 4.0) / 4), rel=1e-12)
     w = 2 * np.pi * np.array([5.0, 10.0, 20.0])
-    W = np.sqrt(waves.Stepping(0.01).squared_frequency(w))
+    W = np.sqrt(Stepping(0.01).squared_frequency(w))
     assert np.allclose(-W.imag / np.abs(W), np.sin(w * 0.01 / 4), rtol=1e-12)
     assert np.allclose(100 * np.sin(w * 0.01 / 4), [7.846, 15.643, 30.902], atol=5e-4)
 
 
 def test_hidden_damping_is_rayleighs_to_leading_order() -> None:
-    a0, a1 = waves.Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).rayleigh()
+    a0, a1 = Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).rayleigh()
     w = np.array([20.0, 50.0, 100.0])
-    W2 = waves.Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).squared_frequency(w)
+    W2 = Stepping(1e-6, 0.4, 0.8, 1 - 3e-5).squared_frequency(w)
     assert np.allclose(-W2.imag, w * (a0 + a1 * w**2), rtol=1e-3)
 
 
@@ -101,7 +102,7 @@ def test_waves_with_kinetic_damping() -> None:
 @pytest.mark.parametrize("glue", [None, 1e9, 1e13])
 def test_wavenumber_solves_the_recurrence(glue: float | None) -> None:
     column = waves.Column(0.5, 2000.0, 1.8e9, glue)
-    stepping, w = waves.Stepping(2e-4, 0.4, 0.9, 0.97), np.array([30.0, 900.0, 5000.0, 12000.0])
+    stepping, w = Stepping(2e-4, 0.4, 0.9, 0.97), np.array([30.0, 900.0, 5000.0, 12000.0])
     w2 = stepping.squared_frequency(w)
     (A, B), k = column.ends(w2), column.wavenumber(w2)
     target = -A / B if glue is None else (B**2 - A**2 - 2 * A * glue) / (2 * B * glue)
@@ -132,7 +133,7 @@ def test_joint_in_a_continuum() -> None:
 
 def steady_ratio(w_dt: float, scheme: tuple[float, float], gg: float = 1.0) -> float:
     """Return -Im W / |W| at dt = 1 s."""
-    W = np.sqrt(waves.Stepping(1.0, *scheme, gg).squared_frequency(w_dt))
+    W = np.sqrt(Stepping(1.0, *scheme, gg).squared_frequency(w_dt))
     return float(-W.imag / abs(W))
 
 

@@ -18,7 +18,6 @@ import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.alternatives import alternative
-from validation.advice.friction import distance_share
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -36,6 +35,7 @@ from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
+from validation.theory.friction import distance_share
 
 LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}

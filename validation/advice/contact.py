@@ -14,7 +14,8 @@ from typing import Any
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.events import rectangle
-from validation.theory import landing, spectra, statics
+from validation.theory import landing, spectra
+from validation.theory.stepping import Stepping
 
 RAISES = 8  # of p, at most, until the exact block stays above the requested penetration
 LEAST_RAISE = 1.2  # factor on p
@@ -33,24 +34,19 @@ class Needed:
     restitution: landing.SteppedLanding | None  # at that p and the longest of its steps
 
 
-def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
-    """Return w_c, pi over the duration of an unloaded first contact, of a scene or of other springs [rad/s]."""
-    return landing.contact_frequency(scene, stiffness)
-
-
 def omega(scene: Scene) -> float:
     """Return w_c dt of a scene [-]."""
-    return contact_frequency(scene) * scene.time.step
+    return landing.contact_frequency(scene) * scene.time.step
 
 
-def stepping(scene: Scene) -> landing.Stepping | None:
+def stepping(scene: Scene) -> Stepping | None:
     """Return the scheme of a landing; None where it is not known.
 
     Energy-conserving contact is not linear between switches, a scheme with alpha = 0 has no contact force at the end of
     its step, and only a rectangle lands as one strain.
     """
-    scheme = landing.Stepping.of(scene)
-    is_known = scheme.exists and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
+    scheme = Stepping.of(scene)
+    is_known = scheme.has_contact_forces and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
     return scheme if is_known else None
 
 
@@ -65,58 +61,6 @@ def restitution(
     if step is None:
         step = scene.time.step
     return landing.stepped_landing(scheme, ratio, step, spectra.transit(scene))
-
-
-def hidden_from(scene: Scene) -> float | None:
-    """Return the time step beyond which a block under a pressure that is switched on does not leave its springs [s].
-
-    The free block's base rises in the first step, from A0 = 0, if
-
-        dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
-
-    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest.
-    """
-    t = scene.time
-    load = scene.load
-    height = statics.height(scene)
-    weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
-    from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
-    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
-        return None
-    free = spectra.transit(scene) / math.sqrt(6 * t.alpha)
-    return free * math.sqrt((1 - weight / 2) / (1 + weight))
-
-
-def quarter_mass_force(scene: Scene, speed: float) -> float:
-    """Return the force V sqrt(p m / 2) of a quarter of the mass that lands at a speed on the springs [N]."""
-    return abs(speed) * math.sqrt(scene.contact.stiffness * scene.block.mass / 2)
-
-
-def impact_force(scene: Scene, speed: float) -> float:
-    """Return the greatest force of an unloaded landing of the block of one strain at a speed, exact in time [N].
-
-    That of a quarter of the mass times 1.47 (p >> E, in the second contact of the landing) to 2 (p << E).
-    """
-    ratio = landing.stiffness_ratio(scene)
-    if math.isinf(ratio):
-        return math.inf
-    return landing.own_landing(ratio).depth * quarter_mass_force(scene, speed)
-
-
-def wave_force(scene: Scene, speed: float) -> float:
-    """Return the force rho c V a with which a bar lands on a rigid wall [N]."""
-    modulus, _ = statics.moduli(scene)
-    return abs(speed) * math.sqrt(modulus * scene.block.density) * scene.block.base_length
-
-
-def cannot_gain(scene: Scene) -> bool:
-    """Return whether opening and closing can put no energy into the block.
-
-    With delta >= 1 and 2 alpha >= delta the energy E + (alpha - delta/2) dt^2 A'MA/2 cannot rise, since the springs'
-    energy is convex; the two rules beside Newmark's have no such condition.
-    """
-    t = scene.time
-    return scene.contact.rule != "newmark" or (t.delta >= 1 and 2 * t.alpha >= t.delta)
 
 
 def needed(

@@ -29,6 +29,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
+from validation.theory import landing
 
 LARGE_STEP = "step too large for contact"
 GAINED = "energy gained by switching"
@@ -114,7 +115,7 @@ def _gained(run: ContactRun) -> Iterator[Alarm]:
 
 def _may_gain(run: ContactRun) -> Iterator[Alarm]:
     t = run.scene.time
-    if run.returns and run.omega > 1 and not contact.cannot_gain(run.scene):
+    if run.returns and run.omega > 1 and not landing.cannot_gain(run.scene):
         sentence = (
             f"alpha = {t.alpha:g}, delta = {t.delta:g} with w_c dt = {run.omega:.3g}: opening and closing can add "
             'energy; they cannot with delta >= 1 and 2 alpha >= delta, nor with contact.rule = "implicit" or '
@@ -124,7 +125,7 @@ def _may_gain(run: ContactRun) -> Iterator[Alarm]:
 
 
 def _hidden(run: ContactRun) -> Iterator[Alarm]:
-    limit = contact.hidden_from(run.scene)
+    limit = landing.hidden_from(run.scene)
     if limit is not None and run.scene.time.step > limit:
         sentence = (
             f"dt = {run.scene.time.step:g} s is beyond {limit:.4g} s, h / (c sqrt(6 alpha)): the block of one strain "
@@ -135,10 +136,10 @@ def _hidden(run: ContactRun) -> Iterator[Alarm]:
 
 def _penalty(run: ContactRun) -> Iterator[Alarm]:
     peak, exact = (_number(row, "contact.peak_force") for row in (run.row, run.truth))
-    quarter = contact.quarter_mass_force(run.scene, 1.0)
-    stiff = quarter > contact.wave_force(run.scene, 1.0)
+    quarter = landing.quarter_mass_force(run.scene, 1.0)
+    stiff = quarter > landing.wave_force(run.scene, 1.0)
     if peak is not None and exact and stiff and peak > BEYOND * exact:
-        factor = contact.impact_force(run.scene, 1.0) / quarter
+        factor = landing.impact_force(run.scene, 1.0) / quarter
         landed = f", {factor:.3g} V sqrt(p m / 2) for an unloaded landing at V" if math.isfinite(factor) else ""
         sentence = (
             f"the peak contact force, {peak:.3g} N, is {peak / exact:.2g} times that of the exact bar: it is that of "
@@ -162,7 +163,7 @@ def _drag(run: ContactRun) -> Iterator[Alarm]:
 def _pulling(run: ContactRun) -> Iterator[Alarm]:
     scene = run.scene
     tension = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
-    load = abs(opened.resultant_load(scene)) or contact.impact_force(scene, scene.block.velocity)
+    load = abs(opened.resultant_load(scene)) or landing.impact_force(scene, scene.block.velocity)
     if tension > NOTABLE * load:
         share = f", {100 * tension / load:.3g} % of the load" if load else ""
         yield run.alarm(PULLING, f"the band lets the contact pull with up to {tension:.3g} N{share}", pull=tension)

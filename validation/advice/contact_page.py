@@ -17,6 +17,8 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
+from validation.theory import landing
+from validation.theory.friction import distance_share
 
 DEFAULT_ERROR = 0.05  # of the restitution, where none is requested [-]
 DEFAULT_PENETRATION = 1e-4  # where none is requested [m]
@@ -124,12 +126,12 @@ def answer(
     return {
         "scene": scene.name,
         "omega": contact.omega(scene),
-        "contact_frequency": contact.contact_frequency(scene),
+        "contact_frequency": landing.contact_frequency(scene),
         "restitution_now": None if stepped_landing is None else asdict(stepped_landing),
         "landing_speed": speed,
         "asked": limits | {"stated": [name for name, value in stated.items() if value is not None]},
         "needed": None if need is None else contact.as_dict(need),
-        "hidden_from": contact.hidden_from(scene),
+        "hidden_from": landing.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
         "sliding": friction.as_dict(slides),
         "alarms": [alarm.record() for alarm in alarms],
@@ -269,7 +271,7 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     if data["landing_speed"] > 0:
         yield from _step_lines(scene, data)
     if scene.time.gg_rate is None and scene.time.discount < 1:
-        share = 100 * friction.distance_share(scene.time.discount, scene.time.step, 1.0)
+        share = 100 * distance_share(scene.time.discount, scene.time.step, 1.0)
         yield (
             f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
             f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
@@ -286,11 +288,11 @@ def _step_lines(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     need = data["needed"]
     for words, steps in (("time step   at that p", need["steps"]), ("            at present", need["steps_now"])):
         yield f"  {words}: {_allowed(steps, scene.time.discount)}"
-    for words, landing in (("with these", need["restitution"]), ("at present", data["restitution_now"])):
-        if landing is not None:
+    for words, stepped in (("with these", need["restitution"]), ("at present", data["restitution_now"])):
+        if stepped is not None:
             yield (
-                f"  {words}  an unloaded landing leaves the centre of mass {landing['mean']:.3g} of its speed, "
-                f"{landing['low']:.3g} to {landing['high']:.3g} by phase; the block's own is {landing['own']:.3g}"
+                f"  {words}  an unloaded landing leaves the centre of mass {stepped['mean']:.3g} of its speed, "
+                f"{stepped['low']:.3g} to {stepped['high']:.3g} by phase; the block's own is {stepped['own']:.3g}"
             )
 
 

@@ -89,19 +89,6 @@ def sliding(scene: Scene) -> Sliding | None:
     )
 
 
-def distance_share(gg: float, step: float, time: float) -> float:
-    """Return the distance of a body that falls or slides from rest with a discount over that without [-].
-
-    The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
-    """
-    n = max(round(time / step), 1)
-    if gg >= 1:
-        return 1.0
-    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1.
-    velocity = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
-    return float((n / 2 + gg * (n - velocity) / (1 - gg)) / (n * n / 2))
-
-
 def as_dict(slides: Sliding | None) -> dict[str, Any] | None:
     """Return plain data for JSON."""
     return None if slides is None else asdict(slides)

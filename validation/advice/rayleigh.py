@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from validation.errors import InputError
 from validation.runs.history import Array
-from validation.theory.waves import Stepping
+from validation.theory.stepping import Stepping
 
 STARTS = 30  # of the search for a scheme, where the leading order does not lead to one
 ROUNDING = 1e-9  # of a discount that is 0 or 1, or of a ratio
@@ -93,7 +93,7 @@ def scheme_of(values: Mapping[str, float]) -> Stepping:
             )
     if values.get("gg", 1.0) > 1:
         raise InputError("must be from 0 to 1", field="gg", value=f"{values['gg']:g}")
-    return Stepping(**values)
+    return Stepping(values["step"], values.get("alpha", 0.5), values.get("delta", 1.0), values.get("gg", 1.0))
 
 
 def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Point]:

@@ -26,7 +26,8 @@ from validation.scenes import features
 from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
 from validation.theory import statics
-from validation.theory.waves import Column, Stepping
+from validation.theory.stepping import Stepping
+from validation.theory.waves import Column
 
 MOST_BLOCKS = 10_000_000
 ROUNDING = 1e-12  # of a loss, a delay or a damping ratio that is none
@@ -179,7 +180,7 @@ def advise_wave(
     if cut is not None:
         largest = _largest_step(scene, cut, loss, phase_error)
         if largest.step is not None:
-            advised = cut.passage(_stepping(scene, largest.step))
+            advised = cut.passage(Stepping.of(scene).at(largest.step))
             blocks = tuple(layer.blocks for layer in cut.layers)
     return WaveAdvice(
         scene.name,
@@ -234,13 +235,6 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
     return (Layer(height, b.density, modulus, rows, 2 * b.glue_ratio * b.young * columns / width),)
 
 
-def _stepping(scene: Scene, step: float) -> Stepping:
-    """Return the scene's scheme at another step; a rate of the discount stays."""
-    rate = scene.time.gg_rate
-    gg = scene.time.discount if rate is None else math.exp(-rate * step)
-    return replace(Stepping.of(scene), step=step, gg=gg)
-
-
 def _cut(path: _WavePath, allowed: float) -> tuple[_WavePath | None, str]:
     """Return the path with the fewest blocks that delay a wave in exact time no more than allowed, and what limits."""
     layers = []
@@ -291,7 +285,7 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
     is_stable = _stability(scene, path)
 
     def passed(step: float) -> tuple[float, float]:
-        lost, delay = path.passed(_stepping(scene, step).squared_frequency([path.omega]))
+        lost, delay = path.passed(Stepping.of(scene).at(step).squared_frequency([path.omega]))
         return float(lost[0]), float(abs(delay[0]))
 
     def arrives(step: float) -> bool:
@@ -332,7 +326,7 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     highest = highest_frequency(_advised_scene(scene, path))
 
     def is_stable(step: float) -> bool:
-        stepping = _stepping(scene, step)
+        stepping = Stepping.of(scene).at(step)
         return step * highest <= critical_omega(stepping.alpha, stepping.delta, stepping.gg)
 
     return is_stable

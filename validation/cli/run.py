@@ -58,10 +58,10 @@ def default_jobs() -> int:
 @app.command("list")
 def list_command(
     what: Annotated[
-        str | None, typer.Argument(help="metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
+        str | None, typer.Argument(help="keys, metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
     ] = None,
 ) -> None:
-    """List studies, built-in scenes, solvers and metrics, or one of the four in full.
+    """List studies, built-in scenes, solvers and metrics; or one of these, or all keys of a scene, in full.
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
@@ -76,7 +76,10 @@ def list_command(
         return
     for title, lines in short().items():
         echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
-    echo("dda-validate list NAME shows one of the four in full,\ndda-validate show SCENE a scene and its numbers")
+    echo(
+        "dda-validate list NAME shows one of the four in full, list keys what a scene may state,\n"
+        "dda-validate show SCENE a scene and its numbers"
+    )
 
 
 @app.command()

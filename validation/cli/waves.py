@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from validation.advice.response import Response
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
-    from validation.theory.waves import Stepping
+    from validation.theory.stepping import Stepping
 
 FigureOption = Annotated[
     Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
@@ -200,13 +200,14 @@ def rayleigh(
 
 def _scheme(scene: str | None, assignments: list[str] | None, options: dict[str, float | None]) -> Stepping:
     """Return the scheme of a scene, or of the options, which go before it."""
-    from dataclasses import asdict
-
     from validation.advice.rayleigh import scheme_of
-    from validation.theory.waves import Stepping
+    from validation.theory.stepping import Stepping
 
-    scene_scheme = {} if scene is None else asdict(Stepping.of(one_case(scene, assignments)))
-    return scheme_of(scene_scheme | {name: value for name, value in options.items() if value is not None})
+    values = {name: value for name, value in options.items() if value is not None}
+    if scene is not None:
+        stepping = Stepping.of(one_case(scene, assignments))
+        values = {name: getattr(stepping, name) for name in options} | values
+    return scheme_of(values)
 
 
 def _back(target: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:

@@ -1,4 +1,4 @@
-"""The commands ``rows``, ``plot`` and ``record``: any column of a study's rows, and the record of errors and work."""
+"""The commands ``rows`` and ``record``: a study's rows as a table, and the record of errors and work."""
 
 from __future__ import annotations
 
@@ -48,56 +48,6 @@ def rows(
     writer.writerows(lines)
     write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
     echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
-
-
-@app.command()
-def plot(
-    study: StudyArgument,
-    x: Annotated[str, typer.Option(help="Column of the table for the x axis.", metavar="COLUMN")] = "seconds.total",
-    y: Annotated[str, typer.Option(help="Column for the y axis.", metavar="COLUMN")] = "continuum:displacement.l2",
-    out: Annotated[Path, typer.Option(help="SVG file to write.", metavar="FILE.svg")] = Path("plot.svg"),
-    results: ResultsOption = RESULTS,
-) -> None:
-    """Draw one column of a study's table against another, both logarithmic, a line for each solver.
-
-    Example: [bold]dda-validate run figures-3-4 && dda-validate plot figures-3-4 --y bar:pressure.l2[/bold]
-    """
-    from validation.errors import InputError
-    from validation.report.figures.cost import columns_figure
-    from validation.report.figures.histories import save
-
-    if out.suffix.lower() != ".svg":
-        raise InputError("must end in .svg", field="--out", value=repr(str(out)))
-    lines = _table(study, results)
-    series: dict[str, list[tuple[float, float]]] = {}
-    for line in lines:
-        pair = line.get(x), line.get(y)
-        if all(isinstance(value, int | float) and value > 0 for value in pair):
-            name = f"{line['scene'].partition('[')[0]} {line['solver']}"
-            series.setdefault(name, []).append((float(pair[0]), float(pair[1])))  # type: ignore[arg-type]
-    if not series:
-        names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
-        _refuse_unknown({"--x": x, "--y": y}, names, study)
-        raise InputError(f"--x, --y: must be columns with positive numbers in common rows, got {x} and {y}")
-    echo(f"wrote {save(columns_figure((x, y), series), out)}")
-
-
-def _refuse_unknown(axes: dict[str, str], columns: list[str], study: str) -> None:
-    """Refuse a column that the table does not have; the few that are most like it are named, not all hundred."""
-    import difflib
-
-    from validation.errors import InputError
-
-    for option, name in axes.items():
-        if name not in columns:
-            alike = difflib.get_close_matches(name, columns, n=3, cutoff=0.4) or columns[:3]
-            every = f"dda-validate rows {study} --csv rows.csv writes all {len(columns)}"
-            raise InputError(
-                f"must be a column of the table, such as {', '.join(alike)}",
-                field=option,
-                value=repr(name),
-                advice=every,
-            )
 
 
 @app.command()

@@ -74,6 +74,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     """
     features.refuse_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
+        features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):
         return _with_friction(scene, foreign)
     column = rectangle_of(scene)

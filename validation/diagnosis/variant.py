@@ -183,4 +183,5 @@ def own_variant(scene: Scene) -> Variant:
     t, (closing, opening) = scene.time, scene.contact.band
     opens = scene.contact.law == "unilateral"
     ratio = opening / closing if closing else 0.0
-    return Variant(t.alpha, t.delta, t.discount, t.start, opens=opens, band=closing, reopening=ratio)
+    ramp = scene.load.ramp
+    return Variant(t.alpha, t.delta, t.discount, t.start, opens=opens, band=closing, reopening=ratio, ramp=ramp)

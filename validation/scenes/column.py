@@ -7,7 +7,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from validation.scenes.tables import Count, NonNegative, Positive, Real, Section
+from validation.scenes.keys import Key, Section
+from validation.scenes.tables import Count, NonNegative, Positive, Real
 
 MOST_HEIGHTS = 9  # whose displacement and stress a history may hold
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
@@ -17,18 +18,18 @@ PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
 class LayerSection(Section):
     """A layer of equal blocks."""
 
-    thickness: Positive  # m
-    density: Positive  # kg/m3
-    young: Positive  # Pa
-    poisson: PoissonRatio = 0.0  # 1
-    blocks: Count = 1  # DDA blocks on each other
+    thickness: Annotated[Positive, Key("m", "of the layer")]
+    density: Annotated[Positive, Key("kg/m3", "mass of a volume")]
+    young: Annotated[Positive, Key("Pa", "Young's modulus")]
+    poisson: Annotated[PoissonRatio, Key("", "Poisson's ratio")] = 0.0
+    blocks: Annotated[Count, Key("", "DDA blocks on each other")] = 1
 
 
 class JointSection(Section):
     """A spring across the column, where two blocks meet, or between base and column."""
 
-    height: NonNegative  # m above the base
-    stiffness: Positive  # Pa/m
+    height: Annotated[NonNegative, Key("m", "above the base")]
+    stiffness: Annotated[Positive, Key("Pa/m", "of the spring")]
 
 
 class ColumnSection(Section):
@@ -37,17 +38,19 @@ class ColumnSection(Section):
     All points of a level move alike and nothing strains sideways; everything is per unit of area.
     """
 
-    motion: Literal["pressure", "shear"]  # along the column, or across it
+    motion: Annotated[Literal["pressure", "shear"], Key("", "along the column, or across it")]
     layer: Annotated[tuple[LayerSection, ...], Field(min_length=1)]
     joint: tuple[JointSection, ...] = ()
-    glue: Positive | None = None  # Pa/m between blocks, and between base and column; absent: their faces move alike
-    base: Literal["rigid", "springs", "transmitting"] = "rigid"
-    base_stiffness: Positive | None = None  # Pa/m, of springs
-    base_density: Positive | None = None  # kg/m3, of the half-space below a transmitting base
-    base_speed: Positive | None = None  # m/s of its waves; or base_young
-    base_young: Positive | None = None  # Pa
-    base_poisson: PoissonRatio = 0.0  # 1, with base_young
-    heights: Annotated[tuple[NonNegative, ...], Field(max_length=MOST_HEIGHTS)] = ()  # m, where a history looks
+    glue: Annotated[Positive | None, Key("Pa/m", "between blocks and to the base; absent: their faces move alike")] = (
+        None
+    )
+    base: Annotated[Literal["rigid", "springs", "transmitting"], Key("", "what the column stands on")] = "rigid"
+    base_stiffness: Annotated[Positive | None, Key("Pa/m", "of base = springs")] = None
+    base_density: Annotated[Positive | None, Key("kg/m3", "of the half-space below a transmitting base")] = None
+    base_speed: Annotated[Positive | None, Key("m/s", "of its waves; or base_young")] = None
+    base_young: Annotated[Positive | None, Key("Pa", "Young's modulus of the half-space")] = None
+    base_poisson: Annotated[PoissonRatio, Key("", "with base_young")] = 0.0
+    heights: Annotated[tuple[NonNegative, ...], Field(max_length=MOST_HEIGHTS), Key("m", "where a history looks")] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -118,13 +121,17 @@ class InputSection(Section):
     is half of what an outcrop shows. On the top it is a pressure towards the base (a shear stress against the motion).
     """
 
-    at: Literal["base", "top"] = "base"
-    shape: Literal["ricker", "half-sine"] | None = None  # of the velocity, or of the pressure
-    velocity: Real | None = None  # m/s, greatest of a pulse at the base
-    pressure: Real | None = None  # Pa, greatest of a pulse on the top
-    frequency: Positive | None = None  # Hz, of a Ricker pulse's greatest content; its middle comes at 2 / frequency
-    duration: Positive | None = None  # s, of a half-sine
-    record: str | None = None  # CSV file: time,velocity or time,acceleration at the base, time,pressure on the top
+    at: Annotated[Literal["base", "top"], Key("", "where the column is driven")] = "base"
+    shape: Annotated[Literal["ricker", "half-sine"] | None, Key("", "of the velocity, or of the pressure")] = None
+    velocity: Annotated[Real | None, Key("m/s", "greatest of a pulse at the base")] = None
+    pressure: Annotated[Real | None, Key("Pa", "greatest of a pulse on the top")] = None
+    frequency: Annotated[
+        Positive | None, Key("Hz", "of a Ricker pulse's greatest content; its middle comes at 2 / frequency")
+    ] = None
+    duration: Annotated[Positive | None, Key("s", "of a half-sine")] = None
+    record: Annotated[
+        str | None, Key("", "CSV file: time,velocity or time,acceleration at the base, time,pressure on the top")
+    ] = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:

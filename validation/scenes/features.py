@@ -23,7 +23,10 @@ class Feature:
     of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
 
 
+Apart = tuple[tuple[str, frozenset[str]], ...]  # a feature to those that a solver does not take together with it
+
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
+RAMP = "ramped load"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
 COLUMN = "column"
@@ -33,6 +36,7 @@ FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
     Feature(WEIGHT, lambda scene: scene.load.gravity != 0),
+    Feature(RAMP, lambda scene: scene.load.ramp > 0),
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
@@ -51,6 +55,11 @@ FEATURES = (
 )
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
+# Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
+DAMPING_APART: Apart = (
+    (DAMPING, frozenset({BASE_MOTION, UNILATERAL, COLUMN})),
+    (ADAPTIVE, frozenset({BASE_MOTION, UNILATERAL, COLUMN, DAMPING})),
+)
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
 
 
@@ -69,16 +78,12 @@ def linear(scene: Scene) -> bool:
     return all(feature.linear for feature in _present(scene))
 
 
-def damping_apart(scene: Scene) -> str | None:
-    """Return None, or what viscous damping, or a discount that adapts, does not go together with.
-
-    Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
-    """
-    own = of(scene)
-    for damping, more in ((DAMPING, ()), (ADAPTIVE, (DAMPING,))):
-        others = [name for name in own if name in (BASE_MOTION, UNILATERAL, COLUMN, *more)]
-        if damping in own and others:
-            return f"it does not handle {', '.join(sorted(others))} together with {damping}"
+def clash(scene: Scene, apart: Apart) -> str | None:
+    """Return None, or which features of a scene do not go together by the table of a solver, in words."""
+    scene_features = set(of(scene))
+    for name, others in apart:
+        if name in scene_features and (incompatible := scene_features & others):
+            return f"it does not handle {', '.join(sorted(incompatible))} together with {name}"
     return None
 
 
@@ -122,6 +127,18 @@ def refuse_damping(scene: Scene, what: str) -> None:
     """
     if scene.damping.present:
         raise InputError(f"{what} takes scenes without damping tables only", source=scene.name, value="one with them")
+
+
+def refuse_ramp(scene: Scene, what: str) -> None:
+    """Refuse a scene with a ramp where the answer knows loads only that act at once.
+
+    Raises
+    ------
+    InputError
+        The load rises in a ramp.
+    """
+    if scene.load.ramp:
+        raise InputError(f"{what} takes loads that act at once only", source=scene.name, value="a ramp")
 
 
 def refuse_column(scene: Scene, what: str) -> None:

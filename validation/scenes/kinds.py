@@ -8,13 +8,13 @@ from pydantic import Field, model_validator
 
 from validation.errors import InputError
 from validation.scenes.column import ColumnSection, InputSection
+from validation.scenes.keys import Section
 from validation.scenes.tables import (
     BlockSection,
     ContactSection,
     DampingSection,
     FemSection,
     LoadSection,
-    Section,
 )
 
 Table = TypeVar("Table", bound=Section)

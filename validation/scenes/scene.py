@@ -20,8 +20,9 @@ from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
+from validation.scenes.keys import Section, check_needs, keys_of
 from validation.scenes.kinds import SceneTables
-from validation.scenes.tables import GateSection, RunSection, Section, TimeSection
+from validation.scenes.tables import GateSection, RunSection, TimeSection
 
 SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
@@ -53,6 +54,11 @@ class Scene(SceneTables):
         return self
 
     @model_validator(mode="after")
+    def _check_needs(self) -> Self:
+        check_needs(self.tables())
+        return self
+
+    @model_validator(mode="after")
     def _check_patch(self) -> Self:
         if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
             raise ValueError(
@@ -71,20 +77,6 @@ class Scene(SceneTables):
             raise ValueError(
                 f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _check_impact(self) -> Self:
-        if self.column is None and self.block.velocity and self.contact.law == "locked":
-            raise ValueError(f'block: velocity goes with contact.law = "unilateral" only, got {self.block.velocity:g}')
-        return self
-
-    @model_validator(mode="after")
-    def _check_geometry(self) -> Self:
-        if self.run.geometry == "updated" and (self.column is not None or self.contact.law == "locked"):
-            raise ValueError('run: geometry = "updated" goes with contact.law = "unilateral" only, got another scene')
-        if self.column is None and self.block.tilt and self.run.geometry == "small":
-            raise ValueError(f'block: tilt goes with run.geometry = "updated" only, got {self.block.tilt:g}')
         return self
 
     @model_validator(mode="after")
@@ -114,6 +106,11 @@ class Scene(SceneTables):
             except (OSError, ValueError):  # that it cannot be read is said where it is read
                 continue
         return self
+
+    def tables(self) -> dict[str, Section]:
+        """Return the tables that the scene has, by the names that its file gives them."""
+        values = {field.alias or name: getattr(self, name) for name, field in type(self).model_fields.items()}
+        return {name: table for name, table in values.items() if isinstance(table, Section)}
 
     def _swept(self) -> dict[str, list[Any]]:
         return {field: values for field, values in self.sweep.items() if field != "mode"}
@@ -196,14 +193,22 @@ def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> 
     table[key] = value
 
 
+def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str, type[Section]]:
+    """Return the tables that a scene may have, by their names; ``column.layer`` is an entry of a list in a table."""
+    tables: dict[str, type[Section]] = {}
+    for name, field in model.model_fields.items():
+        for table in (field.annotation, *get_args(field.annotation)):
+            if isinstance(table, type) and issubclass(table, Section):
+                place = f"{inside}{field.alias or name}"
+                tables[place] = table
+                tables |= tables_of_scenes(table, f"{place}.")
+    return tables
+
+
 def _sweepable() -> set[str]:
     """Return the dotted keys of the tables that a sweep may vary."""
-    keys = set()
-    for name, field in Scene.model_fields.items():
-        for table in (field.annotation, *get_args(field.annotation)):
-            if name != "run" and isinstance(table, type) and issubclass(table, Section):
-                keys |= {f"{field.alias or name}.{key}" for key in table.model_fields}
-    return keys
+    tables = tables_of_scenes().items()
+    return {f"{place}.{name}" for place, table in tables if place != "run" for name, *_ in keys_of(table)}
 
 
 _FILES = ("fem.mesh", "load.base_motion", "input.record")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
 
+from validation.scenes.keys import Key, Section
 from validation.scenes.outline import Point, area, check_polygon, convex_quadrilateral
 
 FINE_ELEMENTS = 16
@@ -71,15 +72,15 @@ Stiffness = Annotated[
     PlainSerializer(_stiffness_as_data, when_used="json"),
 ]
 NonNegative = Annotated[Real, Field(ge=0)]
-Count = Annotated[int, BeforeValidator(_count), Field(ge=1)]
+Index = Annotated[int, BeforeValidator(_count)]
+Count = Annotated[Index, Field(ge=1)]
 Flag = Annotated[bool, Field(strict=True)]
 Words = Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_distinct)]
 
 
-class Section(BaseModel):
-    """A table of a scene file: immutable, unknown keys refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
+OPENS = 'law = "unilateral"'
+STEPPED = 'rule = "newmark" or "implicit"'
+UPDATED = 'geometry = "updated"'
 
 
 class BlockSection(Section):
@@ -89,26 +90,32 @@ class BlockSection(Section):
     origin, or a counter-clockwise polygon (`vertices` with the indices of its `base` and `top` edges).
     """
 
-    side: Positive | None = None  # m
-    width: Positive | None = None  # m
-    height: Positive | None = None  # m
-    vertices: tuple[tuple[Real, Real], ...] | None = None  # m, counter-clockwise
-    base: Annotated[int, BeforeValidator(_count)] = 0  # edge i runs from vertex i to i + 1
-    top: Annotated[int, BeforeValidator(_count)] = 2
-    density: Positive  # kg/m3
-    young: Positive  # Pa
-    velocity: Real = 0.0  # m/s at t = 0, upwards; for unilateral contact only
-    tilt: Angle = 0.0  # deg at t = 0, counter-clockwise about the corner that stays down; for updated geometry only
-    poisson: Annotated[Real, Field(gt=-1, le=0.5)] = 0.0  # 1
-    hypothesis: Literal["plane stress", "plane strain"] = "plane stress"
-    subdivide: tuple[Count, Count] | None = None  # sub-blocks along the base and upwards
-    pattern: Literal["squares", "triangles"] = "squares"  # triangles: each square cut from lower left to upper right
-    glue_ratio: Positive = 1.0e6  # stiffness of each end spring of a joint over young, m
+    side: Annotated[Positive | None, Key("m", "side of a square", "a")] = None
+    width: Annotated[Positive | None, Key("m", "width of a rectangle", "w")] = None
+    height: Annotated[Positive | None, Key("m", "height of a rectangle", "h")] = None
+    vertices: Annotated[tuple[tuple[Real, Real], ...] | None, Key("m", "corners, counter-clockwise")] = None
+    base: Annotated[Index, Key("", "edge on the base; edge i runs from vertex i to i + 1", needs=("vertices",))] = 0
+    top: Annotated[Index, Key("", "edge that is loaded", needs=("vertices",))] = 2
+    density: Annotated[Positive, Key("kg/m3", "mass of a volume", "ρ")]
+    young: Annotated[Positive, Key("Pa", "Young's modulus", "E")]
+    velocity: Annotated[Real, Key("m/s", "at t = 0, upwards", "v", ("contact." + OPENS,))] = 0.0
+    tilt: Annotated[
+        Angle, Key("deg", "at t = 0, counter-clockwise about the lower corner", None, ("run." + UPDATED,))
+    ] = 0.0
+    poisson: Annotated[Annotated[Real, Field(gt=-1, le=0.5)], Key("", "Poisson's ratio", "μ")] = 0.0
+    hypothesis: Annotated[Literal["plane stress", "plane strain"], Key("", "of the plane problem", "")] = "plane stress"
+    subdivide: Annotated[tuple[Count, Count] | None, Key("sub-blocks", "along the base and upwards", "")] = None
+    pattern: Annotated[
+        Literal["squares", "triangles"],
+        Key("", "of the sub-blocks; triangles: each square cut from lower left to upper right", "", ("subdivide",)),
+    ] = "squares"
+    glue_ratio: Annotated[Positive, Key("m", "end spring of a joint over young", "glue", ("subdivide",))] = 1.0e6
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_one_outline()
-        self._check_subdivision()
+        if self.subdivide is not None and not convex_quadrilateral(self.outline):
+            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
         if self.hypothesis == "plane strain" and self.poisson >= 0.5:
             raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
         if self.vertices is not None:
@@ -128,15 +135,6 @@ class BlockSection(Section):
             raise ValueError("one of side, width and height, or vertices must be given, got none")
         if given["width and height"] and (self.width is None or self.height is None):
             raise ValueError("width and height must be given together, got one")
-        if self.vertices is None and self.model_fields_set & {"base", "top"}:
-            raise ValueError("base and top go with vertices only, got them with a rectangle")
-
-    def _check_subdivision(self) -> None:
-        alone = self.model_fields_set & {"pattern", "glue_ratio"}
-        if self.subdivide is None and alone:
-            raise ValueError(f"{min(alone)} goes with subdivide only, got it alone")
-        if self.subdivide is not None and not convex_quadrilateral(self.outline):
-            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
 
     @property
     def outline(self) -> tuple[Point, ...]:
@@ -166,42 +164,44 @@ class BlockSection(Section):
 class ContactSection(Section):
     """Corner springs at the two ends of the base edge: locked, or unilateral, which carry no tension."""
 
-    law: Literal["locked", "unilateral"] = "locked"
-    stiffness: Stiffness  # p, N/m per corner spring; inf is a rigid stop, for unilateral contact only
-    shear_stiffness: NonNegative | None = None  # N/m; p if absent; 0 is frictionless, for unilateral contact only
-    friction: Annotated[Angle, Field(ge=0)] | None = None  # angle phi, deg; a closed corner is glued in shear without
-    cohesion: NonNegative = 0.0  # Pa over the whole base, of which each corner carries half; goes with friction
-    rule: Literal["newmark", "implicit", "energy-conserving"] = "newmark"  # how a step takes the contact force
-    rules: Literal["consistent", "lagged"] = "consistent"  # lagged: friction of the iteration before, as programs do
-    gap: NonNegative = 0.0  # m, between block and springs at t = 0
-    band: tuple[NonNegative, NonNegative] = (0.0, 0.0)  # m: closes below -band[0], opens above band[1]
-    solve_limit: Count = 6  # solves of the open-close iteration before every contact state is tried
-    cut: Annotated[Real, Field(gt=0, lt=1)] = 0.3  # length of a step that is repeated, over the failed one
+    law: Annotated[Literal["locked", "unilateral"], Key("", "whether the springs carry tension")] = "locked"
+    stiffness: Annotated[Stiffness, Key("N/m", "of each corner spring; inf is a rigid stop", "p")]
+    shear_stiffness: Annotated[NonNegative | None, Key("N/m", "that of stiffness if absent; 0 is frictionless")] = None
+    friction: Annotated[
+        Annotated[Angle, Field(ge=0)] | None,
+        Key("deg", "angle of friction; a closed corner is bonded in shear without", "φ", (OPENS, STEPPED)),
+    ] = None
+    cohesion: Annotated[NonNegative, Key("Pa", "over the whole base, half at each corner", None, ("friction",))] = 0.0
+    rule: Annotated[
+        Literal["newmark", "implicit", "energy-conserving"],
+        Key("", "how a step takes the contact force", "", (OPENS,)),
+    ] = "newmark"
+    rules: Annotated[
+        Literal["consistent", "lagged"],
+        Key("", "lagged: friction of the iteration before", "", ("friction", 'rule = "newmark"')),
+    ] = "consistent"
+    gap: Annotated[NonNegative, Key("m", "between block and springs at t = 0", None, (OPENS,))] = 0.0
+    band: Annotated[
+        tuple[NonNegative, NonNegative],
+        Key("m", "closes below -band[0], opens above band[1]", None, (OPENS, STEPPED)),
+    ] = (0.0, 0.0)
+    solve_limit: Annotated[
+        Count, Key("", "solves of the open-close iteration before every contact state is tried", None, (OPENS,))
+    ] = 6
+    cut: Annotated[
+        Annotated[Real, Field(gt=0, lt=1)],
+        Key("", "length of a step that is repeated, over the failed one", None, (OPENS,)),
+    ] = 0.3
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        alone = sorted(self.model_fields_set & {"rule", "gap", "band", "solve_limit", "cut", "friction"})
-        if self.law == "locked" and alone:
-            raise ValueError(f'{alone[0]} goes with law = "unilateral" only, got it with a locked contact')
-        self._check_friction()
+        if self.friction is not None and self.shear_stiffness == 0:
+            raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
         if math.isinf(self.stiffness):
             self._check_rigid()
-        if self.rule == "energy-conserving" and any(self.band):
-            raise ValueError(f'band goes with rule = "newmark" or "implicit", got {list(self.band)} with {self.rule!r}')
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self
-
-    def _check_friction(self) -> None:
-        alone = sorted(self.model_fields_set & {"cohesion", "rules"})
-        if self.friction is None and alone:
-            raise ValueError(f"{alone[0]} goes with friction only, got it without one")
-        if self.friction is not None and self.shear_stiffness == 0:
-            raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
-        if self.friction is not None and self.rule == "energy-conserving":
-            raise ValueError(f'friction goes with rule = "newmark" or "implicit", got it with {self.rule!r}')
-        if self.rules == "lagged" and self.rule != "newmark":
-            raise ValueError(f'rules = "lagged" goes with rule = "newmark" only, got it with {self.rule!r}')
 
     def _check_rigid(self) -> None:
         if self.law == "locked" or self.rule == "energy-conserving":
@@ -221,21 +221,24 @@ class ContactSection(Section):
 class LoadSection(Section):
     """What acts from t = 0 on: loads that are switched on, and the motion of the base; each alone or together."""
 
-    pressure: Real = 0.0  # q, Pa, downwards on the top edge
-    eccentricity: Real = 0.0  # m, shift towards +x of the middle of the pressed part, whose length is L - 2 |e|
-    traction: Real = 0.0  # Pa, towards +x on the whole top edge
-    gravity: Real = 0.0  # m/s2, downwards
-    slope: Angle = 0.0  # deg: gravity is turned to g (sin, -cos) in x and y, so that the block stands on its incline
-    base_motion: str | None = None  # CSV file with the header time,x or time,y or time,x,y (s, m)
+    pressure: Annotated[Real, Key("Pa", "downwards on the top edge", "q")] = 0.0
+    eccentricity: Annotated[
+        Real, Key("m", "shift towards +x of the middle of the pressed part, L - 2 |e| long", "e", ("pressure",))
+    ] = 0.0
+    traction: Annotated[Real, Key("Pa", "towards +x on the whole top edge", "τ")] = 0.0
+    gravity: Annotated[Real, Key("m/s2", "downwards", "g")] = 0.0
+    slope: Annotated[Angle, Key("deg", "of the base: gravity acts as g (sin, -cos) in x and y", "β", ("gravity",))] = (
+        0.0
+    )
+    ramp: Annotated[NonNegative, Key("s", "in which pressure, traction and gravity rise linearly from zero")] = 0.0
+    base_motion: Annotated[str | None, Key("", "CSV file with the header time,x or time,y or time,x,y, in s and m")] = (
+        None
+    )
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         if not self.model_fields_set & {"pressure", "traction", "gravity", "base_motion"}:
             raise ValueError("one of pressure, traction, gravity or base_motion is required, got none")
-        if self.eccentricity != 0 and self.pressure == 0:
-            raise ValueError(f"eccentricity goes with a pressure only, got {self.eccentricity:g} without one")
-        if self.slope != 0 and self.gravity == 0:
-            raise ValueError(f"slope goes with gravity only, got {self.slope:g} without it")
         return self
 
     @property
@@ -247,14 +250,16 @@ class LoadSection(Section):
 class TimeSection(Section):
     """The Newmark scheme of equations (6) and (7) and its steps."""
 
-    step: Positive  # s
-    steps: Count
-    alpha: NonNegative = 0.5
-    delta: NonNegative = 1.0
-    gg: Annotated[Real, Field(ge=0, le=1)] | None = None  # kinetic discount per step
-    gg_rate: NonNegative | None = None  # 1/s: gg = exp(-gg_rate * step)
-    start: Literal["zero", "consistent"] = "zero"  # initial acceleration
-    allow_unstable: Flag = False
+    step: Annotated[Positive, Key("s", "time step", "dt")]
+    steps: Annotated[Count, Key("", "number of steps")]
+    alpha: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the displacement", "α")] = 0.5
+    delta: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the velocity", "δ")] = 1.0
+    gg: Annotated[
+        Annotated[Real, Field(ge=0, le=1)] | None, Key("", "factor on the velocity at the start of each step")
+    ] = None
+    gg_rate: Annotated[NonNegative | None, Key("1/s", "in place of gg: gg = exp(-gg_rate step)", "c")] = None
+    start: Annotated[Literal["zero", "consistent"], Key("", "initial acceleration")] = "zero"
+    allow_unstable: Annotated[Flag, Key("", "whether a step beyond the stability limit is run")] = False
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -278,16 +283,14 @@ class TimeSection(Section):
 class DampingSection(Section):
     """Viscous damping of Rayleigh's kind, C = a0 M + a1 K, springs of the contact included, and what chooses gg."""
 
-    mass: NonNegative = 0.0  # a0, 1/s
-    stiffness: NonNegative = 0.0  # a1, s
-    kinetic: Literal["constant", "adaptive"] = "constant"  # gg of [time], or from the kinetic energies of the steps
-    floor: Annotated[Real, Field(ge=0, le=1)] = 0.0  # least adaptive gg
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if self.floor and self.kinetic != "adaptive":
-            raise ValueError(f'floor goes with kinetic = "adaptive" only, got {self.floor:g} without it')
-        return self
+    mass: Annotated[NonNegative, Key("1/s", "a0 of C = a0 M + a1 K")] = 0.0
+    stiffness: Annotated[NonNegative, Key("s", "a1 of C = a0 M + a1 K")] = 0.0
+    kinetic: Annotated[
+        Literal["constant", "adaptive"], Key("", "gg of [time], or from the kinetic energies of the steps")
+    ] = "constant"
+    floor: Annotated[
+        Annotated[Real, Field(ge=0, le=1)], Key("", "least adaptive gg", None, ('kinetic = "adaptive"',))
+    ] = 0.0
 
     @property
     def present(self) -> bool:
@@ -298,12 +301,14 @@ class DampingSection(Section):
 class FemSection(Section):
     """The finite-element pair: mesh and foundation."""
 
-    elements: Count | None = None  # per side
-    mesh: str | None = None  # file with tagged edges base, top
-    degree: Annotated[int, BeforeValidator(_count), Field(ge=1, le=2)] = 2
-    foundation: Literal["distributed", "patch", "corner", "nodes"] = "distributed"
-    cells: Literal["quadrilaterals", "triangles"] = "quadrilaterals"  # of a structured mesh
-    patch_width: Positive | None = None  # m
+    elements: Annotated[Count | None, Key("", f"per side of a structured mesh, {FINE_ELEMENTS} if absent", "n")] = None
+    mesh: Annotated[str | None, Key("", "file with the tagged edges base and top")] = None
+    degree: Annotated[Annotated[Index, Field(ge=1, le=2)], Key("", "of the elements")] = 2
+    foundation: Annotated[
+        Literal["distributed", "patch", "corner", "nodes"], Key("", "where the springs of the base act")
+    ] = "distributed"
+    cells: Annotated[Literal["quadrilaterals", "triangles"], Key("", "of a structured mesh")] = "quadrilaterals"
+    patch_width: Annotated[Positive | None, Key("m", "of each end of the base that has springs")] = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -327,16 +332,16 @@ class FemSection(Section):
 class RunSection(Section):
     """What to run and what to keep."""
 
-    solvers: Words = ("dda", "fem", "bar")
-    columns: Words = ("displacement", "contact_pressure")
-    geometry: Literal["small", "updated"] = "small"  # updated: outline, contact points, directions anew at every step
-    rotation: Literal["exact", "first-order"] = "exact"  # of an updated outline; first-order is that of older programs
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if self.geometry == "small" and self.rotation != "exact":
-            raise ValueError(f'rotation goes with geometry = "updated" only, got {self.rotation!r} without it')
-        return self
+    solvers: Annotated[Words, Key("", "that run the scene")] = ("dda", "fem", "bar")
+    columns: Annotated[Words, Key("", "of the histories")] = ("displacement", "contact_pressure")
+    geometry: Annotated[
+        Literal["small", "updated"],
+        Key("", "updated: outline, contact points and directions anew at every step", None, ("contact." + OPENS,)),
+    ] = "small"
+    rotation: Annotated[
+        Literal["exact", "first-order"],
+        Key("", "of an updated outline; first-order is that of older programs", None, (UPDATED,)),
+    ] = "exact"
 
 
 class GateSection(Section):

@@ -129,7 +129,10 @@ class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
-    handles: frozenset[str] = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING})
+    handles: frozenset[str] = frozenset(
+        {features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING, features.RAMP}
+    )
+    apart = ((features.RAMP, frozenset({features.UNILATERAL})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
@@ -147,8 +150,7 @@ class ExactBar(Solver):
         from fem_reference.scheme import modal
 
         exact = opening_bar if features.UNILATERAL in features.of(scene) else bar
-        apart = features.damping_apart(scene)
-        return apart or exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
+        return exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar, on a locked spring or on one that carries no tension."""

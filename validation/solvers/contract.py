@@ -120,7 +120,8 @@ class Solver:
 
     1. `name`: how the command line and the tables call it.
     2. `handles`: the features of a scene that it takes (`validation.scenes.features`); a scene with another one is
-       refused by name, so that no solver runs it as if the feature were absent.
+       refused by name, so that no solver runs it as if the feature were absent; `apart`: which of them it does not
+       take together.
     3. `sections`: the tables of a scene that it reads, and `unread`: keys in them that it does not; a change
        elsewhere does not make it run again.
     4. `sources`: modules or packages whose files enter the key of its results.
@@ -135,6 +136,7 @@ class Solver:
 
     name: str = ""
     handles: frozenset[str] = features.FIRST
+    apart: features.Apart = ()
     sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
     unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
@@ -163,8 +165,12 @@ class Solver:
 
     def refusal(self, scene: Scene) -> str | None:
         """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
+        return self.refused_features(scene) or self.applicable(scene)
+
+    def refused_features(self, scene: Scene) -> str | None:
+        """Return None, or which features of a scene the solver does not handle, at all or together, in words."""
         unknown = self.unhandled(scene)
-        return f"it does not handle {', '.join(unknown)}" if unknown else self.applicable(scene)
+        return f"it does not handle {', '.join(unknown)}" if unknown else features.clash(scene, self.apart)
 
     def unhandled(self, scene: Scene) -> list[str]:
         """Return the features of a scene that the solver does not handle."""
@@ -184,10 +190,10 @@ class Solver:
         Raises
         ------
         InputError
-            The scene has a feature that the solver does not handle: nothing is asked of it as if that were absent.
+            The scene has features that the solver does not handle: nothing is asked of it as if they were absent.
         """
-        if unknown := self.unhandled(scene):
-            raise InputError(f"solver {self.name} does not handle {', '.join(unknown)}", source=scene.name)
+        if reason := self.refused_features(scene):
+            raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         return self.build(scene, full)
 
     def build(self, scene: Scene, full: bool) -> Prepared:

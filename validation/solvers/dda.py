@@ -17,7 +17,7 @@ from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers.blocks.closed import block_of, dda_limit, load_of
 from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
-from validation.solvers.blocks.rotation import AREA, RollingBlock, rotation_apart
+from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.limits import StepLimit, check_step
@@ -51,9 +51,6 @@ def scheme_of(scene: Scene) -> dda.Scheme:
     t = scene.time
     d = scene.damping
     return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
-
-
-NOT_OF_SUB_BLOCKS = features.RULES | {features.RIGID, features.LAGGED}
 
 
 class OneBlock(Prepared):
@@ -201,8 +198,16 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
+        | {features.RAMP}
         | features.LOADS
         | features.RULES
+    )
+    apart: features.Apart = (
+        (features.ROTATION, handles - COMPATIBLE),
+        (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
+        (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
+        (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
+        *features.DAMPING_APART,
     )
     sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
     sources: tuple[str, ...] = ("dda",)
@@ -217,19 +222,13 @@ class DDA(Solver):
         return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or which features do not go together."""
-        scene_features = set(features.of(scene))
-        if features.ROTATION in scene_features:
-            return rotation_apart(scene)
-        if features.SUB_BLOCKS in scene_features and (incompatible := scene_features & NOT_OF_SUB_BLOCKS):
-            return f"it does not handle {min(incompatible)} together with {features.SUB_BLOCKS}"
-        if features.FRICTION in scene_features and features.LAGGED not in scene_features and scene.contact.band[1]:
+        """Return None, or why a band and friction do not go together."""
+        consistent = {features.FRICTION, features.DEAD_BAND} <= set(features.of(scene)) and (
+            scene.contact.rules == "consistent"
+        )
+        if consistent and scene.contact.band[1]:
             return "a corner in tension within its band is frictional under lagged rules only"
-        if {features.CONSERVING, features.BASE_MOTION} <= scene_features:
-            return f"it does not handle {features.BASE_MOTION} together with {features.CONSERVING}"
-        if {features.SUB_BLOCKS, features.ADAPTIVE} <= scene_features:
-            return f"it does not handle {features.SUB_BLOCKS} together with {features.ADAPTIVE}"
-        return features.damping_apart(scene)
+        return None
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""

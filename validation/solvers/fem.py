@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.errors import InputError
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
@@ -70,6 +69,7 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
             gravity=q.gravity,
             motion=motion,
             slope=q.slope,
+            ramp=q.ramp,
         )
 
 
@@ -287,8 +287,10 @@ class FiniteElements(Solver):
             features.COLUMN,
             features.DAMPING,
             features.ADAPTIVE,
+            features.RAMP,
         }
     )
+    apart = ((features.RAMP, frozenset({features.UNILATERAL, features.ADAPTIVE})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
@@ -305,14 +307,8 @@ class FiniteElements(Solver):
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
-    def applicable(self, scene: Scene) -> str | None:
-        """Return None, or what does not go together with damping."""
-        return features.damping_apart(scene)
-
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
-        if reason := self.applicable(scene):
-            raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         if scene.column is not None:
             from validation.solvers.columns.elements import LineColumn
 

@@ -41,7 +41,7 @@ def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float 
     )
 
 
-def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: float = 0.0) -> Run:
+def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array]) -> Run:
     """Translate a result with unilateral contact; a history that ended early keeps its outcome's name.
 
     Parameters
@@ -50,13 +50,11 @@ def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array], built: f
         The scene and the `Result` of a solver package.
     columns
         Column name to values at each step; those that the scene asks for are kept.
-    built
-        Time that was spent on the model before [s].
     """
     history = History(result.time, {name: columns[name] for name in scene.run.columns})
     counted = ("unknowns", "nonzeros", "factorisations", "solves")
     work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
-    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
+    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
     return Run(Outcome(result.outcome), history, work, seconds, result.notes)
 
 

@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
+from validation.theory.stepping import Stepping
 
 PHASES = np.linspace(0.0, 1.0, 33)
 """Landings within a step: e is continuous in the phase and made of straight lines, so that ends and kinks count."""
@@ -231,31 +232,59 @@ def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
     return math.pi / own_landing(ratio).duration / spectra.transit(scene)
 
 
+def quarter_mass_force(scene: Scene, speed: float) -> float:
+    """Return the force V sqrt(p m / 2) of a quarter of the mass that lands at a speed on the springs [N]."""
+    return abs(speed) * math.sqrt(scene.contact.stiffness * scene.block.mass / 2)
+
+
+def impact_force(scene: Scene, speed: float) -> float:
+    """Return the greatest force of an unloaded landing of the block of one strain at a speed, exact in time [N].
+
+    That of a quarter of the mass times 1.47 (p >> E, in the second contact of the landing) to 2 (p << E).
+    """
+    ratio = stiffness_ratio(scene)
+    if math.isinf(ratio):
+        return math.inf
+    return own_landing(ratio).depth * quarter_mass_force(scene, speed)
+
+
+def wave_force(scene: Scene, speed: float) -> float:
+    """Return the force rho c V a with which a bar lands on a rigid wall [N]."""
+    modulus, _ = statics.moduli(scene)
+    return abs(speed) * math.sqrt(modulus * scene.block.density) * scene.block.base_length
+
+
+def cannot_gain(scene: Scene) -> bool:
+    """Return whether opening and closing can put no energy into the block.
+
+    With delta >= 1 and 2 alpha >= delta the energy E + (alpha - delta/2) dt^2 A'MA/2 cannot rise, since the springs'
+    energy is convex; the two rules beside Newmark's have no such condition.
+    """
+    t = scene.time
+    return scene.contact.rule != "newmark" or (t.delta >= 1 and 2 * t.alpha >= t.delta)
+
+
+def hidden_from(scene: Scene) -> float | None:
+    """Return the time step beyond which a block under a pressure that is switched on does not leave its springs [s].
+
+    The free block's base rises in the first step, from A0 = 0, if
+
+        dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
+
+    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest.
+    """
+    t = scene.time
+    load = scene.load
+    height = statics.height(scene)
+    weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
+    from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
+    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
+        return None
+    free = spectra.transit(scene) / math.sqrt(6 * t.alpha)
+    return free * math.sqrt((1 - weight / 2) / (1 + weight))
+
+
 # ---- the landing of a time step ------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Stepping:
-    """A scheme whose parameters may change with the step."""
-
-    alpha: float
-    delta: float
-    gg: Callable[[float], float]  # of dt [s]
-    implicit: bool = False  # the contact force fully implicit, average acceleration in the block
-
-    @classmethod
-    def of(cls, scene: Scene) -> Stepping:
-        """Return the scheme of a scene; a discount stated as a rate stays one."""
-        t = scene.time
-        rate, fixed = t.gg_rate, t.discount
-        if rate is None:
-            return cls(t.alpha, t.delta, lambda _: fixed, scene.contact.rule == "implicit")
-        return cls(t.alpha, t.delta, lambda step: math.exp(-rate * step), scene.contact.rule == "implicit")
-
-    @property
-    def exists(self) -> bool:
-        """Whether the scheme has contact forces at the end of a step: alpha > 0."""
-        return self.implicit or self.alpha > 0
 
 
 @dataclass(frozen=True)
@@ -302,7 +331,7 @@ def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, 
     its state. So the rows f T^n of many steps are applied at once, and the first that changes its sign ends a stretch.
     """
     tau = step / transit
-    gg = stepping.gg(step)
+    gg = stepping.at(step).gg
     if not math.isinf(ratio) and (1 - gg) * own_landing(ratio).duration / (4 * math.pi * tau) > 1:
         return np.zeros(len(phases))  # the discount damps the contact at twice the critical rate: it does not rebound
     opened, closed, free_gap = _step_matrices(stepping, gg, tau, ratio)

@@ -36,13 +36,7 @@ def dda_frequency(scene: Scene) -> float:
 def bar_frequency(scene: Scene) -> float:
     """First frequency of the bar on its base spring [rad/s]: w = (b / h) sqrt(E/rho), b tan b = 2 p h / (E w)."""
     E, _ = moduli(scene)
-    w, h = size(scene)
-    ratio = 2 * scene.contact.stiffness * h / (E * w)
-    low, high = 0.0, math.pi / 2
-    for _ in range(200):
-        b = (low + high) / 2
-        low, high = (b, high) if b * math.sin(b) < ratio * math.cos(b) else (low, b)
-    return low / h * math.sqrt(E / scene.block.density)
+    return float(bar_modes(scene, 1)[0]) / size(scene)[1] * math.sqrt(E / scene.block.density)
 
 
 def roots(scene: Scene, frequency: float) -> tuple[complex, complex]:
@@ -98,8 +92,7 @@ def mesh_frequency_error(scene: Scene) -> float:
     Linear: (b/n)^2 / 24. Quadratic: (b/n)^4 / 1440 times the mean of sin^2 over that of cos^2 along the bar: the
     interpolation error's energy is h^4 / 720 times the integral of EA (d3 phi / dy3)^2, phi = cos(b (1 - y/h)).
     """
-    E, _ = moduli(scene)
-    b = bar_frequency(scene) * size(scene)[1] / math.sqrt(E / scene.block.density)
+    b = float(bar_modes(scene, 1)[0])
     wave, turn = b / scene.fem.per_side, math.sin(2 * b) / (2 * b)
     return wave**2 / 24 if scene.fem.degree == 1 else wave**4 / 1440 * (1 - turn) / (1 + turn)
 
@@ -125,7 +118,7 @@ def bar_modes(scene: Scene, count: int) -> Array:
     low = np.pi * np.arange(count)
     high = low + np.pi / 2
     sign = np.where(np.arange(count) % 2, -1.0, 1.0)
-    for _ in range(60):
+    for _ in range(200):  # until the ends are neighbours, also of the small root of a soft spring
         b = (low + high) / 2
         below = sign * (b * np.sin(b) - ratio * np.cos(b)) < 0
         low, high = np.where(below, b, low), np.where(below, high, b)

@@ -16,7 +16,8 @@ from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory.spectra import EPS
 from validation.theory.statics import moduli, size
-from validation.theory.waves import Column, Complex
+from validation.theory.stepping import Complex
+from validation.theory.waves import Column
 
 OPERATIONS = 100  # roundings of two programs in a row, of which none is larger than the conditioning times eps
 

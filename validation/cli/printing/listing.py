@@ -62,6 +62,21 @@ def solvers() -> list[Line]:
     return [*lines, *((name, "other", target, "decides itself") for name, target in entry_points().items())]
 
 
+def keys() -> list[Line]:
+    """Return name, unit, default, range and meaning of every key of a scene, a group for each table."""
+    from validation.scenes.keys import default_of, keys_of, range_of
+    from validation.scenes.scene import tables_of_scenes
+
+    lines: list[Line] = [("key", "unit", "default", "range", "meaning")]
+    for place, table in tables_of_scenes().items():
+        described_keys = list(keys_of(table))
+        lines += [BREAK] * bool(described_keys)
+        for name, field, key in described_keys:
+            goes_with = f"; goes with {', '.join(key.needs)}" if key.needs else ""
+            lines.append((f"{place}.{name}", key.unit, default_of(field), range_of(field), key.text + goes_with))
+    return lines
+
+
 def _studies() -> list[Study]:
     from validation.studies.catalogue import STUDIES, get_study
 
@@ -79,6 +94,7 @@ def _title(scene: Scene) -> str:
 
 
 LISTS: dict[str, Callable[[], list[Line]]] = {
+    "keys": keys,
     "metrics": metrics,
     "studies": studies,
     "scenes": scenes,

@@ -19,7 +19,7 @@ from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.theory import statics
+from validation.theory import landing, statics
 
 MOST_CASES = 200  # of a sweep that are looked at, evenly taken
 MOST_BLOCKS = 4  # sub-blocks whose modes are found at once; `damping` finds those of more
@@ -127,7 +127,7 @@ def _opening(scene: Scene) -> Iterator[Number]:
         yield Number("e own", landed.own, "", "restitution of an unloaded landing of this block, without a step")
         yield Number("e least", landed.low, "", "restitution under this step, least over where in it the block lands")
         yield Number("e most", landed.high, "", "restitution under this step, greatest")
-    hidden = contact.hidden_from(scene)
+    hidden = landing.hidden_from(scene)
     if hidden is not None:
         yield Number("dt seen", hidden, "s", "largest step that shows the block leave its springs at t = 0")
 

@@ -13,6 +13,7 @@ import numpy as np
 from validation.cli.printing import numbers
 from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
+from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
 
 INSIDE = 15  # characters of a block's width in the drawing
@@ -23,6 +24,10 @@ SCHEMES = {
     (0.25, 0.5): "average acceleration",
     (1 / 6, 0.5): "linear acceleration",
     (0.0, 0.5): "central differences",
+}
+WRITTEN = {  # keys of `contact`, `damping` and `run` that have words of their own
+    *("law", "stiffness", "shear_stiffness", "friction", "cohesion", "rule", "gap"),
+    *("mass", "solvers", "columns"),
 }
 SWEPT_VALUES = 6  # of a key that are shown
 
@@ -79,6 +84,8 @@ def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
     yield "scheme", f"{scheme}, alpha = {t.alpha:.4g}, delta = {t.delta:g}, {discount}"
     if first.damping.present:
         yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
+    if others := list(_other_keys(first)):
+        yield "keys", ", ".join(others)
     if scene_features := features.of(first):
         yield "features", ", ".join(scene_features)
     for field, values in scene.sweep.items():
@@ -89,6 +96,15 @@ def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
     yield "solvers", f"{', '.join(scene.run.solvers)}{case_count}"
     if scene.gate:
         yield "gates", f"{len(scene.gate)} in the scene"
+
+
+def _other_keys(scene: Scene) -> Iterator[str]:
+    """Yield the keys of a scene that are neither in the drawing nor in the lines above."""
+    for place, table in scene.tables().items():
+        if place in ("contact", "damping", "run"):
+            for name, value, key in stated(table):
+                if name not in WRITTEN:
+                    yield described(name, value, key)
 
 
 def _short(value: object) -> str:
@@ -167,17 +183,8 @@ def _arrows(scene: Scene, across: int) -> str:
 
 def _loads(scene: Scene) -> str:
     load = scene.load
-    loads = [
-        f"{word} = {value:g} {unit}"
-        for word, value, unit in (
-            ("q", load.pressure, "Pa"),
-            ("eccentricity", load.eccentricity, "m"),
-            ("traction", load.traction, "Pa"),
-            ("gravity", load.gravity, "m/s2"),
-            ("slope", load.slope, "deg"),
-        )
-        if value
-    ]
+    names = {"pressure": "q"}
+    loads = [described(names.get(name, name), value, key) for name, value, key in stated(load) if name != "base_motion"]
     if load.base_motion is not None:
         loads.append(f"base moved by {load.base_motion.rpartition('/')[2]}")
     return ", ".join(loads) or "no load"

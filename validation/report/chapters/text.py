@@ -11,6 +11,7 @@ from typing import Any
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
 from validation.runs.text import shown
+from validation.scenes.keys import described, keys_of, stated
 from validation.scenes.scene import Scene
 
 DASH = "–"
@@ -23,40 +24,7 @@ _MEANINGS = (
     ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
 )
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
-_SYMBOLS = {
-    "time.step": ("dt", " s"),
-    "time.gg": ("gg", ""),
-    "time.gg_rate": ("c", " 1/s"),
-    "time.alpha": ("α", ""),
-    "time.delta": ("δ", ""),
-    "time.steps": ("steps", ""),
-    "fem.elements": ("n", ""),
-    "fem.degree": ("degree", ""),
-    "block.poisson": ("μ", ""),
-    "block.young": ("E", " Pa"),
-    "block.side": ("a", " m"),
-    "load.pressure": ("q", " Pa"),
-    "fem.foundation": ("foundation", ""),
-    "fem.patch_width": ("patch width", " m"),
-    "time.start": ("start", ""),
-    "load.traction": ("τ", " Pa"),
-    "load.gravity": ("g", " m/s²"),
-    "load.eccentricity": ("e", " m"),
-    "block.hypothesis": ("", ""),
-    "block.pattern": ("", ""),
-    "block.subdivide": ("", " sub-blocks"),
-    "block.glue_ratio": ("glue", "E"),
-    "block.width": ("w", " m"),
-    "block.height": ("h", " m"),
-    "block.tilt": ("tilt", "°"),
-    "block.velocity": ("v", " m/s"),
-    "contact.friction": ("φ", "°"),
-    "contact.cohesion": ("cohesion", " Pa"),
-    "contact.gap": ("gap", " m"),
-    "contact.rule": ("", ""),
-    "contact.rules": ("", ""),
-    "load.slope": ("β", "°"),
-}
+_UNITS = str.maketrans("23", "²³")
 
 PARAMETERS = {  # how the data of a block are written, in this order; those at their defaults are not
     "block.vertices": "polygon of {} vertices",
@@ -178,14 +146,27 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     for field, value in CaseName.parse(name).values.items():
         if field in without:
             continue
-        symbol, unit = _SYMBOLS.get(field, (field.split(".")[-1].replace("_", " "), ""))
+        symbol, unit = _symbol(scene, field)
         if field == "contact.stiffness":
-            symbol = "p"
+            unit = ""
             value = f"{scene.contact.stiffness / scene.block.young:.4g}E"
+        elif field == "block.glue_ratio":
+            unit = "E"
         elif unit == " Pa":
             value, unit = _pressure(value)
         parts.append((f"{symbol} = {value}{unit}" if symbol else value).replace("-", "−"))
     return ", ".join(parts) or AS_STATED
+
+
+def _symbol(scene: Scene, field: str) -> tuple[str, str]:
+    """Return the symbol of a key and its unit, as they stand beside a number."""
+    place, _, name = field.partition(".")
+    table = scene.tables().get(place)
+    for key_name, _, key in keys_of(type(table)) if table is not None else ():
+        if key_name == name:
+            unit = "°" if key.unit == "deg" else f" {key.unit.translate(_UNITS)}".rstrip()
+            return name.replace("_", " ") if key.symbol is None else key.symbol, unit
+    return name.replace("_", " "), ""
 
 
 def _pressure(text: str) -> tuple[str, str]:
@@ -268,14 +249,11 @@ def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
 
 def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
     """Yield the data of a block that are not `written` yet, by their keys, where they are not the defaults."""
-    tables = {"block": scene.stated_block, "contact": scene.stated_contact, "load": scene.stated_load}
-    for name, table in (tables | {"damping": scene.damping}).items():
-        if table is None:
-            continue
-        for key, field in type(table).model_fields.items():
-            value = getattr(table, key)
-            if f"{name}.{key}" not in written | OF_POLYGONS and value != field.default:
-                yield f"{name}.{key}", f"{key.replace('_', ' ')} = {value}"
+    for place, table in scene.tables().items():
+        if place in ("block", "contact", "load", "damping"):
+            for name, value, key in stated(table):
+                if f"{place}.{name}" not in written | OF_POLYGONS:
+                    yield f"{place}.{name}", described(name, value, key)
 
 
 def _of_mesh(scene: Scene) -> list[tuple[str, str]]:

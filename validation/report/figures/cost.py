@@ -82,13 +82,3 @@ def _legend(figure: Figure, points: Sequence[Point]) -> None:
     for method in dict.fromkeys(point.method for point in points):
         figure.text(x, 0.995, method, color=style_of(method).color, va="top")
         x += 0.04 + 0.009 * len(method)
-
-
-def columns_figure(names: tuple[str, str], series: dict[str, list[tuple[float, float]]]) -> Figure:
-    """Draw one column of a study's table against another, a line for each solver, both logarithmic."""
-    lines = []
-    for name, pairs in series.items():
-        x, y = np.array(sorted(pairs)).T
-        lines.append(ChartLine(name, x, y, style_of(name).color, width=0.8, dots=2.6))
-    panel = ChartPanel("", *names, lines, logarithmic=(True, True))
-    return chart_figure([panel], 70.0, Margins(16.0, 62.0, 3.0, 9.5))

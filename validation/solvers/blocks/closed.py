@@ -51,6 +51,7 @@ def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
         gravity=q.gravity,
         motion=motion,
         slope=q.slope,
+        ramp=q.ramp,
     )
 
 

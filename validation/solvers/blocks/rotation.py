@@ -33,16 +33,6 @@ COMPATIBLE = features.LOADS | {
 }
 
 
-def rotation_apart(scene: Scene) -> str | None:
-    """Return None, or what does not go together with a block that turns."""
-    scene_features = set(features.of(scene))
-    if features.UNILATERAL not in scene_features:
-        return f"it does not handle {features.ROTATION} without {features.UNILATERAL}"
-    if others := scene_features - COMPATIBLE:
-        return f"it does not handle {min(others)} together with {features.ROTATION}"
-    return None
-
-
 class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 

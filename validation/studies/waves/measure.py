@@ -17,6 +17,7 @@ from validation.runs.history import History
 from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene
 from validation.theory import waves
+from validation.theory.stepping import Stepping
 
 
 def column_of(scene: Scene) -> ColumnSection:
@@ -39,7 +40,7 @@ class Guide:
     column: waves.Column
     speed: float  # of waves in the continuum [m/s]
     impedance: float  # rho c [Pa s/m]
-    stepping: waves.Stepping
+    stepping: Stepping
     omega: float  # [rad/s]
 
     @classmethod
@@ -52,7 +53,7 @@ class Guide:
         column = waves.Column(height, layer.density, modulus, section.glue)
         speed = (modulus / layer.density) ** 0.5
         omega = 2 * np.pi * speed / (blocks * height)
-        return cls(column, speed, layer.density * speed, waves.Stepping.of(scene), omega)
+        return cls(column, speed, layer.density * speed, Stepping.of(scene), omega)
 
     @property
     def wavenumber(self) -> complex:

@@ -17,7 +17,7 @@ from validation.studies.waves.response import amplitudes
 from validation.studies.waves.rows import travelling
 from validation.studies.waves.study import SITE, usual_site
 from validation.theory import waves
-from validation.theory.wave_base import base_reflection
+from validation.theory.stepping import Stepping
 
 BLOCKS = (8, 10, 16, 20, 40, 100)
 COURANTS = (0.1, 0.25, 0.5, 1.0)
@@ -71,11 +71,11 @@ def _add_scene(scene: Scene, part: Part) -> None:
         part.add_history(scene.name, solver, history_of(scene, solver))
 
 
-def _cases(discounts: tuple[float, ...]) -> Iterator[tuple[dict[str, float], waves.Stepping, float]]:
+def _cases(discounts: tuple[float, ...]) -> Iterator[tuple[dict[str, float], Stepping, float]]:
     """Yield the first columns of a table, the stepping and w of each case, for h = rho = E = 1."""
     for (alpha, delta), gg, courant, blocks in itertools.product(SCHEMES, discounts, COURANTS, BLOCKS):
         parameters = {"alpha": alpha, "delta": delta, "gg": gg, "courant": courant, "blocks": float(blocks)}
-        yield parameters, waves.Stepping(courant, alpha, delta, gg), 2 * math.pi / blocks
+        yield parameters, Stepping(courant, alpha, delta, gg), 2 * math.pi / blocks
 
 
 def travel() -> Iterator[dict[str, float]]:
@@ -100,5 +100,5 @@ def bases() -> Iterator[dict[str, float]]:
     """Yield what transmitting bases send back."""
     for parameters, stepping, w in _cases((1.0,)):
         for impedance in IMPEDANCES:
-            R = base_reflection(waves.Column(UNIT, UNIT, UNIT), stepping, w, impedance)
+            R = waves.base_reflection(waves.Column(UNIT, UNIT, UNIT), stepping, w, impedance)
             yield parameters | {"impedance": impedance, "reflected": float(np.abs(R))}

@@ -27,7 +27,7 @@ from validation.studies.declaration import Study
 from validation.theory import vibration
 from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
 from validation.theory.statics import moduli, size
-from validation.theory.waves import Complex, Stepping
+from validation.theory.stepping import Complex, Stepping
 
 BASE = "response-base"
 DAMPING = "response-damping"

@@ -18,7 +18,6 @@ from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import about, cases, fitted_order, near
 from validation.studies.waves.measure import Guide, column_of, joint_parts
 from validation.theory import waves
-from validation.theory.wave_base import base_reflection
 
 EXACT = 1e-10  # of k: what a measured wavenumber must keep
 JOINT = 1e-9  # of |T| and |R|
@@ -216,7 +215,7 @@ def base_gates() -> Iterator[Gate]:
     why = "closed form of a dashpot under a column of welded blocks, of whose own impedance it is; band: 1e-9"
     for wave in returned():
         guide = wave.guide
-        R = base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
+        R = waves.base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
         yield Gate(wave.scene.name, (wave.name,), "base.reflected", *about(float(abs(R)), JOINT), why)
 
 

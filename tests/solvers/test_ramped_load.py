@@ -1,0 +1,179 @@
+"""A load that rises in a ramp: the closed form of each mode, exact flights, energies, and who refuses it."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import refused, typed
+
+import dda
+from dda.one_block.natural_modes import modal_form
+from validation.errors import InputError
+from validation.runs.history import Array
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import BUILT_IN, get_solver, solve
+
+RAMP = 0.0137  # s, between two steps
+
+
+def locked(**values: Any) -> Scene:
+    """Return figure 3 at 2 ms with a ramp, and keys `table__key` in place of its own."""
+    scene = load_scene("figures-3-4").expand()[1]
+    return scene.with_values({"load.ramp": RAMP} | {key.replace("__", "."): value for key, value in values.items()})
+
+
+def opening(**values: Any) -> Scene:
+    return locked(contact__law="unilateral", **values)
+
+
+def oscillator(w: float, t: Array, ramp: float) -> Array:
+    """Return x of x'' + w^2 x = w^2 min(1, t / ramp), from rest: its static value is 1."""
+    late = np.maximum(t - ramp, 0.0)
+    return (np.minimum(t, ramp) - (np.sin(w * t) - np.sin(w * late)) / w) / ramp
+
+
+@pytest.mark.parametrize(("young", "ramp"), [(1e9, RAMP), (4e8, 0.05)])
+def test_each_mode_of_the_block_tends_to_the_closed_form_with_the_second_order(young: float, ramp: float) -> None:
+    model = dda.TwoBlockModel(
+        dda.Block([(0, 0), (2, 0), (2, 2), (0, 2)], dda.Material(2700.0, young, 0.0)),
+        dda.Contact(1e9, 1e9),
+        dda.Load(pressure=5e6, ramp=ramp),
+    )
+    modal = modal_form(model.gap_form.reduced())
+    amplitudes = (model.gap_form.reduced().observers["displacement"] @ modal.shapes) * modal.load / modal.frequencies**2
+    errors = []
+    for step in (2e-4, 1e-4, 5e-5):
+        result = dda.solve(model, dda.Scheme(0.25, 0.5, 1.0, step), round(0.1 / step))
+        exact = sum(
+            a * model.load_size * oscillator(w, result.time, ramp)
+            for a, w in zip(amplitudes, modal.frequencies, strict=True)
+        )
+        errors.append(np.max(np.abs(result.columns["displacement"] - exact)) / np.max(np.abs(exact)))
+    orders = np.diff(-np.log2(errors))
+    assert orders == pytest.approx(2.0, abs=0.1) and errors[-1] < 1e-3
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"time.start": "consistent"},
+        {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
+        {"load.ramp": 1e-3},  # less than a step
+        {"load.ramp": 10.0},  # never at its end
+    ],
+)
+def test_a_ramp_is_a_sum_of_loads_that_come_on_step_by_step(values: dict[str, Any]) -> None:
+    """The scheme is linear and the same at every step, so the increments of the load superpose."""
+    scene = locked().with_values(values)
+    at_once = scene.with_values({"load.ramp": 0.0, "time.start": "zero"})
+    steps = scene.time.steps
+    shares = np.minimum(np.arange(steps + 1) * scene.time.step / scene.load.ramp, 1.0)
+    for solver in ("dda", "fem", "bar"):
+        history = solve(scene, solver).displacement
+        sum_of_steps = np.convolve(solve(at_once, solver).displacement, np.diff(shares))[:steps]
+        assert history == pytest.approx(sum_of_steps, rel=1e-9, abs=1e-12 * np.max(np.abs(history))), solver
+
+
+def test_viscous_damping_goes_with_a_ramp() -> None:
+    scene = locked(damping__mass=2.0, damping__stiffness=1e-4)
+    reference = solve(scene, "bar").displacement
+    assert solve(scene, "fem").displacement == pytest.approx(reference, abs=1e-8 * np.max(np.abs(reference)))
+
+
+@pytest.mark.parametrize("start", ["zero", "consistent"])
+def test_a_contact_that_stays_closed_is_the_locked_one_under_a_ramp(start: str) -> None:
+    values: dict[str, Any] = {"time__gg": 0.99, "time__start": start, "time__alpha": 0.25, "time__delta": 0.5}
+    values |= {"load__gravity": 9.81, "load__pressure": 0.0, "time__step": 1e-3}  # a pressure would lift it at first
+    history = solve(opening(**values), "dda").displacement
+    reference = solve(locked(**values), "dda").displacement
+    assert history == pytest.approx(reference, abs=1e-9 * np.max(np.abs(reference)))
+
+
+@pytest.mark.parametrize("gap", [0.5, 0.3])
+def test_a_block_that_falls_under_a_growing_weight_follows_the_cubic(gap: float) -> None:
+    """Linear acceleration integrates u'' = -g t / T without an error, up to the step that ends at T."""
+    scene = opening(
+        contact__gap=gap, load__gravity=9.81, load__pressure=0.0, load__ramp=0.2, time__alpha=1 / 6, time__delta=0.5,
+        time__step=0.001, time__steps=280, time__allow_unstable=True,
+    )  # fmt: skip
+    run = solve(scene, "dda")
+    t = run.history.time
+    late = np.maximum(t - 0.2, 0.0)
+    exact = -9.81 * (t**3 - late**3) / (6 * 0.2)
+    free = exact > -0.9 * gap
+    assert free.sum() > 250
+    assert run.displacement[free] == pytest.approx(exact[free], rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("rule", ["newmark", "implicit"])
+def test_energies_balance_while_the_load_rises_and_the_block_leaves_its_base(rule: str) -> None:
+    scene = opening(
+        load__gravity=9.81, load__pressure=-4e5, load__ramp=0.05, contact__rule=rule, time__alpha=0.25, time__delta=0.5,
+        time__step=1e-3, time__steps=200, contact__friction=30.0,
+    )  # fmt: skip
+    prepared = get_solver("dda").prepare(scene)
+    prepared.run()
+    record = prepared.contact_record()
+    energies = record.energies
+    total = sum(energies[name] for name in energies)
+    scale = max(np.max(np.abs(values)) for values in energies.values())
+    assert np.max(record.open_share) > 0  # the suction lifts it
+    assert np.max(np.abs(total - record.start_energy)) < 1e-9 * scale
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_who_does_not_take_a_ramp_refuses_it_by_name(name: str) -> None:
+    solver = get_solver(name)
+    assert ("ramped load" in solver.handles) == (name in ("dda", "fem", "bar"))
+    if "ramped load" not in solver.handles:
+        with pytest.raises(InputError, match=r"does not handle .*ramped load"):
+            solver.prepare(locked())
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("dda", {"block__subdivide": [2, 2]}),
+        ("dda", {"damping__kinetic": "adaptive"}),
+        ("dda", {"contact__law": "unilateral", "run__geometry": "updated"}),
+        ("fem", {"contact__law": "unilateral"}),
+        ("bar", {"contact__law": "unilateral"}),
+    ],
+)
+def test_what_does_not_go_with_a_ramp_is_refused_by_name(name: str, values: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="does not handle"):
+        get_solver(name).prepare(locked(**values))
+
+
+def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
+    block = dda.Block([(0, 0), (2, 0), (2, 2), (0, 2)], dda.Material(2700.0, 1e9, 0.0))
+    load = dda.Load(pressure=1e6, ramp=0.1)
+    model = dda.TwoBlockModel(block, dda.Contact(1e9, 1e9), load)
+    scheme = dda.Scheme(0.5, 1.0, 1.0, 1e-3)
+    average = dda.Scheme(0.25, 0.5, 1.0, 1e-3)
+    opens = dda.UnilateralModel(block, dda.Unilateral(1e9, 0.0), load)
+    for unknown in (
+        lambda: dda.subdivided(model, 2, 2, 1e15),
+        lambda: dda.opening_subdivided(opens, 2, 2, 1e15),
+        lambda: dda.solve_adaptive(model, scheme, 5),
+        lambda: dda.solve_textbook(model, scheme, 5),
+        lambda: dda.solve_unilateral(opens, average, 5, options=dda.UnilateralOptions("energy-conserving")),
+    ):
+        with pytest.raises(ValueError, match=r"ramp: does not go|at once"):
+            unknown()
+    for ramp in (-1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="ramp: must be finite and not negative"):
+            dda.Load(ramp=ramp)
+
+
+def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path: Path) -> None:
+    values = ("--set", "time.step=0.002", "--set", f"load.ramp={RAMP}")
+    history = tmp_path / "ramped.csv"
+    assert typed("solve", "figures-3-4", *values, "--solver", "dda", "--csv", history).returncode == 0
+    assert typed("compare", "figures-3-4", history, *values).returncode == 0  # the scene's own history
+    assert typed("compare", "figures-3-4", history, *values[:2]).returncode == 1
+    polygon = ("--set", "block.vertices=[[0.0, 0.0], [2.0, 0.0], [1.8, 2.0], [0.2, 2.0]]")
+    assert "loads that act at once only" in refused("compare", "figures-3-4", history, *values, *polygon)

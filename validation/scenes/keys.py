@@ -1,0 +1,118 @@
+"""The keys of a scene: each is described once, beside its type, and read from there by all who name it.
+
+A key of a table is `name: Annotated[type, Key(unit, text)] = default`. Its type holds the range; the schema, what a key
+goes with, the table of `list keys`, the page of `show`, and labels and data of the report follow from this one line.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict
+from pydantic.fields import FieldInfo
+
+_REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("\w+"(?: or "\w+")*))?$')
+
+
+@dataclass(frozen=True)
+class Key:
+    """What a key of a scene is, besides its type and its default."""
+
+    unit: str  # "" of numbers without one, and of words
+    text: str  # what it is, in words
+    symbol: str | None = None  # that of the text and the figures; "" where the value says enough, None: its name
+    needs: tuple[str, ...] = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
+
+
+class Section(BaseModel):
+    """A table of a scene file: immutable, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
+
+
+def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
+    """Yield name, field and description of the keys of a table, without the tables in it."""
+    for name, field in table.model_fields.items():
+        for key in field.metadata:
+            if isinstance(key, Key):
+                yield name, field, key
+
+
+def stated(table: Section) -> Iterator[tuple[str, Any, Key]]:
+    """Yield name, value and description of the keys whose values are not the defaults."""
+    for name, field, key in keys_of(type(table)):
+        value = getattr(table, name)
+        if value != field.default:
+            yield name, value, key
+
+
+def check_needs(tables: Mapping[str, Section]) -> None:
+    """Refuse a key without what it goes with.
+
+    Raises
+    ------
+    ValueError
+        The first such key, with table, rule and value.
+    """
+    for place, table in tables.items():
+        for name, value, key in stated(table):
+            for requirement in key.needs:
+                if not _fulfilled(requirement, place, tables):
+                    raise ValueError(f"{place}: {name} goes with {requirement} only, got {_short(value)} without it")
+
+
+def _fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) -> bool:
+    parts = _REQUIREMENT.match(requirement)
+    if parts is None:
+        raise ValueError(f"needs: must be a key, or key = word, got {requirement!r}")
+    field, words = parts.groups()
+    section, _, name = field.rpartition(".")
+    table = tables.get(section or place)
+    if table is None:
+        return False
+    value = getattr(table, name)
+    return value != type(table).model_fields[name].default if words is None else f'"{value}"' in words.split(" or ")
+
+
+def described(name: str, value: object, key: Key) -> str:
+    """Return a key with its value in words, ``band = 0, 0.001 m``."""
+    unit = f" {key.unit}" if key.unit else ""
+    return f"{name.replace('_', ' ')} = {_short(value)}{unit}"
+
+
+def _short(value: object) -> str:
+    if isinstance(value, tuple):
+        return ", ".join(map(_short, value)) or "none"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def range_of(field: FieldInfo) -> str:
+    """Return the words that a key takes, or the type of its number and the bounds of it."""
+    words: list[str] = []
+    for part in (field.annotation, *get_args(field.annotation)):
+        if get_origin(part) is Literal:
+            words += [f'"{word}"' for word in get_args(part)]
+    bounds = []
+    for limit in _limits(field):
+        for sign, name in ((">", "gt"), (">=", "ge"), ("<", "lt"), ("<=", "le")):
+            if (bound := getattr(limit, name, None)) is not None:
+                bounds.append(f"{sign} {bound:g}")
+    return " or ".join(words) or " and ".join(bounds)
+
+
+def _limits(field: FieldInfo) -> Iterator[Any]:
+    """Yield what bounds a key, of a key that may be absent what bounds its value."""
+    yield from field.metadata
+    for part in get_args(field.annotation):
+        for limit in getattr(part, "__metadata__", ()):
+            yield from limit.metadata if isinstance(limit, FieldInfo) else (limit,)
+
+
+def default_of(field: FieldInfo) -> str:
+    """Return the default of a key in words."""
+    if field.is_required():
+        return "required"
+    return "-" if field.default is None else _short(field.default)
