@@ -14,7 +14,7 @@ import numpy as np
 
 from validation.diagnosis.fits.fit import NAMED, SPAN, Fit, changed, fit, intervals
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.stepping import UNEQUAL
+from validation.diagnosis.stepping import UNEQUAL, histories
 from validation.diagnosis.variant import Variant
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
@@ -241,9 +241,7 @@ _FAMILIES: tuple[Callable[[Target, Variant], list[Move]], ...] = (
 
 def pulls(target: Target, variant: Variant) -> bool:
     """Whether the contact of a variant is in tension in some step, if it carries any."""
-    from validation.diagnosis.fits.responses import computed
-
-    pressure = computed(target.column, [variant], target.steps).pressure[:, 0]
+    pressure = histories(target.column, [variant], target.steps).pressure[:, 0]
     return bool(np.any(pressure < -1e-9 * np.max(np.abs(pressure))))
 
 

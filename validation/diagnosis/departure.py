@@ -10,8 +10,8 @@ import numpy as np
 
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.fits.fit import Fit
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 from validation.runs.history import Array
 
@@ -37,7 +37,7 @@ def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[
     yields = "base-compliance" in causes
     softness, base = (v.softness, v.base) if yields else (0.0, 0.0)
     plain = replace(scene, softness=softness, base=base, weight=v.weight, updated=v.updated)
-    run = computed(target.column, [plain], target.steps)
+    run = histories(target.column, [plain], target.steps)
     return run.displacement[:, 0], run.pressure[:, 0]
 
 

@@ -50,29 +50,20 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     """
     n = len(target.steps)
     steps = min(max(SHORTEST, math.ceil(PERIODS * _period(target) / float(np.mean(target.steps)))), COARSE)
-    part = target.until(steps).quick() if steps < n else target.quick()
+    part = target.until(steps) if steps < n else target
     explanations = _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)
     if len(explanations) > MANY:
         explanations = explanations[:MANY]
     explanations = _further(part, explanations)
     while steps < n:
         steps *= STRETCH
-        part = target.until(min(steps, n)).quick()
+        part = target.until(min(steps, n))
         explanations = _further(part, _leading(explanations))
-    return (
-        explanations
-        if part.same_steps(target) and not _solved(explanations)
-        else _further(target, _leading(explanations))
-    )
+    return explanations if part.same_steps(target) else _further(target, _leading(explanations))
 
 
 def _further(target: Target, explanations: Sequence[Found]) -> list[Found]:
     return _fits(target, [(f.moves, f.fit.variant, f.fit.free) for f in explanations], ROUNDS)
-
-
-def _solved(explanations: Sequence[Found]) -> bool:
-    """Whether some variant is one that the suite's own solver has, which the search does not use."""
-    return any(f.fit.variant.opens for f in explanations)
 
 
 def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Found]:

@@ -15,7 +15,6 @@ from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
@@ -24,6 +23,7 @@ from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, readings_of, slips
 from validation.diagnosis.search import beside, paired, simple
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
@@ -50,7 +50,7 @@ class Case:
     @cached_property
     def scene_run(self) -> Histories:
         """The scene's own run at the steps of the history."""
-        return computed(self.target.column, [self.own], self.target.steps)
+        return histories(self.target.column, [self.own], self.target.steps)
 
     @property
     def expected(self) -> tuple[Array, Array]:
@@ -214,7 +214,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     else:
         sentence = sentences.sentence(subject, alike)
     time = np.cumsum(target.steps)[target.rows]
-    best = computed(target.column, [best_fit.variant], target.steps)
+    best = histories(target.column, [best_fit.variant], target.steps)
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
@@ -250,7 +250,7 @@ def _opened(target: Target, v: Variant) -> list[int]:
     """Return the steps, counted from 1, at whose end the contact of a variant is open."""
     if not v.opens:
         return []
-    return [int(i) + 1 for i in np.flatnonzero(computed(target.column, [v], target.steps).open[:, 0])]
+    return [int(i) + 1 for i in np.flatnonzero(histories(target.column, [v], target.steps).open[:, 0])]
 
 
 def _diverged(case: Case, factor: float) -> Answer:

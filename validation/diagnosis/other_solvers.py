@@ -265,7 +265,7 @@ def ranking(
     """Return every named scheme with what else explains the history, and the other solvers, by misfit."""
     pairs = dict.fromkeys([(best.alpha, best.delta), *NAMED.values()])
     free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in ("alpha", "delta", "gg", "base")))))
-    fits = fit(target.quick(), [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
+    fits = fit(target, [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
     misfits = [each.misfit for each in fits]
     misfits[0] = min(misfits[0], fit(target, [(best, ())])[0].misfit)
     rows = []

@@ -8,8 +8,8 @@ from itertools import product
 
 import numpy as np
 
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.reading import Foreign, Stepping, steppings
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
@@ -66,7 +66,7 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
     """Return the ways to read a history's steps, sign and units."""
     readings = []
     for stepping in steppings(foreign, scene.time.step):
-        expected = computed(column, [scene_variant], stepping.steps)
+        expected = histories(column, [scene_variant], stepping.steps)
         readings += slips(
             foreign, stepping, expected.displacement[stepping.rows, 0], expected.pressure[stepping.rows, 0]
         )

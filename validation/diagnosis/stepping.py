@@ -10,7 +10,7 @@ summed up by itself, so that a stiff spring keeps its digits. With U = dt V and 
 with the internal force f and viscous damping C = a0 M + a1 K. It is linear in (g, s, x, U, W, 1), s the shear of the
 closed contact, as long as contact and geometry stay: such histories are sums of powers of one matrix, which is had by
 stepping the unit vectors, and cost no loop over the steps. Where the contact opens or the geometry moves, the same step
-is made one by one. A variant that is exact in time has the exponential of its matrix.
+is made one by one, as `dda.solve_unilateral` does. A variant that is exact in time has the exponential of its matrix.
 """
 
 from __future__ import annotations
@@ -119,6 +119,7 @@ class Stepper:
         self.viscous, self.structural = each("viscous"), each("structural")
         self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated, self.opens = each("updated"), each("opens").astype(bool)
+        self.reset = each("reset").astype(bool)
         self.closing, self.opening = each("band"), each("band") * each("reopening")
         self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
         self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
@@ -237,6 +238,27 @@ class Stepper:
         sheared = state[..., 1] + (increment[..., 2] if d > 2 else 0.0)
         return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
 
+    def _sheared_from_touch(
+        self, q: Equations, inverse: Array, dt: float, state: Array, end: Array, landing: Flags
+    ) -> Array:
+        """Return the end of a step in which contacts close: their shear counts from where the gap was crossed.
+
+        By the share g0 / (g0 - g1) of the step, with g the gap, the lateral strain has then grown from e0 to e1, and
+        the shear to start with is s = -(e1 - e0) g0 / (g0 - g1). Both e1 and g1 are linear in s: e1 = e + e' s and
+        g1 = g + g' s, which leaves g' s^2 - b s - c = 0, b = g0 - g + g0 e', c = g0 (e - e0).
+        """
+        unit = abs(self.rectangle.static)
+        sheared = state.copy()
+        sheared[:, 1] += np.where(landing, unit, 0.0)
+        gap_rate, strain_rate = ((self.step(q, inverse, dt, sheared) - end)[:, [0, 4]] / unit).T
+        open_gap = np.maximum(state[:, 0], 0.0)  # what starts in the base has crossed already
+        b = open_gap * (1 + strain_rate) - end[:, 0]
+        c = open_gap * (end[:, 4] - state[:, 4])
+        with np.errstate(all="ignore"):
+            root = -2 * c / (b + np.sqrt(b * b + 4 * gap_rate * c))  # b > 0: the gap has been crossed
+        sheared[:, 1] = np.where(landing, root, state[:, 1])
+        return self.step(q, inverse, dt, sheared)
+
     def _damping(self, q: Equations) -> Array:
         return self.viscous[:, None, None] * q.mass + self.structural[:, None, None] * q.stiffness
 
@@ -337,6 +359,7 @@ class Stepper:
                 state[:, 2 + self.d : 2 + 2 * self.d] *= dt / before
                 state[:, 2 + 2 * self.d : 2 + 3 * self.d] *= (dt / before) ** 2
                 before = dt
+            was_closed = on
             for _ in range(OPEN_CLOSE_ITERATIONS):
                 q, inverse = prepared(dt, on)
                 end = self.step(q, inverse, dt, state)
@@ -345,6 +368,9 @@ class Stepper:
                 if np.array_equal(new, on):
                     break
                 on = new
+            landing = on & ~was_closed & ~self.reset
+            if self.d > 2 and np.any(landing):
+                end = self._sheared_from_touch(q, inverse, dt, state, end, landing)
             if moves:
                 strain = end[:, 2 : 2 + self.d] - state[:, 2 : 2 + self.d]
                 high = high * (1 + self.updated * strain[:, 1])

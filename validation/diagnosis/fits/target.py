@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from validation.diagnosis.fits import bar
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import Array
@@ -61,7 +60,6 @@ class Target:
     pressure: Array | None = None  # [Pa]
     rounding: Array | None = None  # of the displacement [m], seen from the values if not given
     pressure_rounding: Array | None = None  # [Pa]
-    searching: bool = False  # one pass for all variants, those that open included
 
     @property
     def values(self) -> Array:
@@ -77,10 +75,9 @@ class Target:
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
-        stepped = histories if self.searching else computed
-        computed_histories = stepped(self.column, variants, self.steps)
+        stepped = histories(self.column, variants, self.steps)
         with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-            joined = self.join(computed_histories.displacement[self.rows], computed_histories.pressure[self.rows])
+            joined = self.join(stepped.displacement[self.rows], stepped.pressure[self.rows])
         return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> list[Array]:
@@ -132,10 +129,6 @@ class Target:
     def same_steps(self, other: Target) -> bool:
         """Whether another target has as many steps and rows."""
         return len(self.steps) == len(other.steps) and len(self.rows) == len(other.rows)
-
-    def quick(self) -> Target:
-        """Return the same for a search, in one pass for all variants."""
-        return replace(self, searching=True)
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""
