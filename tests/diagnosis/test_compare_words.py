@@ -22,7 +22,7 @@ from validation.cli import compare as cli_compare
 from validation.diagnosis import departure
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor
+from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor, values_of, words_of
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
@@ -31,8 +31,7 @@ from validation.diagnosis.judgement import MODEL_WORDS, compare
 from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, rivals
 from validation.diagnosis.other_solvers import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.sentences import Said
-from validation.diagnosis.variant import Variant, rectangle_of
+from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
@@ -41,6 +40,7 @@ from validation.report.figures.curves import style_of
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
 OWN = Variant(0.5, 1.0, 1.0)
+BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
 
 
 def softened(solver: str, times: float, **changes: Any) -> Answer:
@@ -66,7 +66,7 @@ def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> N
     assert answer.departure is not None and answer.departure.kind == "offset"
     assert answer.ranking[0]["compliance"] == pytest.approx(0.5, rel=1e-3)
     assert answer.sentence.startswith("Same scheme: constant acceleration")  # and not "same model"
-    assert "the contact springs are 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
+    assert "the contact stiffness is 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
 
 
 def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
@@ -160,8 +160,8 @@ def target(**changes: Any) -> Target:
 def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own() -> None:
     """At p = E springs and block give half each; at p = 10E the springs give a twelfth of 5.5 mm, 0.5 mm."""
     soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
-    assert compliance(target(), soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
-    assert compliance(target(contact__stiffness=1e10), soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
+    assert compliance(target().column, soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
+    assert compliance(target(contact__stiffness=1e10).column, soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,7 @@ def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
 ) -> None:
     assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
     v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
-    assert benign_springs(target(), v) is benign
+    assert benign_springs(target().column, v) is benign
 
 
 # ---- other faults -------------------------------------------------------------------------------------------------
@@ -238,8 +238,10 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
     variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
     scene = Variant(0.25, 0.5, 0.99, "consistent")
     gone = Departure(7, "phase")
-    values = {name: NUMBERS[name] for name in causes if name in NUMBERS}
-    return wording.sentence(Said(variant, scene, causes, values, gone, [3, 4, 5, 9], 0.0123, soft))
+    further = {"open_steps": " in steps 3-5, 9", "scheme": wording.scheme_of(scene)}
+    numbers = values_of(BLOCK, causes, variant) | NUMBERS | {"base-compliance": soft}
+    words = {name: words_of(name, numbers.get(name, 0.0), variant, scene, **further) for name in causes}
+    return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.left(0.0123)))
 
 
 @pytest.mark.parametrize(
@@ -253,7 +255,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("gg-in-one-formula", {"discounted": "displacement"}, "applied only in the formula for the displacement (6)"),
         ("time-shift", {"shift": 1}, "the rows are 1 step late"),
         ("time-shift", {"shift": -1}, "the rows are 1 step early"),
-        ("springs-factor", {"softness": math.log(4)}, "the contact springs are 0.25 times the scene's"),
+        ("springs-factor", {"softness": math.log(4)}, "the contact stiffness is 0.25 times the scene's"),
         ("load-factor", {"load": 1.25}, "the load, or the displacement, is 1.25 times the scene's"),
         ("contact-opened", {"opens": True}, "the contact opened in steps 3-5, 9"),
         ("time-shift", {"shift": 2}, "the rows are 2 steps late"),
@@ -262,7 +264,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("side-factor", {}, "the side of the block is 1.1 times the scene's"),
         ("poisson", {}, "Poisson's ratio is 0.3"),
         ("dead-band", {}, "an open contact closes only beyond a penetration of about 0.001 m"),
-        ("reported-point", {"point": 1.0}, "a point +1 m above the centroid, the top edge"),
+        ("reported-point", {"point": 1.0}, "of another point, +1 m above the centroid, the top edge"),
         ("pressure-shift", {"late": 1.0}, "the pressure is 1 step late, the displacement is right"),
         ("pressure-shift", {"late": -1.0}, "the pressure is 1 step early"),
         ("pressure-shift", {"late": 0.5}, "the pressure is the mean of this step and the one before"),
@@ -310,16 +312,15 @@ def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
 
 
 def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
-    variant = Variant(0.5, 1.0, 1.0)
-    about = Said(variant, variant, ["unexplained"], {}, Departure(7, "phase"), [], 0.0123, 0.0)
+    about = wording.Subject("", {}, Departure(7, "phase"), "")
     stages = [Stage("statics", True, "", {}), Stage("frequency", False, "", {}), Stage("damping", None, "", {})]
     near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
-    assert wording.not_explained(about, near, [], 0.034, stages) == (
+    assert wording.not_explained(about, near, 0.034, stages) == (
         "Departs from step 7 on, mainly in phase, not explained: nearest is gg 0.98 and density-factor 1.01, "
         "3.4 % left; right so far: statics; wrong: frequency."
     )
     alike = [near | {"further_scene": "another time step"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
-    text = wording.not_explained(about, None, alike, 0.034, stages)
+    text = wording.not_explained(replace(about, alike=alike), None, 0.034, stages)
     assert "gg 0.98 and density-factor 1.01 or scheme give the same rows" in text
     assert text.endswith("to tell them apart, try another time step.")
 
@@ -426,7 +427,7 @@ def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.Capt
     assert lines[-4].split() == ["dda", "constant", "acceleration", "below", "1e-10", "0"]
     assert lines[-3:-1] == ["fitted alpha = 0.5 +- less than 1e-12 (95 %)", "fitted softness = 0 +- 2e-07 (95 %)"]
     variant = Variant(0.5, 1.0, 1.0)
-    text = wording.sentence(Said(variant, variant, [], {}, None, [], 5e-14, 0.0))
+    text = wording.sentence(wording.Subject(wording.scheme_of(variant), {}, None, wording.left(5e-14)))
     assert text.endswith("gg = 1); the remaining difference is below 1e-10 %.")
 
 

@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from validation.diagnosis.causes import CAUSES, OUTSIDE, Move, benign_springs
+from validation.diagnosis.causes import LISTED, OUTSIDE, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.fitting import Found
+from validation.diagnosis.moves import Move
 from validation.diagnosis.variant import Variant
 
 CLEAR = 10.0  # of the information criterion: odds of 150 to 1
@@ -127,7 +128,7 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
     a geometry that makes no difference has explained nothing, and excuses nothing.
     """
     v = candidate.variant
-    base = v.base > 0 or (v.softness > 0 and benign_springs(target, v))
+    base = v.base > 0 or (v.softness > 0 and benign_springs(target.column, v))
     if not (v.updated or base):
         return False
     without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
@@ -164,7 +165,7 @@ def _sensible(explanation: Found) -> bool:
             value = getattr(explanation.fit.variant, name)
             if name not in ("alpha", "delta", "gg", "spectral") and abs(value - getattr(plain, name)) < 1e-7:
                 return False
-    return all(name in CAUSES or name in OUTSIDE for name in explanation.ids)
+    return all(name in LISTED for name in explanation.ids)
 
 
 def score(target: Target, candidate: Fit, moves: Sequence[Move] = ()) -> float:

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.causes import all_benign
 from validation.diagnosis.fits.fit import Fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.stepping import histories
@@ -49,7 +49,7 @@ def departure(
     The column that leaves first dates it; one that never leaves by more than digits and noise dates nothing. A contact
     that opens is a departure from its first open step on, even before the displacement shows it.
     """
-    if all(CAUSES[name].benign for name in causes):
+    if all_benign(causes):
         return None
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")

@@ -101,9 +101,9 @@ def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
 
 def _told(target: Target, verdict: Verdict, explanation: Found) -> dict[str, Any]:
     v = explanation.fit.variant
-    ids = causes_of(target, explanation.ids, v, verdict.own.variant)
+    ids = causes_of(target.column, explanation.ids, v, verdict.own.variant)
     scene = next((TELLS[name] for name in ids if name in TELLS), "a scene with less damping, over more periods")
-    return _relative(ids, values_of(target, ids, v), scene)
+    return _relative(ids, values_of(target.column, ids, v), scene)
 
 
 def _relative(ids: list[str], values: dict[str, float], scene: str) -> dict[str, Any]:

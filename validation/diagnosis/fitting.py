@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.causes import Move
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.moves import Move
 from validation.diagnosis.variant import Variant
 
 PERIODS = 5.0  # of the first mode, over which a fit does not go astray

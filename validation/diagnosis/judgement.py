@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 
 from validation.diagnosis import causes, departure, evidence, families, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
+from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
 from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
@@ -21,7 +21,7 @@ from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.one_number import OneChange
 from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, readings_of, slips
+from validation.diagnosis.readings import Reading, Slip, readings_of, slips, words_of_slips
 from validation.diagnosis.search import beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
@@ -184,7 +184,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
     all_causes = list(case.reading.slips) + causes.causes_of(
-        target, verdict.best.ids, best_fit.variant, scene_variant, error
+        target.column, verdict.best.ids, best_fit.variant, scene_variant, error
     )
     either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
     unexplained = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
@@ -197,22 +197,25 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     expected = departure.expected(target, shown, scene_variant, ids)
     first_departure = departure.departure(target, expected, all_causes if either else ids, steps)
     refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
-    values = causes.values_of(target, ids, v)
+    values = causes.values_of(target.column, ids, v)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
-    soft = causes.compliance(target, v)
     alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
     nearest = None if verdict.explained or alike else _nearest(target, verdict, all_causes)
-    if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
+    if verdict.explained and ids and all_benign(ids):
         stages = [evidence.surrounded(stage) for stage in stages]
-    subject = sentences.Said(
-        v, scene_variant, ids, values, first_departure, steps, best_fit.misfit, soft, corrected, ends
+    subject = sentences.Subject(
+        sentences.scheme_of(v),
+        _words(ids, values, v, scene_variant, corrected, steps, ends),
+        first_departure,
+        sentences.left(best_fit.misfit),
+        alike,
     )
     if not verdict.explained:
-        sentence = sentences.not_explained(subject, nearest, alike, unexplained, stages)
+        sentence = sentences.not_explained(subject, nearest, unexplained, stages)
     else:
-        sentence = sentences.sentence(subject, alike)
+        sentence = sentences.sentence(subject)
     time = np.cumsum(target.steps)[target.rows]
     best = histories(target.column, [best_fit.variant], target.steps)
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
@@ -240,9 +243,29 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     )
 
 
+def _words(
+    ids: Sequence[str],
+    values: Mapping[str, float],
+    v: Variant,
+    scene_variant: Variant,
+    corrected: Sequence[Slip],
+    open_steps: Sequence[int],
+    intervals_of_values: Mapping[str, tuple[float, float]],
+) -> dict[str, str]:
+    """Return the words of every cause, with its number."""
+    further = {"scheme": sentences.scheme_words(scene_variant.alpha, scene_variant.delta, scene_variant.gg)}
+    if open_steps:
+        further["open_steps"] = f" in steps {sentences.span(open_steps)}"
+    if "dead-band" in intervals_of_values:
+        low, high = intervals_of_values["dead-band"]
+        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
+    return words | words_of_slips(corrected)
+
+
 def _nearest(target: Target, verdict: Verdict, ids: list[str]) -> dict[str, Any]:
     """Return what comes nearest, and how much of the difference it leaves."""
-    values = causes.values_of(target, ids, verdict.best.fit.variant)
+    values = causes.values_of(target.column, ids, verdict.best.fit.variant)
     return {"causes": ids, "values": values, "left": float(f"{verdict.left:.4g}")}
 
 

@@ -271,9 +271,9 @@ def ranking(
     rows = []
     for each, misfit in zip(fits, misfits, strict=True):
         v = each.variant
-        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target, v)))
+        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target.column, v)))
     for rival in others:
-        softer = compliance(target, replace(best, softness=rival.softness))
+        softer = compliance(target.column, replace(best, softness=rival.softness))
         rows.append(row_of(rival.model, rival.alpha, rival.delta, rival.gg, rival.misfit, softer))
     return sorted(rows, key=lambda row: row["misfit"])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -33,6 +34,12 @@ class Slip:
         if self.cause == "sign":
             return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
         return f"the {name} is in other units, {self.factor:g} times the scene's"
+
+
+def words_of_slips(slips: Sequence[Slip]) -> dict[str, str]:
+    """Return the words of the errors of sign and of unit, by their causes."""
+    causes = sorted({slip.cause for slip in slips})
+    return {cause: " and ".join(slip.words for slip in slips if slip.cause == cause) for cause in causes}
 
 
 @dataclass(frozen=True, eq=False)

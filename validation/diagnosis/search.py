@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
-from validation.diagnosis.causes import FINE_BANDS, OUTSIDE, Move, dead_bands, moves
+from validation.diagnosis.causes import OUTSIDE
 from validation.diagnosis.decision import (
     AROUND,
     FAULT,
@@ -26,6 +26,7 @@ from validation.diagnosis.decision import (
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.fitting import Found, fitted
+from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.variant import Variant
 
 OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.causes import CAUSES, UNEXPLAINED
+from validation.diagnosis import sentences
+from validation.diagnosis.causes import UNEXPLAINED, all_benign, words_of
 from validation.diagnosis.departure import Departure
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.bar import last_digits
@@ -16,8 +17,8 @@ from validation.diagnosis.forces.forward import at_step, displacements
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
 from validation.diagnosis.forces.motion import body_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
-from validation.diagnosis.readings import Slip
-from validation.diagnosis.sentences import per_cent, scheme_words
+from validation.diagnosis.readings import Slip, words_of_slips
+from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, Array
@@ -135,14 +136,10 @@ def ids_of(result: Found, read: Read) -> list[str]:
 
 def departure_of(result: Found, ids: Sequence[str]) -> Departure | None:
     """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
-    if all(CAUSES[name].benign for name in ids):
+    if all_benign(ids):
         return None
-    return Departure(_first(result, ids) or 1, "offset")
-
-
-def _first(result: Found, ids: Sequence[str]) -> int | None:
-    """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
-    return 1 if {"sign", "unit"} & set(ids) else result.first
+    first = 1 if {"sign", "unit"} & set(ids) else result.first
+    return Departure(first or 1, "offset")
 
 
 def stages(result: Found, read: Read) -> list[Stage]:
@@ -205,44 +202,23 @@ def _motion(result: Found, with_change: bool = False) -> str:
 def sentence(scene: Scene, result: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
     """Return the first line of the answer."""
     t = scene.time
-    scheme = scheme_words(t.alpha, t.delta, t.discount)
     law = "lagged" if result.lagged else "consistent"
     share = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
     if not result.explained:
-        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
         if result.alike:
             words = list(dict.fromkeys(one.words for one in result.alike))
             same = "gives" if len(words) == 1 else "give"
             return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(result)}."
+        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
         normal = f"the normal law leaves {per_cent(result.normal, 2)} %"
         return f"Departs, not explained: {why}; {normal}; {_motion(result)}."
-    faults = [slip.words for slip in corrected]
-    faults += [_fault(name, result) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
-    benign = [_benign(name, result) for name in ids if CAUSES[name].benign]
-    allowed = f", allowing for {' and '.join(benign)}" if benign else ""
-    if not faults:
-        return f"Same model, same scheme: {scheme}{allowed}; {_motion(result)}."
     if result.change:
         faults = [*(slip.words for slip in corrected), result.change]
         return f"Departs: {' and '.join(faults)}; {_motion(result, with_change=True)}."
-    first = _first(result, ids)
-    where = f" from step {first} on" if first else ""
-    return f"Same scheme: {scheme}, but departs{where}: {' and '.join(faults)}{allowed}; {share}."
-
-
-def _fault(name: str, result: Found) -> str:
-    value = result.values.get(name, 0.0)
-    words = {
-        "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
-        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
-        "springs-factor": f"the contact springs are {value:.4g} times the scene's",
-        "normal-springs-factor": f"the normal springs alone are {value:.4g} times the scene's",
-    }
-    return words.get(name, CAUSES[name].words)
-
-
-def _benign(name: str, result: Found) -> str:
-    value = result.values.get(name, 0.0)
-    if name == "own-weight":
-        return f"the block's own weight ({value:.3g} x 9.81 m/s2)"
-    return f"a base that adds {100 * value:.2g} % to the static displacement"
+    words_by_id = {name: words_of(name, result.values.get(name, 0.0)) for name in ids} | words_of_slips(corrected)
+    remainder = _motion(result) if all_benign(ids) else share
+    return sentences.sentence(
+        sentences.Subject(
+            sentences.scheme_words(t.alpha, t.delta, t.discount), words_by_id, departure_of(result, ids), remainder
+        )
+    )
