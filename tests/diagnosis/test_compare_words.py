@@ -28,9 +28,10 @@ from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
-from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, rivals
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, rivals
 from validation.diagnosis.other_solvers import _causes as causes_of_rival
-from validation.diagnosis.reading import Foreign
+from validation.diagnosis.reading import Foreign, Stepping
+from validation.diagnosis.readings import Reading
 from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
@@ -146,8 +147,9 @@ def test_a_solver_finds_the_springs_on_which_it_made_a_history(times: float, cau
     c = SCENE.contact
     softer = SCENE.with_values({"contact.stiffness": times * c.stiffness, "contact.shear_stiffness": c.shear})
     run = solve(softer, "bar")
-    (found,) = rivals(SCENE, ["bar"], Goal(np.arange(30), run.displacement, run.contact_pressure), schemes=[])
-    assert found.softness == pytest.approx(-math.log(times), rel=1e-6) and found.misfit < 1e-9 < found.plain
+    recorded = Reading(Stepping(np.full(30, 0.002), np.arange(30)), run.displacement, run.contact_pressure, ())
+    (found,) = rivals(SCENE, ["bar"], recorded, schemes=[])
+    assert found.softness == pytest.approx(-math.log(times), rel=1e-6) and found.misfit < 1e-9
     assert causes_of_rival(SCENE, found)[0] == [cause]
 
 
@@ -288,7 +290,7 @@ def test_what_is_no_fault_is_told_with_its_number() -> None:
 
 
 def rival(model: str, *scheme: float | None, causes: list[str], explained: bool = True) -> RivalVerdict:
-    best = Rival(model, *(scheme or (None, None, None)), 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    best = Rival(model, *(scheme or (None, None, None)), 0.0123, np.zeros(1))
     return RivalVerdict(best, [best], causes, {}, np.zeros(1), explained, 0.25)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,7 +19,7 @@ from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.one_number import OneChange
-from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, ranking, rivals, row_of
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, Slip, readings_of, slips, words_of_slips
 from validation.diagnosis.search import beside, paired, simple
@@ -166,9 +166,7 @@ def _others(scene: Scene, case: Case, verdict: Verdict, at_hand: Sequence[Rival]
     names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
     if np.ptp(steps) > 0:
         return []
-    schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
-    r = case.reading
-    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, at_hand)
+    return rivals(case.reading.scene_of(scene), names, case.reading, [(v.alpha, v.delta)], at_hand)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------

@@ -23,6 +23,14 @@ def norm(values: Array) -> float:
     return float(np.linalg.norm(values)) or 1.0
 
 
+def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: Array | None) -> Array:
+    """Return two columns over the norms of recorded ones, below one another; their own squares sum to one."""
+    first = displacement / norm(recorded[0])
+    if recorded[1] is None or pressure is None:
+        return np.asarray(first)
+    return np.concatenate([first, pressure / norm(recorded[1])]) / math.sqrt(2)
+
+
 @dataclass(frozen=True, eq=False)
 class Bar:
     """What digits and noise may leave of a column, in its unit."""
@@ -68,10 +76,7 @@ class Target:
 
     def join(self, displacement: Array, pressure: Array | None) -> Array:
         """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
-        first = displacement / norm(self.displacement)
-        if self.pressure is None or pressure is None:
-            return first
-        return np.concatenate([first, pressure / norm(self.pressure)]) / math.sqrt(2)
+        return joined((self.displacement, self.pressure), displacement, pressure)
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
