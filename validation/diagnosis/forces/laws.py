@@ -145,13 +145,12 @@ class _Observer:
     """Rotation and strains that a motion must have had, (r, ex, ey, gxy)."""
 
     def __init__(self, body: Body, motion: Motion) -> None:
-        self.body, self.s = body, motion.scheme
-        self.rows = [body.row(c) for c in (0, 1)]
+        self.body, self.time = body, motion.time
         self.scale = float(np.mean(np.abs(motion.forces(body)[:, 1])))
-        self.e = self.s.alpha * self.s.step**2
+        self.e = self.time.alpha * self.time.step**2
         self.plain = body.inertia + self.e * body.elastic
         self.x, self.V = np.zeros(4), np.zeros(4)
-        self.A = np.linalg.solve(body.inertia, body.internal) if self.s.consistent else np.zeros(4)
+        self.A = np.linalg.solve(body.inertia, body.internal) if self.time.start == "consistent" else np.zeros(4)
         self.inverses: dict[tuple[bool, ...], Array] = {}
 
     def step(
@@ -162,11 +161,11 @@ class _Observer:
         Those corners are closed whose springs come nearest to the normal resultant. The sum of the shear forces is
         known; `shears` says how corners share it that slip, the others follow their springs.
         """
-        s, dt = self.s, self.s.step
-        ahead = self.x + s.gg * dt * self.V + dt * dt * (0.5 - s.alpha) * self.A
-        y = -self.body.height / 2
-        loads = self.body.internal + force[0] * np.array([-y, 0, 0, y / 2]) + force[1] * np.array([0, 0, y, 0])
-        right = self.body.inertia @ ahead + self.e * loads
+        t, dt, body = self.time, self.time.step, self.body
+        ahead = self.x + t.discount * dt * self.V + dt * dt * (0.5 - t.alpha) * self.A
+        # resultants at the middle of the base
+        loads = body.internal + force[0] * body.along.mean(axis=0) + force[1] * body.across.mean(axis=0)
+        right = body.inertia @ ahead + self.e * loads
         closed, (x, gap) = before, self._end(right, before, place, force, corners, shears)
         if self._off(before, gap, force[1]) > NEAR * self.scale:
             ends = {one: self._end(right, one, place, force, corners, shears) for one in CLOSED}
@@ -175,7 +174,7 @@ class _Observer:
         A = (x - ahead) / self.e
         if sum(closed) == 1:
             x, gap = self._turned(closed.index(True), x, gap, place, force[1])
-        slide = np.array([place[0] + along @ x for along, _ in self.rows])
+        slide = place[0] + body.along @ x
         return _Seen(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
 
     def _nearest(self, ends: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
@@ -186,15 +185,15 @@ class _Observer:
 
     def accept(self, end: _Seen) -> None:
         """Move to the end of a step."""
-        s = self.s
-        self.V = s.gg * self.V + s.step * ((1 - s.delta) * self.A + s.delta * end.acceleration)
+        t = self.time
+        self.V = t.discount * self.V + t.step * ((1 - t.delta) * self.A + t.delta * end.acceleration)
         self.x, self.A = end.unknowns, end.acceleration
 
     def _turned(self, c: int, x: Array, gap: Array, place: Array, normal: float) -> tuple[Array, Array]:
         """Return unknowns and gaps once the block is turned to where its one spring gives the normal resultant."""
         off = (-normal / self.body.stiffness - gap[c]) / self.body.x[c]
         x = x + np.array([off, 0.0, 0.0, 0.0])
-        return x, np.array([place[1] + across @ x for _, across in self.rows])
+        return x, place[1] + self.body.across @ x
 
     def _off(self, closed: Closed, gap: Array, normal: float) -> float:
         pulls = sum(max(gap[c], 0.0) for c in (0, 1) if closed[c])
@@ -221,7 +220,7 @@ class _Observer:
             elif closed[c]:
                 right[1] += self.e * body.x[c] * (shears[c] or 0.0)
         x = self._inverse(closed, stuck) @ right
-        return x, np.array([place[1] + across @ x for _, across in self.rows])
+        return x, place[1] + self.body.across @ x
 
     def _inverse(self, closed: Closed, stuck: tuple[bool, ...]) -> Array:
         key = (*closed, *stuck)
@@ -231,7 +230,7 @@ class _Observer:
                 S += self.e * body.stiffness * (body.x[1] - body.x[0]) ** 2 / 2 * np.outer(BOTH, BOTH)
             for c in (0, 1):
                 if stuck[c]:
-                    S[1] += self.e * body.shear * body.x[c] * self.rows[c][0]
+                    S[1] += self.e * body.shear * body.x[c] * body.along[c]
             self.inverses[key] = np.asarray(np.linalg.inv(S), dtype=np.float64)
         return self.inverses[key]
 
