@@ -19,12 +19,11 @@ from oracles.program_scenes import scene_of
 
 from validation import load_scene, solve
 from validation.cli import compare as cli_compare
-from validation.diagnosis import departure
+from validation.diagnosis import evidence
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor, values_of, words_of
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
@@ -343,7 +342,7 @@ WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
     ],
 )
 def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
-    assert departure.measured(WANTED, given, np.arange(200), 0.0).kind == kind
+    assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
 
 
 @pytest.mark.parametrize(
@@ -357,7 +356,7 @@ def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
 )
 def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noise: float, step: int) -> None:
     given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
-    assert departure.measured(WANTED, given, rows, noise).step == step
+    assert evidence.measured(WANTED, given, rows, noise).step == step
 
 
 def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from validation import load_scene, solve
-from validation.diagnosis.forces.laws import follow
-from validation.diagnosis.forces.motion import body_of, motion_of
+from validation.diagnosis.forces.laws import body_of, follow, motion_of
 
 SLOPE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
 PLACE = ("horizontal_displacement", "displacement")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.readings import Slip
 from validation.runs.history import Array

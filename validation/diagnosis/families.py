@@ -7,10 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from validation.diagnosis.causes import causes_of, values_of
-from validation.diagnosis.decision import Verdict
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.fitting import Found
 from validation.diagnosis.readings import Slip
+from validation.diagnosis.search import Found, Verdict
 from validation.diagnosis.variant import Variant
 
 SAME_FACTOR = 1e-5  # relative

@@ -9,20 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis import causes, departure, evidence, families, sentences
+from validation.diagnosis import causes, evidence, families, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
-from validation.diagnosis.decision import Verdict
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
-from validation.diagnosis.forces.one_number import OneChange
+from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, Slip, readings_of, slips, words_of_slips
-from validation.diagnosis.search import beside, paired, simple
+from validation.diagnosis.search import Verdict, beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -192,8 +191,8 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     v = best_fit.variant if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
-    expected = departure.expected(target, shown, scene_variant, ids)
-    first_departure = departure.departure(target, expected, all_causes if either else ids, steps)
+    expected = evidence.expected(target, shown, scene_variant, ids)
+    first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
     refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
     values = causes.values_of(target.column, ids, v)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
@@ -278,7 +277,7 @@ def _diverged(case: Case, factor: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
     target, stages = case.target, _stages(case, factor)
     expected = case.expected[0]
-    first_departure = departure.unbounded(expected, target.displacement, target.rows)
+    first_departure = evidence.unbounded(expected, target.displacement, target.rows)
     time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
@@ -322,7 +321,7 @@ def _answer_of_rival(
     first_departure = None
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
-        first_departure = departure.measured(expected[rows], reading.displacement, rows, 0.0)
+        first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
     sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))

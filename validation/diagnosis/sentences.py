@@ -12,8 +12,7 @@ from validation.diagnosis.variant import Variant
 from validation.gates.gate import ROUNDING
 
 if TYPE_CHECKING:
-    from validation.diagnosis.departure import Departure
-    from validation.diagnosis.evidence import Stage
+    from validation.diagnosis.evidence import Departure, Stage
     from validation.diagnosis.fits.fit import Interval
     from validation.diagnosis.other_solvers import RivalVerdict
 

@@ -10,12 +10,11 @@ import numpy as np
 
 from validation.diagnosis import sentences
 from validation.diagnosis.causes import UNEXPLAINED, all_benign, words_of
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.forces.forward import at_step, displacements
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
-from validation.diagnosis.forces.motion import body_of
+from validation.diagnosis.forces.laws import body_of
+from validation.diagnosis.forces.runs import at_step, displacements
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, words_of_slips
 from validation.diagnosis.sentences import per_cent

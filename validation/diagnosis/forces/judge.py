@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.diagnosis.causes import round_factor
-from validation.diagnosis.forces.forward import (
+from validation.diagnosis.forces.laws import Body, Followed, body_of, follow, motion_of
+from validation.diagnosis.forces.runs import (
     NO_RUN,
     SURROUNDINGS,
     Agreement,
+    OneChange,
     Surrounded,
     agreement,
     at_step,
+    one_number,
     surrounded,
 )
-from validation.diagnosis.forces.laws import Followed, follow
-from validation.diagnosis.forces.motion import Body, body_of, motion_of
-from validation.diagnosis.forces.one_number import OneChange, one_number
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.scenes.tables import TimeSection
