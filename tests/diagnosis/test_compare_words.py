@@ -375,18 +375,18 @@ def row(model: str, misfit: float, soft: float | None, name: str | None, alpha: 
 CURVES = {name: (0.1 * np.arange(1, 6), -1e-3 * scale * np.ones(5)) for name, scale in
           (("the file", 4.0), ("dda", 5.0), ("best", 6.0))}  # fmt: skip
 ANSWER = Answer(
-    {"alpha": 0.5, "delta": 1.0, "gg": 0.97},
-    [row("dda", 0.0123, 0.045, "constant acceleration", 0.5), row("dda", 0.4, 0.0678, None, 0.31),
-     row("continuum", 0.87, None, None, None)],
-    Departure(17, "damping"),
-    ["gg", "contact-opened"],
-    (3, 41),
-    "It departs.",
-    ("a note",),
-    {"alpha": Interval(0.51, 0.02)},
-    [{"alpha": 0.7, "gg": -0.7}],
-    0.0123,
-    CURVES,
+    scheme={"alpha": 0.5, "delta": 1.0, "gg": 0.97},
+    ranking=[row("dda", 0.0123, 0.045, "constant acceleration", 0.5), row("dda", 0.4, 0.0678, None, 0.31),
+             row("continuum", 0.87, None, None, None)],
+    departure=Departure(17, "damping"),
+    causes=["gg", "contact-opened"],
+    opened=(3, 41),
+    sentence="It departs.",
+    notes=("a note",),
+    told={"alpha": Interval(0.51, 0.02)},
+    untold=[{"alpha": 0.7, "gg": -0.7}],
+    misfit=0.0123,
+    curves=CURVES,
 )  # fmt: skip
 
 

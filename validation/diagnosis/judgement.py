@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -20,7 +20,7 @@ from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, Slip, readings_of, slips, words_of_slips
+from validation.diagnosis.readings import Reading, readings_of, slips, words_of_slips
 from validation.diagnosis.search import Verdict, beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
@@ -199,12 +199,22 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
     alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
-    nearest = None if verdict.explained or alike else _nearest(target, verdict, all_causes)
+    nearest: dict[str, Any] | None = None
+    if not (verdict.explained or alike):
+        numbers = causes.values_of(target.column, all_causes, best_fit.variant)
+        nearest = {"causes": all_causes, "values": numbers, "left": unexplained}
     if verdict.explained and ids and all_benign(ids):
         stages = [evidence.surrounded(stage) for stage in stages]
+    further = {"scheme": sentences.scheme_of(scene_variant)}
+    if steps:
+        further["open_steps"] = f" in steps {sentences.span(steps)}"
+    if "dead-band" in ends:
+        low, high = ends["dead-band"]
+        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
         sentences.scheme_of(v),
-        _words(ids, values, v, scene_variant, corrected, steps, ends),
+        words | words_of_slips(corrected),
         first_departure,
         sentences.left(best_fit.misfit),
         alike,
@@ -218,52 +228,26 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
-        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
-        ranking(DDA, target, v, shown.free, others),
-        first_departure,
-        ids,
-        (steps[0], steps[-1]) if steps else None,
-        sentence,
-        _notes(case.foreign, case.reading),
-        intervals(refitted) if verdict.explained else {},
-        untold(refitted) if verdict.explained else [],
-        best_fit.misfit,
-        {name: (time, curve) for name, curve in curves.items()},
-        values,
-        unexplained,
-        nearest,
-        alike,
-        tuple(stages),
+        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        ranking=ranking(DDA, target, v, shown.free, others),
+        departure=first_departure,
+        causes=ids,
+        opened=(steps[0], steps[-1]) if steps else None,
+        sentence=sentence,
+        notes=_notes(case.foreign, case.reading),
+        told=intervals(refitted) if verdict.explained else {},
+        untold=untold(refitted) if verdict.explained else [],
+        misfit=best_fit.misfit,
+        curves={name: (time, curve) for name, curve in curves.items()},
+        values=values,
+        unexplained=unexplained,
+        nearest=nearest,
+        alike=alike,
+        evidence=tuple(stages),
         slips=corrected if verdict.explained else (),
         pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
         intervals=ends,
     )
-
-
-def _words(
-    ids: Sequence[str],
-    values: Mapping[str, float],
-    v: Variant,
-    scene_variant: Variant,
-    corrected: Sequence[Slip],
-    open_steps: Sequence[int],
-    intervals_of_values: Mapping[str, tuple[float, float]],
-) -> dict[str, str]:
-    """Return the words of every cause, with its number."""
-    further = {"scheme": sentences.scheme_words(scene_variant.alpha, scene_variant.delta, scene_variant.gg)}
-    if open_steps:
-        further["open_steps"] = f" in steps {sentences.span(open_steps)}"
-    if "dead-band" in intervals_of_values:
-        low, high = intervals_of_values["dead-band"]
-        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
-    words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
-    return words | words_of_slips(corrected)
-
-
-def _nearest(target: Target, verdict: Verdict, ids: list[str]) -> dict[str, Any]:
-    """Return what comes nearest, and how much of the difference it leaves."""
-    values = causes.values_of(target.column, ids, verdict.best.fit.variant)
-    return {"causes": ids, "values": values, "left": float(f"{verdict.left:.4g}")}
 
 
 def _opened(target: Target, v: Variant) -> list[int]:
@@ -281,13 +265,11 @@ def _diverged(case: Case, factor: float) -> Answer:
     time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
-        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
-        [],
-        first_departure,
-        [DIVERGED],
-        None,
-        sentences.diverged(first_departure, factor),
-        _notes(case.foreign, case.reading),
+        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        departure=first_departure,
+        causes=[DIVERGED],
+        sentence=sentences.diverged(first_departure, factor),
+        notes=_notes(case.foreign, case.reading),
         curves={"the file": (time, target.displacement), DDA: (time, expected)},
         values={DIVERGED: float(f"{factor:.6g}")},
         evidence=tuple(stages),
@@ -329,13 +311,12 @@ def _answer_of_rival(
         stages = [evidence.surrounded(stage, "another model") for stage in stages]
     time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
-        {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
-        [row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
-        first_departure,
-        ids,
-        None,
-        sentence,
-        _notes(foreign, reading),
+        scheme={"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
+        ranking=[row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
+        departure=first_departure,
+        causes=ids,
+        sentence=sentence,
+        notes=_notes(foreign, reading),
         misfit=best.misfit,
         curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
         values=verdict.values if verdict.explained else {},
@@ -353,14 +334,15 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     t = scene.time
     unexplained = float(f"{min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])):.4g}")
     near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
+    softer = result.values.get("base-compliance", 0.0)
     return Answer(
-        {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        [row_of(DDA, t.alpha, t.delta, t.discount, result.normal, result.values.get("base-compliance", 0.0))],
-        answer.departure_of(result, ids),
-        ids,
-        result.opened if result.explained else None,
-        answer.sentence(scene, result, ids, read.corrected),
-        (*foreign.notes, *read.notes),
+        scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
+        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
+        departure=answer.departure_of(result, ids),
+        causes=ids,
+        opened=result.opened if result.explained else None,
+        sentence=answer.sentence(scene, result, ids, read.corrected),
+        notes=(*foreign.notes, *read.notes),
         misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
         values=result.values if result.explained else {},

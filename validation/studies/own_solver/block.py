@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from validation.diagnosis import compare
+from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.reading import Foreign
 from validation.gates.gate import Status
+from validation.runs.history import PRESSURE
+from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.studies.own_solver import block_data, gates
 from validation.studies.own_solver.block_data import AtRest, Misreading
-from validation.studies.own_solver.evidence import diagnosis
 from validation.studies.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
 from validation.studies.own_solver.history import AT_REST
 from validation.studies.own_solver.session import LARGEST, Told
@@ -17,6 +22,7 @@ from validation.studies.own_solver.session import LARGEST, Told
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
 FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
 WIDTH = 11  # of the first column
+LONGEST = 2000  # steps of a scene that is compared: every explanation that is tried steps through all of them
 MAY_FOLLOW = "may follow from it, look again when it is right"
 
 
@@ -238,3 +244,37 @@ def _few(names: Sequence[str]) -> str:
     every = list(dict.fromkeys(names))
     more = f" and {len(every) - SHOWN} more scenes" if len(every) > SHOWN else ""
     return ", ".join(every[:SHOWN]) + more
+
+
+# ---- what `compare` finds -------------------------------------------------------------------------------------------
+
+
+def telling(failed: Sequence[Told], groups: Sequence[str]) -> Told | None:
+    """Return a failing gate of the scene that tells most.
+
+    It is the scene with the most failing gates of the groups that the fault lies in, then the most failing gates,
+    then the fewest steps; the first of equal ones.
+    """
+    short = [t for t in failed if t.steps <= LONGEST]
+    in_groups, every = Counter(t.scene for t in short if t.group in groups), Counter(t.scene for t in short)
+    return max(short, key=lambda t: (in_groups[t.scene], every[t.scene], -t.steps), default=None)
+
+
+def diagnosis(failed: Sequence[Told], groups: Sequence[str]) -> Iterator[str]:
+    """Yield what `compare` says of the scene that tells most; nothing where no history failed a gate."""
+    chosen = telling(failed, groups)
+    history = None if chosen is None else Results(chosen.results).history(chosen.key)
+    if chosen is None or history is None:
+        return
+    yield f"\ncompare, {chosen.scene} ({chosen.steps} steps)"
+    scene = gates.cases(chosen.study)[chosen.scene, gates.JUDGED].scene
+    try:
+        answer = compare(scene, Foreign(history.time, history.displacement, history.columns.get(PRESSURE)))
+    except Exception as error:  # numbers of anybody's code: the rest of the block stands without it
+        yield f"  nothing can be said: {error}"
+        return
+    yield f"  {answer.sentence}"
+    if answer.causes == [UNEXPLAINED]:
+        yield "  not explained: what is listed above stands, its cause is none that compare knows"
+    elif answer.causes:
+        yield f"  causes: {', '.join(answer.causes)}"
