@@ -242,7 +242,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
     further = {"open_steps": " in steps 3-5, 9", "scheme": wording.scheme_of(scene)}
     numbers = values_of(BLOCK, causes, variant) | NUMBERS | {"base-compliance": soft}
     words = {name: words_of(name, numbers.get(name, 0.0), variant, scene, **further) for name in causes}
-    return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.left(0.0123)))
+    return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.remaining(0.0123)))
 
 
 @pytest.mark.parametrize(
@@ -428,7 +428,7 @@ def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.Capt
     assert lines[-4].split() == ["dda", "constant", "acceleration", "below", "1e-10", "0"]
     assert lines[-3:-1] == ["fitted alpha = 0.5 +- less than 1e-12 (95 %)", "fitted softness = 0 +- 2e-07 (95 %)"]
     variant = Variant(0.5, 1.0, 1.0)
-    text = wording.sentence(wording.Subject(wording.scheme_of(variant), {}, None, wording.left(5e-14)))
+    text = wording.sentence(wording.Subject(wording.scheme_of(variant), {}, None, wording.remaining(5e-14)))
     assert text.endswith("gg = 1); the remaining difference is below 1e-10 %.")
 
 

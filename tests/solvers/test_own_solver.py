@@ -33,7 +33,7 @@ from validation.studies.own_solver import block as block_module
 from validation.studies.own_solver import block_data, gates
 from validation.studies.own_solver.block import block, first, outside, telling
 from validation.studies.own_solver.history import AT_REST, PENCIL, TAIL, natural_frequency, rest, root
-from validation.studies.own_solver.session import Session, Told
+from validation.studies.own_solver.session import GateReport, Session
 from validation.theory import spectra
 
 ROOT = Path(__file__).parents[2]
@@ -367,10 +367,12 @@ def test_a_solver_has_the_time_of_its_steps(monkeypatch: pytest.MonkeyPatch, tmp
 
 # ---- the block ------------------------------------------------------------------------------------------------------
 
-SOUND = Told("id", "core", "s1", 200, "statics", "displacement.final", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r")
+SOUND = GateReport(
+    "id", "core", "s1", 200, "statics", "displacement.final", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r"
+)
 
 
-def of(**values: object) -> Told:
+def of(**values: object) -> GateReport:
     return replace(SOUND, **values)  # type: ignore[arg-type]
 
 
@@ -465,7 +467,7 @@ def test_the_block_ends_with_what_no_gate_saw() -> None:
 # ---- data of the block ----------------------------------------------------------------------------------------------
 
 
-def told_by(solver: str, results: Path, study: str = "own-solver") -> list[Told]:
+def told_by(solver: str, results: Path, study: str = "own-solver") -> list[GateReport]:
     """Return what the gates on the start and on data of the block say of a solver."""
     session = Session(solver, Results(results))
     return [session.judge(name)[1] for name, (owner, _) in gates.applying().items() if owner == study]

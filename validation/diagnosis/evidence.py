@@ -22,7 +22,7 @@ from validation.metrics.poles import Swing, swing
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
-SEEN = 1e-3  # of the largest displacement: a smaller difference is no departure
+DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
 NOISE = 4.0  # standard deviations
 
 
@@ -74,7 +74,7 @@ def departure(
 
 def unbounded(expected_values: Array, recorded: Array, rows: np.ndarray) -> Departure:
     """Return the first step at which a history without bounds has left the expected one."""
-    away = np.abs(recorded - expected_values) > SEEN * float(np.max(np.abs(expected_values)))
+    away = np.abs(recorded - expected_values) > DEPARTED * float(np.max(np.abs(expected_values)))
     return Departure(int(rows[int(np.argmax(away))]) + 1, "amplitude")
 
 
@@ -89,7 +89,7 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
         size = float(np.max(np.abs(recorded))) or 1.0
         r = np.clip(expected_values, -1e3 * size, 1e3 * size)
     d = recorded - r
-    tolerance = max(SEEN * size, NOISE * noise)
+    tolerance = max(DEPARTED * size, NOISE * noise)
     beyond = np.flatnonzero(np.abs(d) > tolerance)
     first = int(beyond[0]) if beyond.size else int(np.argmax(np.abs(d)))
     t = (rows + 1) / (rows[-1] + 1)

@@ -216,7 +216,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         sentences.scheme_of(v),
         words | words_of_slips(corrected),
         first_departure,
-        sentences.left(best_fit.misfit),
+        sentences.remaining(best_fit.misfit),
         alike,
     )
     if not verdict.explained:

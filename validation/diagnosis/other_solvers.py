@@ -156,8 +156,8 @@ def _fitted(scene: Scene, name: str, recorded: Reading, change: CandidateChange[
     except InputError:  # the step lies beyond the limit of the scheme
         return None
     t = scene.time
-    scheme = (None, None, None) if name in NO_SCHEME else (t.alpha, t.delta, t.discount)
-    return Rival(name, *scheme, best.remainder, displacement, change.id, change.value(best.u))
+    alpha, delta, gg = (None, None, None) if name in NO_SCHEME else (t.alpha, t.delta, t.discount)
+    return Rival(name, alpha, delta, gg, best.remainder, displacement, change.id, change.value(best.u))
 
 
 def _remainder(scene: Scene, name: str, recorded: Reading) -> tuple[Array, Array]:

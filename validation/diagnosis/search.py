@@ -33,7 +33,7 @@ Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Explanation:
     """Causes, with the fit that has them."""
 
     moves: tuple[Move, ...]
@@ -48,7 +48,7 @@ class Found:
 # ---- fits -----------------------------------------------------------------------------------------------------------
 
 
-def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Found]:
+def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Explanation]:
     """Return combinations of causes at their best, the best first.
 
     A combination with free numbers begins at the two of its starts that come nearest.
@@ -67,18 +67,18 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     return explanations if part.same_steps(target) else _further(target, _leading(explanations))
 
 
-def _further(target: Target, explanations: Sequence[Found]) -> list[Found]:
+def _further(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
     return _fits(target, [(f.moves, f.fit.variant, f.fit.free) for f in explanations], ROUNDS)
 
 
-def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Found]:
+def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Explanation]:
     """Return the fits from some starts, the best first."""
     fits = [
         f
         for i in range(0, len(starts), CHUNK)
         for f in fit(target, [(v, free) for _, v, free in starts[i : i + CHUNK]], rounds)
     ]
-    return sorted((Found(s[0], f) for s, f in zip(starts, fits, strict=True)), key=lambda f: f.fit.misfit)
+    return sorted((Explanation(s[0], f) for s, f in zip(starts, fits, strict=True)), key=lambda f: f.fit.misfit)
 
 
 def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Start]:
@@ -109,9 +109,9 @@ def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
     return [fixed, *firsts]
 
 
-def _leading(explanations: Sequence[Found]) -> list[Found]:
+def _leading(explanations: Sequence[Explanation]) -> list[Explanation]:
     """Return the best few, of the same causes the best with the same free numbers."""
-    leading: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Found] = {}
+    leading: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Explanation] = {}
     for f in explanations:
         if len({ids for ids, _, _ in leading} | {f.ids}) <= KEPT:
             leading.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
@@ -130,7 +130,7 @@ NEEDED = 14.0  # the same for a cause where noise alone would do: there are some
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
 AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
-SEEN = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
+WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
 FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
@@ -155,10 +155,10 @@ class Verdict:
     """What the search came to."""
 
     own: Fit  # of the scene as it is
-    best: Found  # what explains it, or comes nearest
+    best: Explanation  # what explains it, or comes nearest
     explained: bool
-    alike: tuple[Found, ...] = ()  # others that explain it as well
-    single: tuple[Found, ...] = ()  # every cause by itself, the best first
+    alike: tuple[Explanation, ...] = ()  # others that explain it as well
+    single: tuple[Explanation, ...] = ()  # every cause by itself, the best first
     around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
 
@@ -176,14 +176,16 @@ class Verdict:
 # ---- the decision ---------------------------------------------------------------------------------------------------
 
 
-def decided(target: Target, scene_fit: Fit, explanations: Sequence[Found]) -> Verdict:
+def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation]) -> Verdict:
     """Return the verdict over candidates, the scene as it is among them or not."""
     scores = {id(f): score(target, f.fit, f.moves) for f in explanations}
     ranked = sorted(explanations, key=lambda f: scores[id(f)])
     fine = [f for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
     if not fine:
         return Verdict(
-            scene_fit, min(explanations, key=lambda f: f.fit.misfit) if explanations else Found((), scene_fit), False
+            scene_fit,
+            min(explanations, key=lambda f: f.fit.misfit) if explanations else Explanation((), scene_fit),
+            False,
         )
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
@@ -194,11 +196,11 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Found]) -> Ve
     if target.explained(scene_fit.residual) and not (
         is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
     ):
-        return Verdict(scene_fit, Found((), scene_fit), True)
+        return Verdict(scene_fit, Explanation((), scene_fit), True)
     return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True)
 
 
-def _rounder(close: list[Found]) -> list[Found]:
+def _rounder(close: list[Explanation]) -> list[Explanation]:
     """Return explanations without those whose numbers are far less round: 1.2 and 1.2 before 0.833333 and 0.833333."""
     digits = [sum(_digits(getattr(f.fit.variant, name)) for name in f.fit.free) for f in close]
     if min(digits) > ROUND * max(len(close[0].fit.free), 1):
@@ -212,7 +214,7 @@ def _digits(value: float) -> int:
     return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in forms)
 
 
-def _contained(best: Found, other: Found) -> bool:
+def _contained(best: Explanation, other: Explanation) -> bool:
     """Whether an explanation is the best one with a further part that has no effect."""
     return set(best.ids) < set(other.ids) or (best.ids in WITHOUT_BAND and other.ids == ("dead-band",))
 
@@ -243,10 +245,10 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
     if not (v.updated or base):
         return False
     without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
-    return fit(target, [(without, ())])[0].misfit > SEEN * candidate.misfit
+    return fit(target, [(without, ())])[0].misfit > WITHOUT_IT * candidate.misfit
 
 
-def _nameable(target: Target, scene_fit: Fit, explanation: Found) -> bool:
+def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """Whether enough of the difference stands out of the noise for a cause to be named.
 
     Where noise hides a share of it, another cause that leaves less than that share would look the same.
@@ -268,7 +270,7 @@ def _rare(move: Move, among: int) -> bool:
     return move.id not in (*USUAL, *SURROUNDINGS) or (among > 1 and "displacement_factor" in move.free)
 
 
-def _sensible(explanation: Found) -> bool:
+def _sensible(explanation: Explanation) -> bool:
     """Whether every cause is there in a measurable amount and within its bounds."""
     plain = Variant(0.5, 1.0, 1.0)
     for move in explanation.moves:
@@ -312,7 +314,7 @@ def simple(target: Target, scene: Variant) -> Verdict:
         The scene's own scheme, nothing added.
     """
     scene_fit = fit(target, [(scene, ())])[0]
-    nothing = Found((), scene_fit)
+    nothing = Explanation((), scene_fit)
     if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
         return Verdict(scene_fit, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
@@ -363,7 +365,7 @@ def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
     return _nearer(last, before)
 
 
-def _around(target: Target, scene: Variant) -> list[Found]:
+def _around(target: Target, scene: Variant) -> list[Explanation]:
     """Return two or three of what surrounds a block: a softer base, weight, moving geometry."""
     parts = _surroundings(target, scene)
     combos = [tuple(parts[:1])] + [combo for size in (2, 3) for combo in combinations(parts, size)]
@@ -378,18 +380,18 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
     return [plain[name] for name in SURROUNDINGS]
 
 
-def _heavy(target: Target, explanations: Sequence[Found]) -> list[Found]:
+def _heavy(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
     """Return explanations by a softer base with a base that has mass."""
     more = []
     for f in explanations:
         v = f.fit.variant
         if v.softness > 0 and "softness" in f.fit.free:
             starts = [(replace(v, base=m, softness=v.softness * soft), (*f.fit.free, "base")) for m, soft in BASES]
-            more += [Found(f.moves, heavy) for heavy in fit(target, starts, rounds=12)]
+            more += [Explanation(f.moves, heavy) for heavy in fit(target, starts, rounds=12)]
     return more
 
 
-def _without_excess(target: Target, scene_fit: Fit, explanation: Found) -> Found:
+def _without_excess(target: Target, scene_fit: Fit, explanation: Explanation) -> Explanation:
     """Return an explanation without those of its surroundings that it does not need."""
     for move in [m for m in explanation.moves if m.id in SURROUNDINGS]:
         rest = tuple(m for m in explanation.moves if m is not move)
@@ -400,11 +402,11 @@ def _without_excess(target: Target, scene_fit: Fit, explanation: Found) -> Found
         (less,) = fit(target, [(back, free)], rounds=12)
         fine = accepted(target, scene_fit, less) and less.misfit < max(2 * explanation.fit.misfit, AROUND / 10)
         if fine or score(target, less) <= score(target, explanation.fit):
-            explanation = Found(rest, less)
+            explanation = Explanation(rest, less)
     return explanation
 
 
-def _few(target: Target, scene: Variant, single: Sequence[Found]) -> list[Move]:
+def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[Move]:
     """Return the causes that are tried in pairs, each beginning at the scene or where it was best by itself."""
     few = []
     alone = {f.ids[0]: f.fit.variant for f in reversed(single)}

@@ -85,7 +85,7 @@ class Subject:
         return f" from step {self.departure.step} on, mainly in {self.departure.kind}" if self.departure else ""
 
 
-def left(misfit: float) -> str:
+def remaining(misfit: float) -> str:
     """Return what is left of a history, in words."""
     return f"the remaining difference is {per_cent(misfit, 2)} %"
 
@@ -145,7 +145,7 @@ def rival_sentence(
     """Return the first line where another solver explains the history best."""
     best = verdict.best
     scheme_of_best, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
-    remainder = left(best.misfit)
+    remainder = remaining(best.misfit)
     if not verdict.explained:
         return (
             f"Departs, not explained: nearest is {best.model} ({model}) with {scheme_of_best}, "

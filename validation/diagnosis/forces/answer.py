@@ -12,7 +12,7 @@ from validation.diagnosis import sentences
 from validation.diagnosis.causes import UNEXPLAINED, all_benign, words_of
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
+from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding
 from validation.diagnosis.forces.laws import body_of
 from validation.diagnosis.forces.runs import at_step, displacements
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
@@ -36,7 +36,7 @@ UNIFORM = 1e-3  # relative; times are often printed with four digits
 
 
 @dataclass(frozen=True, eq=False)
-class Read:
+class SlopeReading:
     """Displacements of the centroid along and across the base at every step, signs corrected."""
 
     place: Array  # m, (steps, 2)
@@ -51,7 +51,7 @@ class Read:
         return tuple(sorted({slip.cause for slip in self.corrected}))
 
 
-def read(scene: Scene, foreign: Foreign) -> Read:
+def read(scene: Scene, foreign: Foreign) -> SlopeReading:
     """Return what a history holds of a block with friction.
 
     Raises
@@ -97,7 +97,7 @@ def read(scene: Scene, foreign: Foreign) -> Read:
     if factor != 1:
         corrected += [Slip("unit", name, factor) for name in names]
     notes = (stepping.note,) if stepping.note else ()
-    return Read(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
+    return SlopeReading(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
 
 
 def _unit(scene: Scene, step: float, place: Array) -> float:
@@ -128,12 +128,12 @@ def _sign(column: Array, load: float) -> float:
     return -1.0 if first * load < 0 else 1.0
 
 
-def ids_of(result: Found, read: Read) -> list[str]:
+def ids_of(result: ContactFinding, read: SlopeReading) -> list[str]:
     """Return the ids of an answer."""
     return [*read.slips, *result.causes] if result.explained else [UNEXPLAINED]
 
 
-def departure_of(result: Found, ids: Sequence[str]) -> Departure | None:
+def departure_of(result: ContactFinding, ids: Sequence[str]) -> Departure | None:
     """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
     if all_benign(ids):
         return None
@@ -141,7 +141,7 @@ def departure_of(result: Found, ids: Sequence[str]) -> Departure | None:
     return Departure(first or 1, "offset")
 
 
-def stages(result: Found, read: Read) -> list[Stage]:
+def stages(result: ContactFinding, read: SlopeReading) -> list[Stage]:
     """Return what was measured: signs, normal law, friction."""
     per_cents = {name: 100 * share for name, share in result.shares.items()}
     shares = f"consistent in {per_cents['consistent']:.3g} % of the steps, lagged in {per_cents['lagged']:.3g} %"
@@ -171,12 +171,12 @@ def stages(result: Found, read: Read) -> list[Stage]:
     ]
 
 
-def _faulty(result: Found, causes: frozenset[str]) -> bool:
+def _faulty(result: ContactFinding, causes: frozenset[str]) -> bool:
     """Whether an explanation holds one of some causes."""
     return result.explained and not causes.isdisjoint(result.causes)
 
 
-def _law_holds(result: Found) -> bool | None:
+def _law_holds(result: ContactFinding) -> bool | None:
     """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
     if result.change:
         return False if _faulty(result, FRICTION_CAUSES) else None
@@ -185,7 +185,7 @@ def _law_holds(result: Found) -> bool | None:
     return True if result.run.same else None
 
 
-def _motion(result: Found, with_change: bool = False) -> str:
+def _motion(result: ContactFinding, with_change: bool = False) -> str:
     """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
     run = result.run
     if math.isnan(run.left):
@@ -198,7 +198,7 @@ def _motion(result: Found, with_change: bool = False) -> str:
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
 
 
-def sentence(scene: Scene, result: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
+def sentence(scene: Scene, result: ContactFinding, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
     """Return the first line of the answer."""
     t = scene.time
     law = "lagged" if result.lagged else "consistent"

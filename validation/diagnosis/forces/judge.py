@@ -40,7 +40,7 @@ DEEP = 0.05  # of the mean penetration: what an open corner may show of it befor
 
 
 @dataclass(frozen=True)
-class Found:
+class ContactFinding:
     """What a history shows of its contact."""
 
     causes: tuple[str, ...]
@@ -59,7 +59,7 @@ class Found:
     alike: tuple[OneChange, ...] = ()  # changes of which each does
 
 
-def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
+def judge(scene: Scene, place: Array, step: float, rounding: Array) -> ContactFinding:
     """Judge displacements of the centroid along and across the base against a scene's contact.
 
     The same is said only of what the scene's own run gives, or its run with what surrounds the block; the laws say how
@@ -98,7 +98,7 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     return replace(result, run=change.run, scene_run=scene_run, change=change.words)
 
 
-def _springs_or_base(result: Found, around: Surrounded, scene_run: Agreement) -> Found:
+def _springs_or_base(result: ContactFinding, around: Surrounded, scene_run: Agreement) -> ContactFinding:
     """Return a history on a base with the springs that give the same rows: named where their factor is a round one."""
     if "base-compliance" not in result.causes:
         return result
@@ -118,7 +118,7 @@ def _lags(scene: Scene) -> bool:
     return scene.contact.rules == "lagged"
 
 
-def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[Found, tuple[float, float]]:
+def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[ContactFinding, tuple[float, float]]:
     """Return what the forces of a motion show, and the fitted weight [-] and softness [ln]."""
     time, plain = scene.time, body_of(scene)
     weight, softness = _fitted(plain, time, place[:FITTED])
@@ -126,7 +126,7 @@ def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[Found, tuple[
     soft = _compliance(scene, softness)
     yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
     bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
-    followed = [_Tried.of(one, time, place, rounding) for one in bodies]
+    followed = [_FollowedBody.of(one, time, place, rounding) for one in bodies]
     chosen = max(followed, key=lambda one: max(one.shares.values()))
     body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
     scene_rules = scene.contact.rules
@@ -151,12 +151,14 @@ def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[Found, tuple[
     first = min(firsts, default=1 if "springs-factor" in causes else None)
     certain = tuple(name for name in causes if not name.endswith("?"))
     telling_steps = int(telling.sum())
-    result = Found(certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened)
+    result = ContactFinding(
+        certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened
+    )
     return result, (weight, softness)
 
 
 @dataclass(frozen=True, eq=False)
-class _Tried:
+class _FollowedBody:
     """A motion followed by both laws: the steps in which each holds, and how often."""
 
     body: Body
@@ -166,7 +168,7 @@ class _Tried:
     tolerance: float
 
     @classmethod
-    def of(cls, body: Body, time: TimeSection, place: Array, rounding: Array) -> _Tried:
+    def of(cls, body: Body, time: TimeSection, place: Array, rounding: Array) -> _FollowedBody:
         """Follow it."""
         motion = motion_of(place, time, body)
         runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}

@@ -137,7 +137,7 @@ class _Corner:
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
+class _StepEnd:
     """The end of a step: closed corners, their gaps and slides [m], normal forces [N], and the internal unknowns."""
 
     closed: Closed
@@ -159,10 +159,10 @@ def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
     observer, corners = _Observer(body, motion), (_Corner(), _Corner())
     resultants, rows, before = motion.forces(body), [], CLOSED[0]
     for place, force in zip(motion.place, resultants, strict=True):
-        shears = tuple(_assumed(body, corner) for corner in corners)
+        shears = tuple(_sliding_force(body, corner) for corner in corners)
         for _ in range(TRIES):
             end = observer.step(place, force, corners, shears, before)
-            responses = [_asked(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
+            responses = [_corner_response(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
             new_shears = tuple(one.slip_force for one in responses)
             if lagged or new_shears == shears:
                 break
@@ -184,7 +184,7 @@ def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _CornerResponse:
     """What a law asks of a corner: its shear force [N], `slip_force` where it slips, and its state after the step."""
 
     force: float
@@ -193,18 +193,18 @@ class _Asked:
     reference: float  # m
 
 
-def _assumed(body: Body, corner: _Corner) -> float | None:
+def _sliding_force(body: Body, corner: _Corner) -> float | None:
     """Return the shear force of a corner that slips on as in the step before, None if it sticks or is open."""
     if abs(corner.state) <= STICK:
         return None
     return math.copysign(body.coefficient * max(corner.normal, 0.0) + body.cohesion, corner.state)
 
 
-def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool) -> _Asked:
+def _corner_response(body: Body, corner: _Corner, end: _StepEnd, c: int, lagged: bool) -> _CornerResponse:
     """Return what a law asks of a corner at the end of a step."""
     slide, gap = end.slide[c], end.gap[c]
     if not end.closed[c]:
-        return _Asked(0.0, None, OPEN, slide)
+        return _CornerResponse(0.0, None, OPEN, slide)
     state, reference = corner.state, corner.reference
     if state == OPEN:  # it has touched down where the gap was crossed
         past = corner.gap / (corner.gap - gap) if corner.gap > 0 > gap else 0.0
@@ -213,17 +213,19 @@ def _asked(body: Body, corner: _Corner, end: _Seen, c: int, lagged: bool) -> _As
     limit = body.coefficient * max(end.normal[c], 0.0) + body.cohesion
     if not lagged:
         if abs(shear) <= limit:
-            return _Asked(shear, None, STICK, reference)
+            return _CornerResponse(shear, None, STICK, reference)
         slip_force = math.copysign(limit, shear)
-        return _Asked(slip_force, slip_force, int(math.copysign(2, shear)), slide + slip_force / body.shear)
+        return _CornerResponse(slip_force, slip_force, int(math.copysign(2, shear)), slide + slip_force / body.shear)
     if state == STICK:
         if abs(shear) <= limit:
-            return _Asked(shear, None, STICK, reference)
-        return _Asked(shear, None, int(math.copysign(2, shear)), slide)
-    late = _assumed(body, corner)
+            return _CornerResponse(shear, None, STICK, reference)
+        return _CornerResponse(shear, None, int(math.copysign(2, shear)), slide)
+    late = _sliding_force(body, corner)
     if state * (slide - corner.slide) <= 0:
-        return _Asked(late or 0.0, late, state, slide)
-    return _Asked(late or 0.0, late, STICK, corner.slide)  # it has turned round: it sticks from where the step began
+        return _CornerResponse(late or 0.0, late, state, slide)
+    return _CornerResponse(
+        late or 0.0, late, STICK, corner.slide
+    )  # it has turned round: it sticks from where the step began
 
 
 class _Observer:
@@ -240,7 +242,7 @@ class _Observer:
 
     def step(
         self, place: Array, force: Array, corners: Sequence[_Corner], shears: Sequence[float | None], before: Closed
-    ) -> _Seen:
+    ) -> _StepEnd:
         """Return the end of the next step.
 
         Those corners are closed whose springs come nearest to the normal resultant. The sum of the shear forces is
@@ -260,7 +262,7 @@ class _Observer:
         if sum(closed) == 1:
             x, gap = self._turned(closed.index(True), x, gap, place, force[1])
         slide = place[0] + body.along @ x
-        return _Seen(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
+        return _StepEnd(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
 
     def _nearest(self, ends: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
         """Return the closed corners that fit the normal resultant; of two that do so alike, those nearer to before."""
@@ -268,7 +270,7 @@ class _Observer:
         near = [one for one in CLOSED if off[one] <= max(2 * min(off.values()), NEAR * self.scale)]
         return min(near, key=lambda one: (sum(a != b for a, b in zip(one, before, strict=True)), off[one]))
 
-    def accept(self, end: _Seen) -> None:
+    def accept(self, end: _StepEnd) -> None:
         """Move to the end of a step."""
         t = self.time
         self.V = t.discount * self.V + t.step * ((1 - t.delta) * self.A + t.delta * end.acceleration)
