@@ -24,6 +24,10 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 Kind = Literal["phase", "amplitude", "damping", "offset"]
 DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
 NOISE = 4.0  # standard deviations
+BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
+GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
+CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
+LEAST_DAMPING = 1e-3  # damping ratios below differ by nothing that a history shows
 
 
 @dataclass(frozen=True)
@@ -105,12 +109,6 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
     ]
     shares = [(float(d @ basis) ** 2 / (float(basis @ basis) or 1.0), kind) for kind, basis in manners]
     return Departure(int(rows[first]) + 1, max(shares)[1])
-
-
-BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
-GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
-CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
-LEAST_DAMPING = 1e-3  # damping ratios below differ by nothing that a history shows
 
 
 @dataclass(frozen=True)

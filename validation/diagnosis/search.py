@@ -30,6 +30,37 @@ FIRST_ROUNDS, ROUNDS = 5, 12  # of the fits: of all candidates, of those that ar
 MANY = 80  # candidates that are fitted further
 
 Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their fit begins, its free numbers
+CLEAR = 10.0  # of the information criterion: odds of 150 to 1
+NEEDED = 14.0  # the same for a cause where noise alone would do: there are some forty to choose from
+AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
+AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
+NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
+WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
+SHARE = 0.02  # of what is to be explained, at most, that they may leave
+SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
+FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
+RARE = 14.0  # of the information criterion: a thousand to one
+ROUND = 3  # significant digits of a round number
+EXACT = 1e-7  # relative error of a round number
+LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
+WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
+MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
+# share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
+# is in no catalogue comes as near to one of them as that, but not nearer
+HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
+USUAL = (
+    *("density-factor", "young-factor", "springs-factor", "load-factor", "own-weight", "contact-opened", "start"),
+    *("viscous-damping", "gravity-factor"),
+    *("gg", "gg-in-one-formula", "scheme", "time-shift", "pressure-shift", "pressure-factor", "reported-point"),
+)
+OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it
+# tried by themselves only: beside another cause they are rare, and the pairs grow with the square of what is tried
+SINGLE = (
+    *("dead-band", "hht", "generalised-alpha", "substeps", "exact-in-time", "velocity", "stiffness-damping"),
+    *("load-ramp", "inertia", "one-spring"),
+)
+RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
+BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,31 +154,6 @@ def _period(target: Target) -> float:
     c = target.column
     mass = c.density * c.width * c.height
     return 2 * math.pi * math.sqrt(mass * abs(c.static) / abs(c.force or 1.0))
-
-
-CLEAR = 10.0  # of the information criterion: odds of 150 to 1
-NEEDED = 14.0  # the same for a cause where noise alone would do: there are some forty to choose from
-AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
-AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
-NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
-WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
-SHARE = 0.02  # of what is to be explained, at most, that they may leave
-SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
-FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
-RARE = 14.0  # of the information criterion: a thousand to one
-ROUND = 3  # significant digits of a round number
-EXACT = 1e-7  # relative error of a round number
-LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
-WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
-MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
-# share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
-# is in no catalogue comes as near to one of them as that, but not nearer
-HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
-USUAL = (
-    *("density-factor", "young-factor", "springs-factor", "load-factor", "own-weight", "contact-opened", "start"),
-    *("viscous-damping", "gravity-factor"),
-    *("gg", "gg-in-one-formula", "scheme", "time-shift", "pressure-shift", "pressure-factor", "reported-point"),
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,16 +294,6 @@ def score(target: Target, candidate: Fit, moves: Sequence[Move] = ()) -> float:
     """
     n, rare = len(candidate.residual), sum(_rare(move, len(moves)) for move in moves)
     return 2 * n * math.log(max(candidate.misfit, target.floor)) + len(candidate.free) * math.log(n) + RARE * rare
-
-
-OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it
-# tried by themselves only: beside another cause they are rare, and the pairs grow with the square of what is tried
-SINGLE = (
-    *("dead-band", "hht", "generalised-alpha", "substeps", "exact-in-time", "velocity", "stiffness-damping"),
-    *("load-ramp", "inertia", "one-spring"),
-)
-RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
-BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
 
 
 # ---- the search -----------------------------------------------------------------------------------------------------

@@ -46,6 +46,26 @@ DISCOUNTS = (0.99, 0.95, 0.8)  # of the velocity of a step
 DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
 MOST_LATE = 2.0  # steps
 FASTEST, SLOWEST = 1.1, 0.5  # of the rate at which time may run
+NOT_EXPLAINED = "not explained"
+WOULD_TELL = (
+    "the same run at half the step (an error of the integrator falls to a half or a quarter, one of the model stays), "
+    "and one without the program's own damping"
+)
+OTHERS_WOULD = "an answer to another problem of the pack, on which these differ"
+USUAL = (  # causes that give the same rows are told in this order
+    *("scheme", "density-factor", "young-factor", "springs-factor", "friction-factor", "load-factor", "gravity-factor"),
+    *("factor", "shift", "time-factor"),
+)
+BAR = 0.1  # of the band, that an explanation may leave
+CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
+ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
+PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
+NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
+HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which it has to have halved them
+SAME = 1e-6  # of the band: digit for digit
+MOST_ALIKE = 3  # causes that are named together
+FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
+NOTHING = 1e-7  # of the exact motion: an answer that is smaller does not move; in other units it is 1e-3 or 1e-6
 
 
 def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Change]:
@@ -157,28 +177,6 @@ def _at(dense: History, name: str, instants: Array) -> Array:
     time, column = np.concatenate([[0.0], dense.time]), np.concatenate([[0.0], dense.columns[name]])
     values = CubicSpline(time, column)(np.maximum(instants, 0.0))
     return np.asarray(values, dtype=np.float64)
-
-
-NOT_EXPLAINED = "not explained"
-WOULD_TELL = (
-    "the same run at half the step (an error of the integrator falls to a half or a quarter, one of the model stays), "
-    "and one without the program's own damping"
-)
-OTHERS_WOULD = "an answer to another problem of the pack, on which these differ"
-USUAL = (  # causes that give the same rows are told in this order
-    *("scheme", "density-factor", "young-factor", "springs-factor", "friction-factor", "load-factor", "gravity-factor"),
-    *("factor", "shift", "time-factor"),
-)
-BAR = 0.1  # of the band, that an explanation may leave
-CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
-ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
-PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
-NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
-HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which it has to have halved them
-SAME = 1e-6  # of the band: digit for digit
-MOST_ALIKE = 3  # causes that are named together
-FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
-NOTHING = 1e-7  # of the exact motion: an answer that is smaller does not move; in other units it is 1e-3 or 1e-6
 
 
 @dataclass(frozen=True)

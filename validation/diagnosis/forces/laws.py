@@ -26,6 +26,12 @@ from validation.theory.statics import size
 
 STANDARD = 9.81  # m/s2
 INTERNAL = slice(2, 6)  # r, ex, ey, gxy among the six unknowns of a block
+OPEN, STICK = 0, 1  # slip is +2 or -2, the sign of the force
+Closed = tuple[bool, bool]  # of the two corners
+CLOSED: tuple[Closed, ...] = ((True, True), (True, False), (False, True), (False, False))
+BOTH = np.array([1.0, 0.0, 0.0, 0.5])  # of r and gxy in the difference of the corners' gaps, over the width
+TRIES = 4  # of how corners share the shear force, where friction is that of the same step
+NEAR = 0.001  # of the mean normal resultant: of closed corners that fit it so well, those of the step before are taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,14 +108,6 @@ def motion_of(place: Array, time: TimeSection, body: Body) -> Motion:
         V = gg * V + dt * ((1 - delta) * A + delta * A1)
         D, A, accelerations[n] = there, A1, A1
     return Motion(time, place, accelerations)
-
-
-OPEN, STICK = 0, 1  # slip is +2 or -2, the sign of the force
-Closed = tuple[bool, bool]  # of the two corners
-CLOSED: tuple[Closed, ...] = ((True, True), (True, False), (False, True), (False, False))
-BOTH = np.array([1.0, 0.0, 0.0, 0.5])  # of r and gxy in the difference of the corners' gaps, over the width
-TRIES = 4  # of how corners share the shear force, where friction is that of the same step
-NEAR = 0.001  # of the mean normal resultant: of closed corners that fit it so well, those of the step before are taken
 
 
 @dataclass(frozen=True, eq=False)

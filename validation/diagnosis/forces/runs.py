@@ -42,6 +42,19 @@ NOISE = 1e-2  # of the largest displacement: more is not put down to noise
 NOISY = 100  # rows from which on noise can be told from a shape
 FITTED = 150  # steps that weight and springs are fitted to
 SURROUNDINGS = frozenset({"own-weight", "base-compliance", "springs-factor"})  # what a scene of the suite can hold
+STAGES = (60, 150)  # steps that numbers are fitted to, before all
+ROUNDS = 8  # evaluations of a fit
+FACTORS = (0.8, 0.95, 1.05, 1.25)  # to begin from; a factor of one tells nothing of its own
+DISCOUNTS = (0.999, 0.99, 0.95)
+COHESIONS = (0.02, 0.1, 0.3)  # over the mean limit of friction of a corner
+NUDGE = 1e-4  # of the logarithm of a factor, for the slope at its start
+ARRIVED = 1e-15  # relative gain at which a fit ends: stick and slip amplify what is left
+PURSUED = 7  # candidates that are fitted at all, those nearest along their slope
+NEAREST = 4  # of them, that are fitted to more steps
+NEAR = 30.0  # times as much as the best leaves: what may still come out first
+ROUNDED = 1e-7  # of the largest displacement, that the best counts as leaving at least
+CLEAR = 3.0  # times more that every other candidate must leave
+OUTSIDE = ("height-factor", "width-factor")  # computed so that no other is named in their place
 
 
 @dataclass(frozen=True)
@@ -200,21 +213,6 @@ def _changed(scene: Scene, fitted: Array, follows: bool) -> Scene:
             "contact.shear_stiffness": c.shear * (soft if follows else 1.0),
         }
     )
-
-
-STAGES = (60, 150)  # steps that numbers are fitted to, before all
-ROUNDS = 8  # evaluations of a fit
-FACTORS = (0.8, 0.95, 1.05, 1.25)  # to begin from; a factor of one tells nothing of its own
-DISCOUNTS = (0.999, 0.99, 0.95)
-COHESIONS = (0.02, 0.1, 0.3)  # over the mean limit of friction of a corner
-NUDGE = 1e-4  # of the logarithm of a factor, for the slope at its start
-ARRIVED = 1e-15  # relative gain at which a fit ends: stick and slip amplify what is left
-PURSUED = 7  # candidates that are fitted at all, those nearest along their slope
-NEAREST = 4  # of them, that are fitted to more steps
-NEAR = 30.0  # times as much as the best leaves: what may still come out first
-ROUNDED = 1e-7  # of the largest displacement, that the best counts as leaving at least
-CLEAR = 3.0  # times more that every other candidate must leave
-OUTSIDE = ("height-factor", "width-factor")  # computed so that no other is named in their place
 
 
 @dataclass(frozen=True)
