@@ -285,7 +285,7 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
     Parameters
     ----------
     scene
-        The scene at the program's step, see `forward.at_step`.
+        The scene at the program's step, see `at_step`.
     place, rounding
         Displacements along and across the base at every step, and units of their last digits [m], (steps, 2).
     """
