@@ -16,8 +16,9 @@ from validation import load_scene, solve
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.other_solvers import Goal, slipped
-from validation.diagnosis.reading import Foreign, read
+from validation.diagnosis.other_solvers import slipped
+from validation.diagnosis.reading import Foreign, Stepping, read
+from validation.diagnosis.readings import Reading
 from validation.diagnosis.sentences import span
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant, rectangle_of
@@ -280,9 +281,10 @@ def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch: pytes
     """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
     s = scene(time__steps=20).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
     run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")
-    seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor": "block.young"})
-    (found,) = slipped(s, "fem", Goal(np.arange(20), run_.displacement, run_.contact_pressure))
-    assert (found.slip, found.amount) == ("young-factor", pytest.approx(0.9, rel=1e-6))
+    seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor"})
+    steps = Stepping(np.full(20, s.time.step), np.arange(20))
+    (found,) = slipped(s, "fem", Reading(steps, run_.displacement, run_.contact_pressure, ()))
+    assert (found.cause, found.value) == ("young-factor", pytest.approx(0.9, rel=1e-6))
     assert found.misfit < 1e-9
 
 

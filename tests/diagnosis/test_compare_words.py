@@ -19,20 +19,19 @@ from oracles.program_scenes import scene_of
 
 from validation import load_scene, solve
 from validation.cli import compare as cli_compare
-from validation.diagnosis import departure
+from validation.diagnosis import evidence
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor, values_of, words_of
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import MODEL_WORDS, compare
-from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, rivals
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, rivals
 from validation.diagnosis.other_solvers import _causes as causes_of_rival
-from validation.diagnosis.reading import Foreign
-from validation.diagnosis.sentences import Said
-from validation.diagnosis.variant import Variant, rectangle_of
+from validation.diagnosis.reading import Foreign, Stepping
+from validation.diagnosis.readings import Reading
+from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
@@ -41,6 +40,7 @@ from validation.report.figures.curves import style_of
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
 OWN = Variant(0.5, 1.0, 1.0)
+BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
 
 
 def softened(solver: str, times: float, **changes: Any) -> Answer:
@@ -66,7 +66,7 @@ def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> N
     assert answer.departure is not None and answer.departure.kind == "offset"
     assert answer.ranking[0]["compliance"] == pytest.approx(0.5, rel=1e-3)
     assert answer.sentence.startswith("Same scheme: constant acceleration")  # and not "same model"
-    assert "the contact springs are 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
+    assert "the contact stiffness is 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
 
 
 def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
@@ -146,8 +146,9 @@ def test_a_solver_finds_the_springs_on_which_it_made_a_history(times: float, cau
     c = SCENE.contact
     softer = SCENE.with_values({"contact.stiffness": times * c.stiffness, "contact.shear_stiffness": c.shear})
     run = solve(softer, "bar")
-    (found,) = rivals(SCENE, ["bar"], Goal(np.arange(30), run.displacement, run.contact_pressure), schemes=[])
-    assert found.softness == pytest.approx(-math.log(times), rel=1e-6) and found.misfit < 1e-9 < found.plain
+    recorded = Reading(Stepping(np.full(30, 0.002), np.arange(30)), run.displacement, run.contact_pressure, ())
+    (found,) = rivals(SCENE, ["bar"], recorded, schemes=[])
+    assert found.softness == pytest.approx(-math.log(times), rel=1e-6) and found.misfit < 1e-9
     assert causes_of_rival(SCENE, found)[0] == [cause]
 
 
@@ -160,8 +161,8 @@ def target(**changes: Any) -> Target:
 def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own() -> None:
     """At p = E springs and block give half each; at p = 10E the springs give a twelfth of 5.5 mm, 0.5 mm."""
     soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
-    assert compliance(target(), soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
-    assert compliance(target(contact__stiffness=1e10), soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
+    assert compliance(target().column, soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
+    assert compliance(target(contact__stiffness=1e10).column, soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -182,7 +183,7 @@ def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
 ) -> None:
     assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
     v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
-    assert benign_springs(target(), v) is benign
+    assert benign_springs(target().column, v) is benign
 
 
 # ---- other faults -------------------------------------------------------------------------------------------------
@@ -238,8 +239,10 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
     variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
     scene = Variant(0.25, 0.5, 0.99, "consistent")
     gone = Departure(7, "phase")
-    values = {name: NUMBERS[name] for name in causes if name in NUMBERS}
-    return wording.sentence(Said(variant, scene, causes, values, gone, [3, 4, 5, 9], 0.0123, soft))
+    further = {"open_steps": " in steps 3-5, 9", "scheme": wording.scheme_of(scene)}
+    numbers = values_of(BLOCK, causes, variant) | NUMBERS | {"base-compliance": soft}
+    words = {name: words_of(name, numbers.get(name, 0.0), variant, scene, **further) for name in causes}
+    return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.remaining(0.0123)))
 
 
 @pytest.mark.parametrize(
@@ -253,7 +256,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("gg-in-one-formula", {"discounted": "displacement"}, "applied only in the formula for the displacement (6)"),
         ("time-shift", {"shift": 1}, "the rows are 1 step late"),
         ("time-shift", {"shift": -1}, "the rows are 1 step early"),
-        ("springs-factor", {"softness": math.log(4)}, "the contact springs are 0.25 times the scene's"),
+        ("springs-factor", {"softness": math.log(4)}, "the contact stiffness is 0.25 times the scene's"),
         ("load-factor", {"load": 1.25}, "the load, or the displacement, is 1.25 times the scene's"),
         ("contact-opened", {"opens": True}, "the contact opened in steps 3-5, 9"),
         ("time-shift", {"shift": 2}, "the rows are 2 steps late"),
@@ -262,7 +265,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
         ("side-factor", {}, "the side of the block is 1.1 times the scene's"),
         ("poisson", {}, "Poisson's ratio is 0.3"),
         ("dead-band", {}, "an open contact closes only beyond a penetration of about 0.001 m"),
-        ("reported-point", {"point": 1.0}, "a point +1 m above the centroid, the top edge"),
+        ("reported-point", {"point": 1.0}, "of another point, +1 m above the centroid, the top edge"),
         ("pressure-shift", {"late": 1.0}, "the pressure is 1 step late, the displacement is right"),
         ("pressure-shift", {"late": -1.0}, "the pressure is 1 step early"),
         ("pressure-shift", {"late": 0.5}, "the pressure is the mean of this step and the one before"),
@@ -286,7 +289,7 @@ def test_what_is_no_fault_is_told_with_its_number() -> None:
 
 
 def rival(model: str, *scheme: float | None, causes: list[str], explained: bool = True) -> RivalVerdict:
-    best = Rival(model, *(scheme or (None, None, None)), 0.0123, 0.0, np.zeros(1), np.zeros(1))
+    best = Rival(model, *(scheme or (None, None, None)), 0.0123, np.zeros(1))
     return RivalVerdict(best, [best], causes, {}, np.zeros(1), explained, 0.25)
 
 
@@ -310,16 +313,15 @@ def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
 
 
 def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
-    variant = Variant(0.5, 1.0, 1.0)
-    about = Said(variant, variant, ["unexplained"], {}, Departure(7, "phase"), [], 0.0123, 0.0)
+    about = wording.Subject("", {}, Departure(7, "phase"), "")
     stages = [Stage("statics", True, "", {}), Stage("frequency", False, "", {}), Stage("damping", None, "", {})]
     near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
-    assert wording.not_explained(about, near, [], 0.034, stages) == (
+    assert wording.not_explained(about, near, 0.034, stages) == (
         "Departs from step 7 on, mainly in phase, not explained: nearest is gg 0.98 and density-factor 1.01, "
         "3.4 % left; right so far: statics; wrong: frequency."
     )
     alike = [near | {"further_scene": "another time step"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
-    text = wording.not_explained(about, None, alike, 0.034, stages)
+    text = wording.not_explained(replace(about, alike=alike), None, 0.034, stages)
     assert "gg 0.98 and density-factor 1.01 or scheme give the same rows" in text
     assert text.endswith("to tell them apart, try another time step.")
 
@@ -340,7 +342,7 @@ WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
     ],
 )
 def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
-    assert departure.measured(WANTED, given, np.arange(200), 0.0).kind == kind
+    assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
 
 
 @pytest.mark.parametrize(
@@ -354,7 +356,7 @@ def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
 )
 def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noise: float, step: int) -> None:
     given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
-    assert departure.measured(WANTED, given, rows, noise).step == step
+    assert evidence.measured(WANTED, given, rows, noise).step == step
 
 
 def test_the_open_steps_are_told_by_their_first_and_their_last(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -373,18 +375,18 @@ def row(model: str, misfit: float, soft: float | None, name: str | None, alpha: 
 CURVES = {name: (0.1 * np.arange(1, 6), -1e-3 * scale * np.ones(5)) for name, scale in
           (("the file", 4.0), ("dda", 5.0), ("best", 6.0))}  # fmt: skip
 ANSWER = Answer(
-    {"alpha": 0.5, "delta": 1.0, "gg": 0.97},
-    [row("dda", 0.0123, 0.045, "constant acceleration", 0.5), row("dda", 0.4, 0.0678, None, 0.31),
-     row("continuum", 0.87, None, None, None)],
-    Departure(17, "damping"),
-    ["gg", "contact-opened"],
-    (3, 41),
-    "It departs.",
-    ("a note",),
-    {"alpha": Interval(0.51, 0.02)},
-    [{"alpha": 0.7, "gg": -0.7}],
-    0.0123,
-    CURVES,
+    scheme={"alpha": 0.5, "delta": 1.0, "gg": 0.97},
+    ranking=[row("dda", 0.0123, 0.045, "constant acceleration", 0.5), row("dda", 0.4, 0.0678, None, 0.31),
+             row("continuum", 0.87, None, None, None)],
+    departure=Departure(17, "damping"),
+    causes=["gg", "contact-opened"],
+    opened=(3, 41),
+    sentence="It departs.",
+    notes=("a note",),
+    told={"alpha": Interval(0.51, 0.02)},
+    untold=[{"alpha": 0.7, "gg": -0.7}],
+    misfit=0.0123,
+    curves=CURVES,
 )  # fmt: skip
 
 
@@ -426,7 +428,7 @@ def test_numbers_at_rounding_level_are_not_written_as_digits(capsys: pytest.Capt
     assert lines[-4].split() == ["dda", "constant", "acceleration", "below", "1e-10", "0"]
     assert lines[-3:-1] == ["fitted alpha = 0.5 +- less than 1e-12 (95 %)", "fitted softness = 0 +- 2e-07 (95 %)"]
     variant = Variant(0.5, 1.0, 1.0)
-    text = wording.sentence(Said(variant, variant, [], {}, None, [], 5e-14, 0.0))
+    text = wording.sentence(wording.Subject(wording.scheme_of(variant), {}, None, wording.remaining(5e-14)))
     assert text.endswith("gg = 1); the remaining difference is below 1e-10 %.")
 
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from validation import load_scene, solve
-from validation.diagnosis.forces.laws import follow
-from validation.diagnosis.forces.motion import Scheme, body_of, motion_of
+from validation.diagnosis.forces.laws import body_of, follow, motion_of
 
 SLOPE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
 PLACE = ("horizontal_displacement", "displacement")
@@ -41,7 +40,7 @@ def test_the_forces_of_a_motion_are_those_of_its_solver(values: dict[str, Any]) 
     assert history is not None
     shear, normal, gap, state = (pair_of(history.columns, names) for names in (SHEAR, NORMAL, GAP, STATE))
     body = body_of(scene)
-    motion = motion_of(pair_of(history.columns, PLACE), Scheme.of(scene, scene.time.step), body)
+    motion = motion_of(pair_of(history.columns, PLACE), scene.time, body)
     found = follow(body, motion, lagged=scene.contact.rules == "lagged")
     size = 1e-7 * found.scale
     assert np.any(np.abs(state) == 2) and found.settled.mean() > 0.9

@@ -13,8 +13,8 @@ from oracles.sliding_dda import Motion, Slider, run
 
 from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.forces.forward import Agreement, agreement, at_step, surrounded
 from validation.diagnosis.forces.judge import BLURRED, _law
+from validation.diagnosis.forces.runs import Agreement, agreement, at_step, surrounded
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError

@@ -28,7 +28,7 @@ NAMED = {
     "advice/advice.py": {"dda", "fem", "continuum"},
     "diagnosis/judgement.py": {"dda", "fem", "bar", "continuum"},
     "diagnosis/other_solvers.py": {"fem", "continuum"},
-    "diagnosis/forces/forward.py": {"dda"},
+    "diagnosis/forces/runs.py": {"dda"},
 }
 
 

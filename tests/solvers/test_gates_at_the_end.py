@@ -11,9 +11,11 @@ import pytest
 
 from validation import plugin
 from validation.studies.own_solver import block
-from validation.studies.own_solver.session import Told
+from validation.studies.own_solver.session import GateReport
 
-SAID = Told("g", "core", "s", 40, "statics", "displacement.static", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r")
+SAID = GateReport(
+    "g", "core", "s", 40, "statics", "displacement.static", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r"
+)
 
 
 def ended(

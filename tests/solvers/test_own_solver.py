@@ -29,10 +29,11 @@ from validation.solvers.processes.guard import GRACE
 from validation.solvers.processes.worker import WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
-from validation.studies.own_solver import block_data, evidence, gates
-from validation.studies.own_solver.block import block, first, outside
+from validation.studies.own_solver import block as block_module
+from validation.studies.own_solver import block_data, gates
+from validation.studies.own_solver.block import block, first, outside, telling
 from validation.studies.own_solver.history import AT_REST, PENCIL, TAIL, natural_frequency, rest, root
-from validation.studies.own_solver.session import Session, Told
+from validation.studies.own_solver.session import GateReport, Session
 from validation.theory import spectra
 
 ROOT = Path(__file__).parents[2]
@@ -124,7 +125,7 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
     monkeypatch.syspath_prepend(str(ORACLES))
     monkeypatch.syspath_prepend(str(tmp_path))
     answer_here(monkeypatch)
-    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=[]))
+    monkeypatch.setattr(block_module, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=[]))
     session = Session(solver, Results(tmp_path / "results"))
     names = [name for name, (_, gate) in gates.applying().items() if gate.scene == "figure-8[time.start=zero]"]
     told = [session.judge(name)[1] for name in names]
@@ -349,10 +350,12 @@ def test_a_solver_has_the_time_of_its_steps(monkeypatch: pytest.MonkeyPatch, tmp
 
 # ---- the block ------------------------------------------------------------------------------------------------------
 
-SOUND = Told("id", "core", "s1", 200, "statics", "displacement.final", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r")
+SOUND = GateReport(
+    "id", "core", "s1", 200, "statics", "displacement.final", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r"
+)
 
 
-def of(**values: object) -> Told:
+def of(**values: object) -> GateReport:
     return replace(SOUND, **values)  # type: ignore[arg-type]
 
 
@@ -406,9 +409,9 @@ def test_the_scene_that_tells_most_is_short_and_holds_the_fault() -> None:
     long = [of(scene="long", steps=20_000, status="FAIL")] * 9
     other = [of(scene="other", group="digits", status="FAIL")] * 5
     own = [of(scene="own", status="FAIL"), of(scene="own", group="digits", status="FAIL")]
-    chosen = evidence.telling([*long, *other, *own], ["statics"])
+    chosen = telling([*long, *other, *own], ["statics"])
     assert chosen is not None and chosen.scene == "own"
-    assert evidence.telling(long, ["statics"]) is None
+    assert telling(long, ["statics"]) is None
 
 
 def test_the_page_states_the_grace_of_exit_hooks_and_the_allowance_of_a_step() -> None:
@@ -424,10 +427,10 @@ def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypa
     failed = of(scene=scene.name, study="own-solver", status="FAIL", value=2.0)
     x = np.ones(scene.time.steps)
     monkeypatch.setattr(Results, "history", lambda self, key: History(x, {"displacement": x}))
-    monkeypatch.setattr(evidence, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
+    monkeypatch.setattr(block_module, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=causes))
     lines = block([failed])
     assert "\ncompare, figure-8[time.start=zero] (200 steps)" in lines and lines[-2].startswith(f"  {said}")
-    monkeypatch.setattr(evidence, "compare", lambda *given: 1 / 0)
+    monkeypatch.setattr(block_module, "compare", lambda *given: 1 / 0)
     assert block([failed])[-2] == "  nothing can be said: division by zero"
 
 
@@ -447,7 +450,7 @@ def test_the_block_ends_with_what_no_gate_saw() -> None:
 # ---- data of the block ----------------------------------------------------------------------------------------------
 
 
-def told_by(solver: str, results: Path, study: str = "own-solver") -> list[Told]:
+def told_by(solver: str, results: Path, study: str = "own-solver") -> list[GateReport]:
     """Return what the gates on the start and on data of the block say of a solver."""
     session = Session(solver, Results(results))
     return [session.judge(name)[1] for name, (owner, _) in gates.applying().items() if owner == study]

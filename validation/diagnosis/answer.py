@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.readings import Slip
 from validation.runs.history import Array
@@ -16,13 +15,13 @@ from validation.runs.history import Array
 class Answer:
     """The answer to `compare`; `as_dict` is what ``--json`` prints."""
 
-    scheme: dict[str, float | None]  # alpha, delta, gg
-    ranking: list[dict[str, Any]]  # the best first
-    departure: Departure | None
-    causes: list[str]
-    opened: tuple[int, int] | None  # first step and last
     sentence: str
+    causes: list[str]
+    scheme: dict[str, float | None]  # alpha, delta, gg
+    departure: Departure | None
     notes: tuple[str, ...] = ()
+    ranking: list[dict[str, Any]] = field(default_factory=list)  # the best first
+    opened: tuple[int, int] | None = None  # first step and last
     told: dict[str, Interval] = field(default_factory=dict)  # alpha, delta, gg and what was free with them
     untold: list[dict[str, float]] = field(default_factory=list)
     misfit: float = 0.0  # of the best explanation, relative L2 [-]

@@ -7,10 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from validation.diagnosis.causes import causes_of, values_of
-from validation.diagnosis.decision import Verdict
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.fitting import Found
 from validation.diagnosis.readings import Slip
+from validation.diagnosis.search import Verdict
 from validation.diagnosis.variant import Variant
 
 SAME_FACTOR = 1e-5  # relative
@@ -93,17 +92,13 @@ def _six(value: float) -> float:
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
     """Return the explanations that the file cannot tell from the best one."""
-    return [
-        _told(target, verdict, explanation)
-        for explanation in ([verdict.best] if verdict.alike else []) + list(verdict.alike)
-    ]
-
-
-def _told(target: Target, verdict: Verdict, explanation: Found) -> dict[str, Any]:
-    v = explanation.fit.variant
-    ids = causes_of(target, explanation.ids, v, verdict.own.variant)
-    scene = next((TELLS[name] for name in ids if name in TELLS), "a scene with less damping, over more periods")
-    return _relative(ids, values_of(target, ids, v), scene)
+    equals = []
+    for explanation in ([verdict.best] if verdict.alike else []) + list(verdict.alike):
+        v = explanation.fit.variant
+        ids = causes_of(target.column, explanation.ids, v, verdict.own.variant)
+        scene = next((TELLS[name] for name in ids if name in TELLS), "a scene with less damping, over more periods")
+        equals.append(_relative(ids, values_of(target.column, ids, v), scene))
+    return equals
 
 
 def _relative(ids: list[str], values: dict[str, float], scene: str) -> dict[str, Any]:

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from validation.diagnosis import causes, departure, evidence, families, sentences
+from validation.diagnosis import causes, evidence, families, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED
-from validation.diagnosis.decision import Verdict
+from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer
 from validation.diagnosis.forces.judge import judge
-from validation.diagnosis.forces.one_number import OneChange
-from validation.diagnosis.other_solvers import Goal, Rival, RivalVerdict, judged, ranking, rivals, row_of
+from validation.diagnosis.forces.runs import OneChange
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, readings_of, slips
-from validation.diagnosis.search import beside, paired, simple
+from validation.diagnosis.readings import Reading, readings_of, slips, words_of_slips
+from validation.diagnosis.search import Verdict, beside, paired, simple
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.runs.history import Array
@@ -50,7 +49,7 @@ class Case:
     @cached_property
     def scene_run(self) -> Histories:
         """The scene's own run at the steps of the history."""
-        return computed(self.target.column, [self.own], self.target.steps)
+        return histories(self.target.column, [self.own], self.target.steps)
 
     @property
     def expected(self) -> tuple[Array, Array]:
@@ -168,9 +167,7 @@ def _others(scene: Scene, case: Case, verdict: Verdict, at_hand: Sequence[Rival]
     names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
     if np.ptp(steps) > 0:
         return []
-    schemes: Iterable[tuple[float, float]] = [(v.alpha, v.delta)]
-    r = case.reading
-    return rivals(r.scene_of(scene), names, Goal(r.stepping.rows, r.displacement, r.pressure), schemes, at_hand)
+    return rivals(case.reading.scene_of(scene), names, case.reading, [(v.alpha, v.delta)], at_hand)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------
@@ -186,7 +183,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
     all_causes = list(case.reading.slips) + causes.causes_of(
-        target, verdict.best.ids, best_fit.variant, scene_variant, error
+        target.column, verdict.best.ids, best_fit.variant, scene_variant, error
     )
     either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
     unexplained = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
@@ -196,80 +193,85 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     v = best_fit.variant if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.own
-    expected = departure.expected(target, shown, scene_variant, ids)
-    first_departure = departure.departure(target, expected, all_causes if either else ids, steps)
+    expected = evidence.expected(target, shown, scene_variant, ids)
+    first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
     refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
-    values = causes.values_of(target, ids, v)
+    values = causes.values_of(target.column, ids, v)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
-    soft = causes.compliance(target, v)
     alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
-    nearest = None if verdict.explained or alike else _nearest(target, verdict, all_causes)
-    if verdict.explained and ids and all(CAUSES[name].benign for name in ids):
+    nearest: dict[str, Any] | None = None
+    if not (verdict.explained or alike):
+        numbers = causes.values_of(target.column, all_causes, best_fit.variant)
+        nearest = {"causes": all_causes, "values": numbers, "left": unexplained}
+    if verdict.explained and ids and all_benign(ids):
         stages = [evidence.surrounded(stage) for stage in stages]
-    subject = sentences.Said(
-        v, scene_variant, ids, values, first_departure, steps, best_fit.misfit, soft, corrected, ends
+    further = {"scheme": sentences.scheme_of(scene_variant)}
+    if steps:
+        further["open_steps"] = f" in steps {sentences.span(steps)}"
+    if "dead-band" in ends:
+        low, high = ends["dead-band"]
+        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
+    subject = sentences.Subject(
+        sentences.scheme_of(v),
+        words | words_of_slips(corrected),
+        first_departure,
+        sentences.remaining(best_fit.misfit),
+        alike,
     )
     if not verdict.explained:
-        sentence = sentences.not_explained(subject, nearest, alike, unexplained, stages)
+        sentence = sentences.not_explained(subject, nearest, unexplained, stages)
     else:
-        sentence = sentences.sentence(subject, alike)
+        sentence = sentences.sentence(subject)
     time = np.cumsum(target.steps)[target.rows]
-    best = computed(target.column, [best_fit.variant], target.steps)
+    best = histories(target.column, [best_fit.variant], target.steps)
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
-        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
-        ranking(DDA, target, v, shown.free, others),
-        first_departure,
-        ids,
-        (steps[0], steps[-1]) if steps else None,
-        sentence,
-        _notes(case.foreign, case.reading),
-        intervals(refitted) if verdict.explained else {},
-        untold(refitted) if verdict.explained else [],
-        best_fit.misfit,
-        {name: (time, curve) for name, curve in curves.items()},
-        values,
-        unexplained,
-        nearest,
-        alike,
-        tuple(stages),
+        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        ranking=ranking(DDA, target, v, shown.free, others),
+        departure=first_departure,
+        causes=ids,
+        opened=(steps[0], steps[-1]) if steps else None,
+        sentence=sentence,
+        notes=_notes(case.foreign, case.reading),
+        told=intervals(refitted) if verdict.explained else {},
+        untold=untold(refitted) if verdict.explained else [],
+        misfit=best_fit.misfit,
+        curves={name: (time, curve) for name, curve in curves.items()},
+        values=values,
+        unexplained=unexplained,
+        nearest=nearest,
+        alike=alike,
+        evidence=tuple(stages),
         slips=corrected if verdict.explained else (),
         pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
         intervals=ends,
     )
 
 
-def _nearest(target: Target, verdict: Verdict, ids: list[str]) -> dict[str, Any]:
-    """Return what comes nearest, and how much of the difference it leaves."""
-    values = causes.values_of(target, ids, verdict.best.fit.variant)
-    return {"causes": ids, "values": values, "left": float(f"{verdict.left:.4g}")}
-
-
 def _opened(target: Target, v: Variant) -> list[int]:
     """Return the steps, counted from 1, at whose end the contact of a variant is open."""
     if not v.opens:
         return []
-    return [int(i) + 1 for i in np.flatnonzero(computed(target.column, [v], target.steps).open[:, 0])]
+    return [int(i) + 1 for i in np.flatnonzero(histories(target.column, [v], target.steps).open[:, 0])]
 
 
 def _diverged(case: Case, factor: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
     target, stages = case.target, _stages(case, factor)
     expected = case.expected[0]
-    first_departure = departure.unbounded(expected, target.displacement, target.rows)
+    first_departure = evidence.unbounded(expected, target.displacement, target.rows)
     time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
-        {"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
-        [],
-        first_departure,
-        [DIVERGED],
-        None,
-        sentences.diverged(first_departure, factor),
-        _notes(case.foreign, case.reading),
+        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        departure=first_departure,
+        causes=[DIVERGED],
+        sentence=sentences.diverged(first_departure, factor),
+        notes=_notes(case.foreign, case.reading),
         curves={"the file": (time, target.displacement), DDA: (time, expected)},
         values={DIVERGED: float(f"{factor:.6g}")},
         evidence=tuple(stages),
@@ -303,7 +305,7 @@ def _answer_of_rival(
     first_departure = None
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
-        first_departure = departure.measured(expected[rows], reading.displacement, rows, 0.0)
+        first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
     sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
@@ -311,13 +313,12 @@ def _answer_of_rival(
         stages = [evidence.surrounded(stage, "another model") for stage in stages]
     time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
-        {"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
-        [row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
-        first_departure,
-        ids,
-        None,
-        sentence,
-        _notes(foreign, reading),
+        scheme={"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
+        ranking=[row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
+        departure=first_departure,
+        causes=ids,
+        sentence=sentence,
+        notes=_notes(foreign, reading),
         misfit=best.misfit,
         curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
         values=verdict.values if verdict.explained else {},
@@ -335,14 +336,15 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     t = scene.time
     unexplained = float(f"{min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])):.4g}")
     near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
+    softer = result.values.get("base-compliance", 0.0)
     return Answer(
-        {"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        [row_of(DDA, t.alpha, t.delta, t.discount, result.normal, result.values.get("base-compliance", 0.0))],
-        answer.departure_of(result, ids),
-        ids,
-        result.opened if result.explained else None,
-        answer.sentence(scene, result, ids, read.corrected),
-        (*foreign.notes, *read.notes),
+        scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
+        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
+        departure=answer.departure_of(result, ids),
+        causes=ids,
+        opened=result.opened if result.explained else None,
+        sentence=answer.sentence(scene, result, ids, read.corrected),
+        notes=(*foreign.notes, *read.notes),
         misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
         values=result.values if result.explained else {},

@@ -6,7 +6,7 @@ The candidates and their fits are those of `one_change`; a mesh error is no nois
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,12 +14,13 @@ import numpy as np
 
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
 from validation.diagnosis.fits.fit import NAMED, fit, named
-from validation.diagnosis.fits.target import Bar, Target, norm
-from validation.diagnosis.one_change import CandidateChange, Fitted, fitted, nearest_start
+from validation.diagnosis.fits.target import Bar, Target, joined
+from validation.diagnosis.numbers import Values
+from validation.diagnosis.one_change import CandidateChange, fitted, nearest_start, of_discount, of_numbers
 from validation.diagnosis.readings import Reading
 from validation.diagnosis.variant import Variant
 from validation.errors import InputError
-from validation.runs.history import PRESSURE, Array
+from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
@@ -27,12 +28,7 @@ SCHEMES_OF = {"continuum": 1, "fem": 1}  # how many are tried: the continuum has
 NUDGE = 1e-4  # of ln stiffness or ln factor, for the derivative
 ROUNDS = 9  # evaluations of a fit: a compliance of some per cent needs two, half the stiffness six
 MOST = math.log(1e3)  # no spring is softer or stiffer than that
-SLIPS = {  # id to the field of the scene that a factor changes
-    "density-factor": "block.density",
-    "young-factor": "block.young",
-    "load-factor": "load.pressure",
-    "gg": "time.gg",
-}
+SLIPS = {"density-factor", "young-factor", "load-factor", "gg"}  # numbers that are tried besides the springs
 DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
 FEW = {"fem": 4}  # of a slow solver every so many of the starts
@@ -40,45 +36,43 @@ MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 FARTHEST = 1e6  # relative: a run that leaves its bounds is no nearer than that
 APART = 3.0  # times more that every other cause must leave: a mesh error is no noise
-Answer = tuple[Array, Array]  # scaled rows, and the displacement of every step [m]
+SOFTER = 1e-3  # of the logarithm of the stiffness, from which on springs count as others than the scene's
+NO_SCHEME = frozenset({"continuum"})
 
 
 @dataclass(frozen=True)
 class Rival:
-    """A solver under a scheme, at its best compliance."""
+    """A solver under a scheme, with the number at its best that is fitted.
 
-    model: str  # the solver's name
-    alpha: float | None  # None for a solver without a scheme
+    Attributes
+    ----------
+    model
+        The solver's name.
+    alpha, delta, gg
+        Of the scheme; None for a solver without one.
+    misfit
+        Relative L2 [-].
+    displacement
+        Of every step [m].
+    cause
+        Id of the cause whose number is fitted.
+    value
+        That number.
+    """
+
+    model: str
+    alpha: float | None
     delta: float | None
     gg: float | None
-    misfit: float  # relative L2 [-]
-    softness: float  # ln of the scene's spring stiffness over that in effect [-]
-    displacement: Array  # of every step [m]
-    unsoftened: Array  # the same on the scene's own springs [m]
-    plain: float = np.inf  # misfit on the scene's own springs [-]
-    slip: str = ""  # id of another cause than scheme and springs
-    amount: float = 1.0  # its number
-
-
-@dataclass(frozen=True, eq=False)
-class Goal:
-    """The recorded rows of a history."""
-
-    rows: np.ndarray  # indices of the steps
-    displacement: Array  # [m]
-    pressure: Array | None  # [Pa]
-
-    def scaled(self, displacement: Array, pressure: Array | None) -> Array:
-        """Return columns of the recorded rows over the norms of the history's own."""
-        first = displacement / norm(self.displacement)
-        if self.pressure is None or pressure is None:
-            return np.asarray(first)
-        return np.concatenate([first, pressure / norm(self.pressure)]) / math.sqrt(2)
+    misfit: float
+    displacement: Array
+    cause: str = "springs-factor"
+    value: float = 1.0
 
     @property
-    def values(self) -> Array:
-        """The history's own columns, scaled."""
-        return self.scaled(self.displacement, self.pressure)
+    def softness(self) -> float:
+        """Ln of the scene's spring stiffness over that in effect [-]."""
+        return -math.log(self.value) if self.cause == "springs-factor" else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +91,11 @@ class RivalVerdict:
 def rivals(
     scene: Scene,
     solvers: Sequence[str],
-    goal: Goal,
+    recorded: Reading,
     schemes: Iterable[tuple[float, float]] = NAMED.values(),
     at_hand: Sequence[Rival] = (),
 ) -> list[Rival]:
-    """Return the solvers that apply to the scene, under the scene's own and other schemes.
+    """Return the solvers that apply to the scene, under the scene's own and other schemes, each at its best springs.
 
     Parameters
     ----------
@@ -109,7 +103,7 @@ def rivals(
         The scene at the history's own time step and number of steps.
     solvers
         Names of solvers; the continuum has no scheme.
-    goal
+    recorded
         The history.
     schemes
         Pairs (alpha, delta), the likeliest first; by default the named ones.
@@ -124,82 +118,56 @@ def rivals(
         if name == "continuum" and t.discount != 1:  # the damped one takes minutes over long histories
             continue
         for alpha, delta in every[: SCHEMES_OF.get(name, len(every))]:
-            scheme = (None, None) if name == "continuum" else (alpha, delta)
-            rival = before.get((name, *scheme))
-            if rival is None:
-                rival = _on_softer_springs(scene.with_values({"time.alpha": alpha, "time.delta": delta}), name, goal)
+            scheme = (None, None) if name in NO_SCHEME else (alpha, delta)
+            stepped = scene.with_values({"time.alpha": alpha, "time.delta": delta})
+            rival = before.get((name, *scheme)) or _fitted(stepped, name, recorded, _springs(stepped))
             if rival is not None:
                 ranked.append(rival)
     return sorted(ranked, key=lambda rival: rival.misfit)
 
 
-def _on_softer_springs(scene: Scene, name: str, goal: Goal) -> Rival | None:
-    """Return a solver at its best compliance, None where it does not apply."""
-    c = scene.contact  # in shear too if the springs are the same
-
-    def answer(softness: float) -> Answer:
-        stiffness = c.stiffness * math.exp(-min(max(softness, -MOST), MOST))
-        return _answer(scene.with_values({"contact.stiffness": stiffness}), name, goal)
-
-    if get_solver(name).refusal(scene) is not None:
-        return None
-    try:
-        rows, unsoftened = answer(0.0)
-        change = CandidateChange("springs-factor", "{:g}".format, float, answer, (0.0,), NUDGE)
-        plain = float(np.linalg.norm(goal.values - rows))
-        best = _best(change, Fitted(change, 0.0, plain), goal)
-    except InputError:  # the step lies beyond the limit of this scheme
-        return None
-    alpha, delta, gg = _scheme(scene, name)
-    return Rival(name, alpha, delta, gg, best.remainder, best.u, answer(best.u)[1], unsoftened, plain)
-
-
-def slipped(scene: Scene, name: str, goal: Goal) -> list[Rival]:
+def slipped(scene: Scene, name: str, recorded: Reading) -> list[Rival]:
     """Return a solver's answers with one number of the scene wrong by a factor, each at its best factor."""
+    changes = [*of_numbers(scene, STARTS[:: FEW.get(name, 1)], units=False), of_discount(scene, DISCOUNTS)]
+    fits = [_fitted(scene, name, recorded, change) for change in changes if change.id in SLIPS]
+    return [rival for rival in fits if rival is not None]
+
+
+def _springs(scene: Scene) -> CandidateChange[Values]:
+    """Return normal springs by a factor e^-u; those in shear go with them if they are the same."""
+
+    def stiffness(u: float) -> Values:
+        return {"contact.stiffness": scene.contact.stiffness * math.exp(-min(max(u, -MOST), MOST))}
+
+    return CandidateChange("springs-factor", "{:g}".format, lambda u: math.exp(-u), stiffness, (0.0,))
+
+
+def _fitted(scene: Scene, name: str, recorded: Reading, change: CandidateChange[Values]) -> Rival | None:
+    """Return a solver with a number at its best, None where it does not apply, or no step of its scheme does."""
     if get_solver(name).refusal(scene) is not None:
-        return []
-    b, t = scene.block, scene.time
-    data = {"density-factor": b.density, "young-factor": b.young, "load-factor": scene.load.pressure, "gg": t.discount}
-    slipped = []
-    for slip, key in SLIPS.items():
-        largest = 1 / data[slip] if slip == "gg" else math.inf  # a discount ends at one
-        starts = DISCOUNTS if slip == "gg" else STARTS[:: FEW.get(name, 1)]
+        return None
 
-        def answer(u: float, key: str = key, value: float = data[slip], largest: float = largest) -> Answer:
-            return _answer(scene.with_values({key: value * min(math.exp(u), largest)}), name, goal)
+    def residual(u: float) -> Array:
+        return _remainder(scene.with_values(change.changed(u)), name, recorded)[0]
 
-        change = CandidateChange(slip, "{:g}".format, math.exp, answer, tuple(map(math.log, starts)), NUDGE)
-        try:
-            best = _best(change, nearest_start(_residual(change, goal), change), goal)
-            displacement = answer(best.u)[1]
-        except InputError:  # the step lies beyond the limit of the scheme
-            continue
-        factor = min(math.exp(best.u), largest) * (data[slip] if slip == "gg" else 1.0)
-        alpha, delta, gg = _scheme(scene, name)
-        misfit = best.remainder
-        slipped.append(Rival(name, alpha, delta, gg, misfit, 0.0, displacement, displacement, misfit, slip, factor))
-    return slipped
-
-
-def _scheme(scene: Scene, name: str) -> tuple[float, float, float] | tuple[None, None, None]:
+    try:
+        best = fitted(residual, nearest_start(residual, change), ROUNDS, NUDGE)
+        displacement = _remainder(scene.with_values(change.changed(best.u)), name, recorded)[1]
+    except InputError:  # the step lies beyond the limit of the scheme
+        return None
     t = scene.time
-    return (None, None, None) if name == "continuum" else (t.alpha, t.delta, t.discount)
+    alpha, delta, gg = (None, None, None) if name in NO_SCHEME else (t.alpha, t.delta, t.discount)
+    return Rival(name, alpha, delta, gg, best.remainder, displacement, change.id, change.value(best.u))
 
 
-def _best(change: CandidateChange[Answer], start: Fitted[Answer], goal: Goal) -> Fitted[Answer]:
-    return fitted(_residual(change, goal), start, ROUNDS, NUDGE)
-
-
-def _residual(change: CandidateChange[Answer], goal: Goal) -> Callable[[float], Array]:
-    values = goal.values
-    return lambda u: np.nan_to_num(values - change.changed(u)[0], nan=FARTHEST, posinf=FARTHEST, neginf=-FARTHEST)
-
-
-def _answer(scene: Scene, name: str, goal: Goal) -> Answer:
-    """Return the scaled rows and the whole displacement of a solver."""
+def _remainder(scene: Scene, name: str, recorded: Reading) -> tuple[Array, Array]:
+    """Return what a solver leaves of a history, scaled, and its displacement of every step [m]."""
     run = get_solver(name).solve(scene)
-    pressure = None if goal.pressure is None or run.history is None else run.history.columns[PRESSURE][goal.rows]
-    return goal.scaled(run.displacement[goal.rows], pressure), run.displacement
+    rows, columns = recorded.stepping.rows, (recorded.displacement, recorded.pressure)
+    pressure = None if recorded.pressure is None else run.contact_pressure[rows]
+    with np.errstate(all="ignore"):
+        left = joined(columns, *columns) - joined(columns, run.displacement[rows], pressure)
+    return np.nan_to_num(left, nan=FARTHEST, posinf=FARTHEST, neginf=-FARTHEST), run.displacement
 
 
 # ---- the decision ---------------------------------------------------------------------------------------------------
@@ -218,41 +186,45 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     if np.ptp(reading.stepping.steps) > 0:
         return None
     same_steps = reading.scene_of(scene)
-    goal = Goal(reading.stepping.rows, reading.displacement, reading.pressure)
-    ranked = rivals(same_steps, names, goal)
+    ranked = rivals(same_steps, names, reading)
     if not ranked:
         return None
     model = ranked[0].model
     t = scene.time
-    plain = next(r for r in ranked if r.model == model and (r.alpha, r.delta) in ((t.alpha, t.delta), (None, None)))
+    same_scheme = next(
+        r for r in ranked if r.model == model and (r.alpha, r.delta) in ((t.alpha, t.delta), (None, None))
+    )
+    remainder, scene_run = _remainder(same_steps, model, reading)
+    plain = float(np.linalg.norm(remainder))
     spread = Bar.of(reading.displacement, reading.rounding).allowed
     mesh = 0.0 if model == exact else MESH
-    if plain.plain <= min(max(mesh, spread), below):
-        return RivalVerdict(plain, ranked, [], {}, plain.unsoftened, True, 0.0)
-    ordered = sorted(ranked + slipped(same_steps, model, goal), key=lambda rival: rival.misfit)
+    if plain <= min(max(mesh, spread), below):
+        return RivalVerdict(same_scheme, ranked, [], {}, scene_run, True, 0.0)
+    ordered = sorted(ranked + slipped(same_steps, model, reading), key=lambda rival: rival.misfit)
     best = ordered[0]
     causes, values = _causes(scene, best)
     others = [rival for rival in ordered if _causes(scene, rival)[0] != causes]
     is_clear = not others or others[0].misfit > APART * best.misfit
     allowed = spread if get_solver(model).meshed else max(mesh, spread)  # on the scene's own mesh noise alone is left
-    is_enough = best.misfit <= min(allowed, max(SHARE * plain.plain, 1e-12), below)
+    is_enough = best.misfit <= min(allowed, max(SHARE * plain, 1e-12), below)
     explained = is_clear and is_enough and len(causes) <= 1
-    return RivalVerdict(best, ranked, causes, values, plain.unsoftened, explained, best.misfit / plain.plain)
+    return RivalVerdict(best, ranked, causes, values, scene_run, explained, best.misfit / plain)
 
 
 def _causes(scene: Scene, rival: Rival) -> tuple[list[str], dict[str, float]]:
     """Return the causes by which a solver's answer differs from that on the scene."""
-    if rival.slip:
-        return [rival.slip], {rival.slip: float(f"{rival.amount:.6g}")}
+    number = float(f"{rival.value:.6g}")
+    if rival.cause != "springs-factor":
+        return [rival.cause], {rival.cause: number}
     t = scene.time
     causes = []
     values = {}
     if rival.alpha is not None and (rival.alpha, rival.delta) != (t.alpha, t.delta):
         causes.append("scheme")
-    if abs(rival.softness) > 1e-3:
+    if abs(rival.softness) > SOFTER:
         name = "base-compliance" if 0 < rival.softness < 2 * BENIGN_COMPLIANCE else "springs-factor"
         causes.append(name)
-        values[name] = float(f"{np.exp(-rival.softness):.6g}") if name == "springs-factor" else rival.softness
+        values[name] = number if name == "springs-factor" else rival.softness
     return causes, values
 
 
@@ -265,15 +237,15 @@ def ranking(
     """Return every named scheme with what else explains the history, and the other solvers, by misfit."""
     pairs = dict.fromkeys([(best.alpha, best.delta), *NAMED.values()])
     free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in ("alpha", "delta", "gg", "base")))))
-    fits = fit(target.quick(), [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
+    fits = fit(target, [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
     misfits = [each.misfit for each in fits]
     misfits[0] = min(misfits[0], fit(target, [(best, ())])[0].misfit)
     rows = []
     for each, misfit in zip(fits, misfits, strict=True):
         v = each.variant
-        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target, v)))
+        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target.column, v)))
     for rival in others:
-        softer = compliance(target, replace(best, softness=rival.softness))
+        softer = compliance(target.column, replace(best, softness=rival.softness))
         rows.append(row_of(rival.model, rival.alpha, rival.delta, rival.gg, rival.misfit, softer))
     return sorted(rows, key=lambda row: row["misfit"])
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.reading import Foreign, Stepping, steppings
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
@@ -33,6 +34,12 @@ class Slip:
         if self.cause == "sign":
             return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
         return f"the {name} is in other units, {self.factor:g} times the scene's"
+
+
+def words_of_slips(slips: Sequence[Slip]) -> dict[str, str]:
+    """Return the words of the errors of sign and of unit, by their causes."""
+    causes = sorted({slip.cause for slip in slips})
+    return {cause: " and ".join(slip.words for slip in slips if slip.cause == cause) for cause in causes}
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +73,7 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
     """Return the ways to read a history's steps, sign and units."""
     readings = []
     for stepping in steppings(foreign, scene.time.step):
-        expected = computed(column, [scene_variant], stepping.steps)
+        expected = histories(column, [scene_variant], stepping.steps)
         readings += slips(
             foreign, stepping, expected.displacement[stepping.rows, 0], expected.pressure[stepping.rows, 0]
         )

@@ -1,33 +1,58 @@
 """The search for the fewest causes that explain a history: none, one, what surrounds a block, two.
 
-A cause counts only if nothing but digits and noise remains with it. Every candidate is fitted over the first few
-periods, where no fit goes astray, then over more and more of the history. Of several that explain it, the one that
-the Bayesian information criterion prefers by a clear margin is named; without that margin none is.
+Candidates are fitted many at once over the first few periods, where no fit goes astray; what comes near there is fitted
+over more and more of the history. A cause counts only if nothing but digits and noise remains with it. Of several that
+explain it, the one that the Bayesian information criterion prefers by a clear margin is named, or none.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
-from validation.diagnosis.causes import FINE_BANDS, OUTSIDE, Move, dead_bands, moves
-from validation.diagnosis.decision import (
-    AROUND,
-    FAULT,
-    HIDDEN_TWO,
-    NEGLIGIBLE,
-    SURROUNDINGS,
-    Verdict,
-    accepted,
-    decided,
-    score,
-)
+import numpy as np
+
+from validation.diagnosis.causes import LISTED, OUTSIDE, benign_springs
+from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.fitting import Found, fitted
+from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.variant import Variant
 
+PERIODS = 5.0  # of the first mode, over which a fit does not go astray
+SHORTEST, COARSE = 30, 500  # steps of the first fits
+STRETCH = 5  # of the fitted part of a long history, from fit to fit
+KEPT = 16  # candidates that are fitted over more of the history
+CHUNK = 1500  # variants in one pass
+FIRST_ROUNDS, ROUNDS = 5, 12  # of the fits: of all candidates, of those that are left
+MANY = 80  # candidates that are fitted further
+
+Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their fit begins, its free numbers
+CLEAR = 10.0  # of the information criterion: odds of 150 to 1
+NEEDED = 14.0  # the same for a cause where noise alone would do: there are some forty to choose from
+AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
+AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
+NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
+WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
+SHARE = 0.02  # of what is to be explained, at most, that they may leave
+SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
+FAULT = 3e-3  # relative L2 of a fault beside what surrounds a block: that is not known better than to 1e-3
+RARE = 14.0  # of the information criterion: a thousand to one
+ROUND = 3  # significant digits of a round number
+EXACT = 1e-7  # relative error of a round number
+LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
+WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
+MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
+# share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
+# is in no catalogue comes as near to one of them as that, but not nearer
+HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
+USUAL = (
+    *("density-factor", "young-factor", "springs-factor", "load-factor", "own-weight", "contact-opened", "start"),
+    *("viscous-damping", "gravity-factor"),
+    *("gg", "gg-in-one-formula", "scheme", "time-shift", "pressure-shift", "pressure-factor", "reported-point"),
+)
 OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it
 # tried by themselves only: beside another cause they are rare, and the pairs grow with the square of what is tried
 SINGLE = (
@@ -36,6 +61,239 @@ SINGLE = (
 )
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """Causes, with the fit that has them."""
+
+    moves: tuple[Move, ...]
+    fit: Fit
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Ids of the causes, each once."""
+        return tuple(dict.fromkeys(move.id for move in self.moves))
+
+
+# ---- fits -----------------------------------------------------------------------------------------------------------
+
+
+def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Explanation]:
+    """Return combinations of causes at their best, the best first.
+
+    A combination with free numbers begins at the two of its starts that come nearest.
+    """
+    n = len(target.steps)
+    steps = min(max(SHORTEST, math.ceil(PERIODS * _period(target) / float(np.mean(target.steps)))), COARSE)
+    part = target.until(steps) if steps < n else target
+    explanations = _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)
+    if len(explanations) > MANY:
+        explanations = explanations[:MANY]
+    explanations = _further(part, explanations)
+    while steps < n:
+        steps *= STRETCH
+        part = target.until(min(steps, n))
+        explanations = _further(part, _leading(explanations))
+    return explanations if part.same_steps(target) else _further(target, _leading(explanations))
+
+
+def _further(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
+    return _fits(target, [(f.moves, f.fit.variant, f.fit.free) for f in explanations], ROUNDS)
+
+
+def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Explanation]:
+    """Return the fits from some starts, the best first."""
+    fits = [
+        f
+        for i in range(0, len(starts), CHUNK)
+        for f in fit(target, [(v, free) for _, v, free in starts[i : i + CHUNK]], rounds)
+    ]
+    return sorted((Explanation(s[0], f) for s, f in zip(starts, fits, strict=True)), key=lambda f: f.fit.misfit)
+
+
+def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Start]:
+    """Return the best two starts of every combination."""
+    every = [(i, v) for i, combo in enumerate(combos) for v in _starts(scene, combo)]
+    misfits: list[float] = []
+    goal = target.values
+    for i in range(0, len(every), CHUNK):
+        answers = target.responses([v for _, v in every[i : i + CHUNK]])
+        misfits += np.linalg.norm(answers - goal[:, None], axis=0).tolist()
+    best: dict[int, list[tuple[float, Variant]]] = {}
+    for (i, v), misfit in zip(every, misfits, strict=True):
+        best.setdefault(i, []).append((misfit, v))
+    chosen = []
+    for i, misfits_of_starts in best.items():
+        free = tuple(name for move in combos[i] for name in move.free)
+        chosen += [(combos[i], v, free) for _, v in sorted(misfits_of_starts, key=lambda t: t[0])[: 2 if free else 1]]
+    return chosen
+
+
+def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
+    """Return the variants from which the fits of a combination may begin: one number at a time."""
+    fixed = changed(scene, {name: value for move in combo for name, value in move.changes})
+    if len(combo) == 1:
+        (move,) = combo
+        return [changed(fixed, {move.free[0]: value}) for value in move.starts] or [fixed]
+    firsts = [changed(fixed, {move.free[0]: value}) for move in combo for value in move.starts]
+    return [fixed, *firsts]
+
+
+def _leading(explanations: Sequence[Explanation]) -> list[Explanation]:
+    """Return the best few, of the same causes the best with the same free numbers."""
+    leading: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Explanation] = {}
+    for f in explanations:
+        if len({ids for ids, _, _ in leading} | {f.ids}) <= KEPT:
+            leading.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
+    return list(leading.values())
+
+
+def _period(target: Target) -> float:
+    """Return the period of a mass on springs as soft as block and springs together [s]."""
+    c = target.column
+    mass = c.density * c.width * c.height
+    return 2 * math.pi * math.sqrt(mass * abs(c.static) / abs(c.force or 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What the search came to."""
+
+    own: Fit  # of the scene as it is
+    best: Explanation  # what explains it, or comes nearest
+    explained: bool
+    alike: tuple[Explanation, ...] = ()  # others that explain it as well
+    single: tuple[Explanation, ...] = ()  # every cause by itself, the best first
+    around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
+    reached: bool = False  # something leaves digits and noise only, also where no cause is named
+
+    @property
+    def same(self) -> bool:
+        """Whether the scene as it is explains the history."""
+        return self.explained and not self.best.moves
+
+    @property
+    def left(self) -> float:
+        """Share of the difference that the best explanation leaves [-]."""
+        return 0.0 if self.same else min(self.best.fit.misfit / max(self.own.misfit, 1e-300), 1.0)
+
+
+# ---- the decision ---------------------------------------------------------------------------------------------------
+
+
+def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation]) -> Verdict:
+    """Return the verdict over candidates, the scene as it is among them or not."""
+    scores = {id(f): score(target, f.fit, f.moves) for f in explanations}
+    ranked = sorted(explanations, key=lambda f: scores[id(f)])
+    fine = [f for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
+    if not fine:
+        return Verdict(
+            scene_fit,
+            min(explanations, key=lambda f: f.fit.misfit) if explanations else Explanation((), scene_fit),
+            False,
+        )
+    near = scores[id(fine[0])] + CLEAR
+    close = _rounder([f for f in fine if scores[id(f)] < near])
+    best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
+    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
+    alike = {f.ids: f for f in reversed(close) if f.ids != best.ids and not _contained(best, f)}
+    is_named = not alike and _nameable(target, scene_fit, best)
+    if target.explained(scene_fit.residual) and not (
+        is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
+    ):
+        return Verdict(scene_fit, Explanation((), scene_fit), True)
+    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True)
+
+
+def _rounder(close: list[Explanation]) -> list[Explanation]:
+    """Return explanations without those whose numbers are far less round: 1.2 and 1.2 before 0.833333 and 0.833333."""
+    digits = [sum(_digits(getattr(f.fit.variant, name)) for name in f.fit.free) for f in close]
+    if min(digits) > ROUND * max(len(close[0].fit.free), 1):
+        return close
+    return [f for f, d in zip(close, digits, strict=True) if d <= min(digits) + ROUND]
+
+
+def _digits(value: float) -> int:
+    """Return the significant digits that a fitted number or its exponential has, of what can be told."""
+    forms = (value, math.exp(-value)) if abs(value) < LARGEST_EXPONENT else (value,)
+    return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in forms)
+
+
+def _contained(best: Explanation, other: Explanation) -> bool:
+    """Whether an explanation is the best one with a further part that has no effect."""
+    return set(best.ids) < set(other.ids) or (best.ids in WITHOUT_BAND and other.ids == ("dead-band",))
+
+
+def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
+    """Whether a fit leaves no more than it may: digits and noise, or next to nothing, or what a base does."""
+    v = candidate.variant
+    if target.explained(target.inner(candidate.residual, v)):
+        return True
+    if candidate is scene_fit or v == scene_fit.variant:
+        return candidate.misfit <= NEGLIGIBLE
+    if candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
+        return True
+    noise = MARGIN * target.spread
+    around = AROUND_OPEN if v.opens else AROUND
+    loose = min(math.hypot(around, noise), SHARE * scene_fit.misfit)
+    return candidate.misfit <= loose and _surrounded(target, candidate)
+
+
+def _surrounded(target: Target, candidate: Fit) -> bool:
+    """Whether moving geometry or a base is seen in a history: without it the same fit leaves much more.
+
+    What surrounds a block is treated differently by every program, so that some of it may be left; a base of 1e-6 or
+    a geometry that makes no difference has explained nothing, and excuses nothing.
+    """
+    v = candidate.variant
+    base = v.base > 0 or (v.softness > 0 and benign_springs(target.column, v))
+    if not (v.updated or base):
+        return False
+    without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
+    return fit(target, [(without, ())])[0].misfit > WITHOUT_IT * candidate.misfit
+
+
+def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
+    """Whether enough of the difference stands out of the noise for a cause to be named.
+
+    Where noise hides a share of it, another cause that leaves less than that share would look the same.
+    """
+    if any(name in OUTSIDE for name in explanation.ids):
+        return False
+    if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
+        return True
+    single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
+    if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
+        return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
+    usual = single and explanation.ids[0] in USUAL
+    limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
+    return explanation.fit.misfit <= limit * scene_fit.misfit
+
+
+def _rare(move: Move, among: int) -> bool:
+    """Whether people rarely make a cause; a factor on one column is one that they make by itself."""
+    return move.id not in (*USUAL, *SURROUNDINGS) or (among > 1 and "displacement_factor" in move.free)
+
+
+def _sensible(explanation: Explanation) -> bool:
+    """Whether every cause is there in a measurable amount and within its bounds."""
+    plain = Variant(0.5, 1.0, 1.0)
+    for move in explanation.moves:
+        for name in move.free:
+            value = getattr(explanation.fit.variant, name)
+            if name not in ("alpha", "delta", "gg", "spectral") and abs(value - getattr(plain, name)) < 1e-7:
+                return False
+    return all(name in LISTED for name in explanation.ids)
+
+
+def score(target: Target, candidate: Fit, moves: Sequence[Move] = ()) -> float:
+    """Return the Bayesian information criterion of a fit, digits not counted below what was printed.
+
+    A cause that people rarely make counts less than one that they make often.
+    """
+    n, rare = len(candidate.residual), sum(_rare(move, len(moves)) for move in moves)
+    return 2 * n * math.log(max(candidate.misfit, target.floor)) + len(candidate.free) * math.log(n) + RARE * rare
 
 
 # ---- the search -----------------------------------------------------------------------------------------------------
@@ -52,7 +310,7 @@ def simple(target: Target, scene: Variant) -> Verdict:
         The scene's own scheme, nothing added.
     """
     scene_fit = fit(target, [(scene, ())])[0]
-    nothing = Found((), scene_fit)
+    nothing = Explanation((), scene_fit)
     if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
         return Verdict(scene_fit, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
@@ -103,7 +361,7 @@ def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
     return _nearer(last, before)
 
 
-def _around(target: Target, scene: Variant) -> list[Found]:
+def _around(target: Target, scene: Variant) -> list[Explanation]:
     """Return two or three of what surrounds a block: a softer base, weight, moving geometry."""
     parts = _surroundings(target, scene)
     combos = [tuple(parts[:1])] + [combo for size in (2, 3) for combo in combinations(parts, size)]
@@ -118,18 +376,18 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
     return [plain[name] for name in SURROUNDINGS]
 
 
-def _heavy(target: Target, explanations: Sequence[Found]) -> list[Found]:
+def _heavy(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
     """Return explanations by a softer base with a base that has mass."""
     more = []
     for f in explanations:
         v = f.fit.variant
         if v.softness > 0 and "softness" in f.fit.free:
             starts = [(replace(v, base=m, softness=v.softness * soft), (*f.fit.free, "base")) for m, soft in BASES]
-            more += [Found(f.moves, heavy) for heavy in fit(target, starts, rounds=12)]
+            more += [Explanation(f.moves, heavy) for heavy in fit(target, starts, rounds=12)]
     return more
 
 
-def _without_excess(target: Target, scene_fit: Fit, explanation: Found) -> Found:
+def _without_excess(target: Target, scene_fit: Fit, explanation: Explanation) -> Explanation:
     """Return an explanation without those of its surroundings that it does not need."""
     for move in [m for m in explanation.moves if m.id in SURROUNDINGS]:
         rest = tuple(m for m in explanation.moves if m is not move)
@@ -140,11 +398,11 @@ def _without_excess(target: Target, scene_fit: Fit, explanation: Found) -> Found
         (less,) = fit(target, [(back, free)], rounds=12)
         fine = accepted(target, scene_fit, less) and less.misfit < max(2 * explanation.fit.misfit, AROUND / 10)
         if fine or score(target, less) <= score(target, explanation.fit):
-            explanation = Found(rest, less)
+            explanation = Explanation(rest, less)
     return explanation
 
 
-def _few(target: Target, scene: Variant, single: Sequence[Found]) -> list[Move]:
+def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[Move]:
     """Return the causes that are tried in pairs, each beginning at the scene or where it was best by itself."""
     few = []
     alone = {f.ids[0]: f.fit.variant for f in reversed(single)}

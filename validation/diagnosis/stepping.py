@@ -10,7 +10,7 @@ summed up by itself, so that a stiff spring keeps its digits. With U = dt V and 
 with the internal force f and viscous damping C = a0 M + a1 K. It is linear in (g, s, x, U, W, 1), s the shear of the
 closed contact, as long as contact and geometry stay: such histories are sums of powers of one matrix, which is had by
 stepping the unit vectors, and cost no loop over the steps. Where the contact opens or the geometry moves, the same step
-is made one by one. A variant that is exact in time has the exponential of its matrix.
+is made one by one, as `dda.solve_unilateral` does. A variant that is exact in time has the exponential of its matrix.
 """
 
 from __future__ import annotations
@@ -51,15 +51,15 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
     variants = [*requested, *(replace(requested[j], start="zero") for j in started)]
     longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
     equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
-    groups: dict[tuple[bool, int, int, bool], list[int]] = {}
+    groups: dict[tuple[bool, bool, int, int, bool], list[int]] = {}
     for j, v in enumerate(variants):
         powers = equal and not (v.opens or v.updated)
-        groups.setdefault((powers, _unknowns(rectangle, v), v.parts, v.exact), []).append(j)
+        groups.setdefault((powers, v.updated, _unknowns(rectangle, v), v.parts, v.exact), []).append(j)
     displacement = np.empty((len(longer), len(variants)))
     pressure = np.empty_like(displacement)
     opened = np.zeros(displacement.shape, dtype=bool)
     with np.errstate(all="ignore"):
-        for (powers, unknowns, parts, _), members in groups.items():
+        for (powers, _, unknowns, parts, _), members in groups.items():
             stepper = Stepper(rectangle, [variants[j] for j in members], unknowns)
             if powers:
                 columns = stepper.powers(float(longer[0]), len(longer), parts)
@@ -119,6 +119,7 @@ class Stepper:
         self.viscous, self.structural = each("viscous"), each("structural")
         self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
         self.updated, self.opens = each("updated"), each("opens").astype(bool)
+        self.reset = each("reset").astype(bool)
         self.closing, self.opening = each("band"), each("band") * each("reopening")
         self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
         self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
@@ -240,6 +241,11 @@ class Stepper:
     def _damping(self, q: Equations) -> Array:
         return self.viscous[:, None, None] * q.mass + self.structural[:, None, None] * q.stiffness
 
+    def matrix(self, q: Equations, dt: float) -> Array:
+        """Return the matrix of a step, by stepping the unit vectors, (variants, 3 + 3 d, 3 + 3 d)."""
+        units = np.repeat(np.eye(3 + 3 * self.d)[:, None, :], len(self.variants), axis=1)
+        return np.moveaxis(self.step(q, self.inverse(q, dt), dt, units), 0, -1)
+
     def inverse(self, q: Equations, dt: float) -> Array:
         """Return the inverse of the matrix of a step, (variants, d, d)."""
         delta, am, af = (c[:, None, None] for c in (self.delta, self.mean_mass, self.mean_force))
@@ -277,12 +283,10 @@ class Stepper:
         n = len(self.variants)
         q = self.equations(np.ones(n, dtype=bool), self.wide, self.high)
         small = dt / parts
-        size = 3 + 3 * self.d
         if self.variants[0].exact:
             T = self._exponential(q, dt)
         else:
-            units = np.repeat(np.eye(size)[:, None, :], n, axis=1)
-            T = np.moveaxis(self.step(q, self.inverse(q, small), small, units), 0, -1)
+            T = self.matrix(q, small)
             T = np.linalg.matrix_power(T, parts) if parts > 1 else T
         state = self.start(q, small)
         rows = self.observers(q) @ T  # of the first step, then of more and more of them
@@ -320,31 +324,34 @@ class Stepper:
         """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
         n, moves = len(self.variants), bool(np.any(self.updated))
         wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
-        prepared_steps: dict[tuple[float, bytes], tuple[Equations, Array]] = {}
-
-        def prepared(dt: float, closed: Flags) -> tuple[Equations, Array]:
-            key = (dt, closed.tobytes())
-            if moves or key not in prepared_steps:
-                q = self.equations(closed, wide, high)
-                prepared_steps[key] = q, self.inverse(q, dt)
-            return prepared_steps[key]
-
         first = self.equations(on, wide, high)
         state, observers = self.start(first, float(steps[0])), self.observers(first)
-        before, rows, flags = float(steps[0]), [], []
+        before, rows, flags = 0.0, [], []
         for dt in steps.tolist():
-            if dt != before:
+            if dt != before and not moves:
+                closed, opened = (
+                    self.matrix(self.equations(np.full(n, contact), wide, high), dt) for contact in (True, False)
+                )
+            if before and dt != before:
                 state[:, 2 + self.d : 2 + 2 * self.d] *= dt / before
                 state[:, 2 + 2 * self.d : 2 + 3 * self.d] *= (dt / before) ** 2
-                before = dt
+            before, was_closed = dt, on
             for _ in range(OPEN_CLOSE_ITERATIONS):
-                q, inverse = prepared(dt, on)
-                end = self.step(q, inverse, dt, state)
+                if moves:
+                    q = self.equations(on, wide, high)
+                    end = self.step(q, self.inverse(q, dt), dt, state)
+                else:
+                    T = np.where(on[:, None, None], closed, opened)
+                    end = times(T, state)
                 limit = np.where(on, self.opening, -self.closing)
                 new = np.where(self.opens, end[:, 0] < limit, True)
                 if np.array_equal(new, on):
                     break
                 on = new
+            landing = on & ~was_closed & ~self.reset
+            if self.d > 2 and np.any(landing):
+                T = self.matrix(q, dt) if moves else T
+                end += landing[:, None] * _shear_from_touch(T, state, end)[:, None] * T[:, :, 1]
             if moves:
                 strain = end[:, 2 : 2 + self.d] - state[:, 2 : 2 + self.d]
                 high = high * (1 + self.updated * strain[:, 1])
@@ -356,6 +363,21 @@ class Stepper:
             flags.append(~on)
         columns = np.array(rows)
         return columns[..., 0], columns[..., 1], np.array(flags)
+
+
+def _shear_from_touch(T: Array, state: Array, end: Array) -> Array:
+    """Return the shear s with which a closing contact starts a step, for it to count from where the gap was crossed.
+
+    By the share g0 / (g0 - g1) of the step, with g the gap, the lateral strain has then grown from e0 to e1, and
+    s = -(e1 - e0) g0 / (g0 - g1). Both e1 and g1 are linear in s: e1 = e + e' s and g1 = g + g' s, which leaves
+    g' s^2 - b s - c = 0, b = g0 - g + g0 e', c = g0 (e - e0).
+    """
+    gap_rate, strain_rate = T[:, 0, 1], T[:, 4, 1]
+    open_gap = np.maximum(state[:, 0], 0.0)  # what starts in the base has crossed already
+    b = open_gap * (1 + strain_rate) - end[:, 0]
+    c = open_gap * (end[:, 4] - state[:, 4])
+    root = -2 * c / (b + np.sqrt(b * b + 4 * gap_rate * c))  # b > 0: the gap has been crossed
+    return np.asarray(np.nan_to_num(root))
 
 
 def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) -> Array:

@@ -104,10 +104,10 @@ def pytest_terminal_summary(
     if user is None or not statements:
         return
     from validation.studies.own_solver.block import block
-    from validation.studies.own_solver.session import Told
+    from validation.studies.own_solver.session import GateReport
 
     terminalreporter.write_sep("=", f"{user}: what the gates tell")
-    for line in block([Told(**json.loads(text)) for text in statements], every=config.getoption("verbose") > 0):
+    for line in block([GateReport(**json.loads(text)) for text in statements], every=config.getoption("verbose") > 0):
         for part in line.split("\n"):
             indent = " " * (len(part) - len(part.lstrip()) + 4)
             for row in textwrap.wrap(part, BLOCK_WIDTH, subsequent_indent=indent, drop_whitespace=True) or [""]:

@@ -6,6 +6,7 @@ matrices has the z_k as its eigenvalues (Hua and Sarkar, IEEE Trans. Acoust. Spe
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,10 +63,20 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
 
 @dataclass(frozen=True)
 class Swing:
-    """The value about which a signal swings, and its strongest oscillating pole, if any."""
+    """The value about which a signal swings, and its strongest oscillating pole, if any.
+
+    Attributes
+    ----------
+    misfit
+        What the powers leave of the samples, over the largest value [1].
+    samples
+        How many samples they are fitted to.
+    """
 
     static: float | None
     pole: Pole | None
+    misfit: float = math.inf
+    samples: int = 0
 
 
 def swing(signal: Array, step: float, order: int = 7) -> Swing:
@@ -95,7 +106,7 @@ def swing(signal: Array, step: float, order: int = 7) -> Swing:
     smallest_share = max(misfit, 1e-6)
     oscillating = [_pole(zk, ck * size, step * thin) for zk, ck in zip(z, c, strict=True) if zk.imag > 1e-6]
     strong = [pole for pole in oscillating if pole.amplitude > smallest_share * size]
-    return Swing(static, max(strong, key=lambda pole: pole.amplitude, default=None))
+    return Swing(static, max(strong, key=lambda pole: pole.amplitude, default=None), misfit, len(y))
 
 
 def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, int]:

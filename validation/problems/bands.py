@@ -7,13 +7,12 @@ cent does to the exact motion changes nothing for who uses the answer; a larger 
 from __future__ import annotations
 
 import functools
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.numbers import Values, friction, layers, sized, springs
+from validation.diagnosis.numbers import Values, numbers
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
@@ -27,14 +26,6 @@ LEAST = 4  # rows that are judged, at least
 # A change below that is rounding of the exact motion (1e-7 in a column's) or of printed numbers (six digits).
 ROUNDED = 1e-6
 DRIVE = "what drives it"  # the datum of a motion that no other one changes
-
-
-@dataclass(frozen=True)
-class Datum:
-    """A number of a scene that is not known to better than one per cent."""
-
-    name: str  # in words
-    changed: Callable[[Scene], Values]  # the keys that carry it, one per cent larger; empty where it is absent
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,46 +75,24 @@ class Standard:
     bands: Mapping[str, Band]  # column to band
 
 
-def _springs(scene: Scene) -> Values:
-    rigid = scene.column is not None or math.isinf(scene.contact.stiffness)
-    return {} if rigid else springs(scene, 1 + UNKNOWN)
-
-
-def _material(key: str) -> Callable[[Scene], Values]:
-    def changed(scene: Scene) -> Values:
-        if scene.column is not None:
-            return layers(key)(scene, 1 + UNKNOWN)
-        return {f"block.{key}": getattr(scene.block, key) * (1 + UNKNOWN)}
-
-    return changed
-
-
-def _width(scene: Scene) -> Values:
-    """Return a rectangle's width alone: its slenderness, by which it rocks."""
-    other = scene.column is not None or scene.block.vertices is not None
-    return {} if other else sized(scene, 1 + UNKNOWN, 1.0)
-
-
-def _friction(scene: Scene) -> Values:
-    without = scene.column is not None or not scene.contact.friction
-    return {} if without else friction(scene, 1 + UNKNOWN)
-
-
-# Not among them: loads, which scale a linear motion by themselves; the velocity, gap, tilt and slope from which a scene
-# starts and its height, which are the question that it asks.
-DATA = (
-    Datum("the springs", _springs),
-    Datum("Young's modulus", _material("young")),
-    Datum("the density", _material("density")),
-    Datum("the width", _width),
-    Datum("tan(phi) of friction", _friction),
-)
+# The data that are not known to better than one per cent, and their names. Not among them: loads, which scale a linear
+# motion by themselves; the velocity, gap, tilt and slope from which a scene starts and its height, which are the
+# question that it asks; what a column's base is made of.
+DATA = {
+    "springs-factor": "the springs",
+    "young-factor": "Young's modulus",
+    "density-factor": "the density",
+    "width-factor": "the width",  # of a rectangle: its slenderness, by which it rocks
+    "friction-factor": "tan(phi) of friction",
+}
 
 
 def changes(scene: Scene) -> dict[str, Values]:
     """Return what one per cent of each datum of a scene is: datum to keys and values."""
-    values_by_datum = {datum.name: datum.changed(scene) for datum in DATA}
-    return {name: values for name, values in values_by_datum.items() if values}
+    changed = {number.id: number.changed(scene, 1 + UNKNOWN) for number in numbers(scene)}
+    if scene.column is None and scene.block.vertices is not None:
+        changed.pop("width-factor", None)
+    return {name: changed[number] for number, name in DATA.items() if number in changed}
 
 
 def changed_scenes(scene: Scene) -> dict[str, Scene]:

@@ -158,32 +158,32 @@ def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
     return replace(variant, **changes)
 
 
+def _directions(solution: Fit) -> tuple[float, Array, Array]:
+    """Return the standard deviation of a row, singular values and directions of the Jacobian by spans."""
+    span = np.array([SPAN[name] for name in solution.free])
+    _, s, vt = np.linalg.svd(solution.jacobian * span, full_matrices=False)
+    return solution.misfit / math.sqrt(max(solution.independent - len(solution.free), 1.0)), s, vt
+
+
 def intervals(solution: Fit) -> dict[str, Interval]:
     """Return the 95 % interval of every free number; infinite where the data do not tell it."""
-    n, k = solution.independent, len(solution.free)
-    variance = solution.misfit**2 / max(n - k, 1.0)
-    span = np.array([SPAN[name] for name in solution.free])
-    J = solution.jacobian * span
-    _, s, vt = np.linalg.svd(J, full_matrices=False)
-    is_determined = s > 1e-9 * max(float(s[0]) if k else 0.0, 1e-300)
+    sigma, s, vt = _directions(solution)
+    is_determined = s > 1e-9 * max(float(np.max(s, initial=0.0)), 1e-300)
     spread = np.where(is_determined, 1 / np.where(is_determined, s, 1.0), np.inf)
     with np.errstate(invalid="ignore"):
         parts = np.where(np.abs(vt.T) > 1e-9, np.abs(vt.T) * spread, 0.0)
-    width = np.sqrt(np.sum(parts**2, axis=1))
-    is_finite = np.isfinite(width)  # of a number without effect nothing is known, also where nothing is left
-    half = np.where(is_finite, NORMAL_95 * math.sqrt(variance) * np.where(is_finite, width, 0.0) * span, np.inf)
-    return {
-        name: Interval(float(getattr(solution.variant, name)), float(width))
-        for name, width in zip(solution.free, half, strict=True)
-    }
+    widths = np.sqrt(np.sum(parts**2, axis=1))
+    intervals_by_name = {}
+    for name, width in zip(solution.free, widths.tolist(), strict=True):
+        # of a number without effect nothing is known, also where nothing is left
+        half = NORMAL_95 * sigma * width * SPAN[name] if math.isfinite(width) else math.inf
+        intervals_by_name[name] = Interval(float(getattr(solution.variant, name)), half)
+    return intervals_by_name
 
 
 def untold(solution: Fit) -> list[dict[str, float]]:
     """Return the directions of the free numbers that the history does not tell, as shares of their spans."""
-    n, k = solution.independent, len(solution.free)
-    span = np.array([SPAN[name] for name in solution.free])
-    _, s, vt = np.linalg.svd(solution.jacobian * span, full_matrices=False)
-    sigma = solution.misfit / math.sqrt(max(n - k, 1.0))
+    sigma, s, vt = _directions(solution)
     return [
         {name: float(part) for name, part in zip(solution.free, direction, strict=True) if abs(part) > 0.2}
         for size, direction in zip(s, vt, strict=True)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from validation.diagnosis.fits import bar
-from validation.diagnosis.fits.responses import computed
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import Array
@@ -22,6 +21,14 @@ ROUNDING = 1e-10  # relative L2 that no recorded history comes below
 def norm(values: Array) -> float:
     """Return the root of the sum of squares, one for zeros throughout."""
     return float(np.linalg.norm(values)) or 1.0
+
+
+def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: Array | None) -> Array:
+    """Return two columns over the norms of recorded ones, below one another; their own squares sum to one."""
+    first = displacement / norm(recorded[0])
+    if recorded[1] is None or pressure is None:
+        return np.asarray(first)
+    return np.concatenate([first, pressure / norm(recorded[1])]) / math.sqrt(2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +68,6 @@ class Target:
     pressure: Array | None = None  # [Pa]
     rounding: Array | None = None  # of the displacement [m], seen from the values if not given
     pressure_rounding: Array | None = None  # [Pa]
-    searching: bool = False  # one pass for all variants, those that open included
 
     @property
     def values(self) -> Array:
@@ -70,17 +76,13 @@ class Target:
 
     def join(self, displacement: Array, pressure: Array | None) -> Array:
         """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
-        first = displacement / norm(self.displacement)
-        if self.pressure is None or pressure is None:
-            return first
-        return np.concatenate([first, pressure / norm(self.pressure)]) / math.sqrt(2)
+        return joined((self.displacement, self.pressure), displacement, pressure)
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
-        stepped = histories if self.searching else computed
-        computed_histories = stepped(self.column, variants, self.steps)
+        stepped = histories(self.column, variants, self.steps)
         with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-            joined = self.join(computed_histories.displacement[self.rows], computed_histories.pressure[self.rows])
+            joined = self.join(stepped.displacement[self.rows], stepped.pressure[self.rows])
         return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> list[Array]:
@@ -132,10 +134,6 @@ class Target:
     def same_steps(self, other: Target) -> bool:
         """Whether another target has as many steps and rows."""
         return len(self.steps) == len(other.steps) and len(self.rows) == len(other.rows)
-
-    def quick(self) -> Target:
-        """Return the same for a search, in one pass for all variants."""
-        return replace(self, searching=True)
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""

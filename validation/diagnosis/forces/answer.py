@@ -8,16 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.causes import CAUSES, UNEXPLAINED
-from validation.diagnosis.departure import Departure
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis import sentences
+from validation.diagnosis.causes import UNEXPLAINED, all_benign, words_of
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.forces.forward import at_step, displacements
-from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, Found
-from validation.diagnosis.forces.motion import body_of
+from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding
+from validation.diagnosis.forces.laws import body_of
+from validation.diagnosis.forces.runs import at_step, displacements
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
-from validation.diagnosis.readings import Slip
-from validation.diagnosis.sentences import per_cent, scheme_words
+from validation.diagnosis.readings import Slip, words_of_slips
+from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, Array
@@ -36,7 +36,7 @@ UNIFORM = 1e-3  # relative; times are often printed with four digits
 
 
 @dataclass(frozen=True, eq=False)
-class Read:
+class SlopeReading:
     """Displacements of the centroid along and across the base at every step, signs corrected."""
 
     place: Array  # m, (steps, 2)
@@ -51,7 +51,7 @@ class Read:
         return tuple(sorted({slip.cause for slip in self.corrected}))
 
 
-def read(scene: Scene, foreign: Foreign) -> Read:
+def read(scene: Scene, foreign: Foreign) -> SlopeReading:
     """Return what a history holds of a block with friction.
 
     Raises
@@ -97,7 +97,7 @@ def read(scene: Scene, foreign: Foreign) -> Read:
     if factor != 1:
         corrected += [Slip("unit", name, factor) for name in names]
     notes = (stepping.note,) if stepping.note else ()
-    return Read(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
+    return SlopeReading(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
 
 
 def _unit(scene: Scene, step: float, place: Array) -> float:
@@ -128,24 +128,20 @@ def _sign(column: Array, load: float) -> float:
     return -1.0 if first * load < 0 else 1.0
 
 
-def ids_of(result: Found, read: Read) -> list[str]:
+def ids_of(result: ContactFinding, read: SlopeReading) -> list[str]:
     """Return the ids of an answer."""
     return [*read.slips, *result.causes] if result.explained else [UNEXPLAINED]
 
 
-def departure_of(result: Found, ids: Sequence[str]) -> Departure | None:
+def departure_of(result: ContactFinding, ids: Sequence[str]) -> Departure | None:
     """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
-    if all(CAUSES[name].benign for name in ids):
+    if all_benign(ids):
         return None
-    return Departure(_first(result, ids) or 1, "offset")
+    first = 1 if {"sign", "unit"} & set(ids) else result.first
+    return Departure(first or 1, "offset")
 
 
-def _first(result: Found, ids: Sequence[str]) -> int | None:
-    """Return the first step at which the scene's own law is left: the first of all where a sign is turned."""
-    return 1 if {"sign", "unit"} & set(ids) else result.first
-
-
-def stages(result: Found, read: Read) -> list[Stage]:
+def stages(result: ContactFinding, read: SlopeReading) -> list[Stage]:
     """Return what was measured: signs, normal law, friction."""
     per_cents = {name: 100 * share for name, share in result.shares.items()}
     shares = f"consistent in {per_cents['consistent']:.3g} % of the steps, lagged in {per_cents['lagged']:.3g} %"
@@ -175,12 +171,12 @@ def stages(result: Found, read: Read) -> list[Stage]:
     ]
 
 
-def _faulty(result: Found, causes: frozenset[str]) -> bool:
+def _faulty(result: ContactFinding, causes: frozenset[str]) -> bool:
     """Whether an explanation holds one of some causes."""
     return result.explained and not causes.isdisjoint(result.causes)
 
 
-def _law_holds(result: Found) -> bool | None:
+def _law_holds(result: ContactFinding) -> bool | None:
     """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
     if result.change:
         return False if _faulty(result, FRICTION_CAUSES) else None
@@ -189,7 +185,7 @@ def _law_holds(result: Found) -> bool | None:
     return True if result.run.same else None
 
 
-def _motion(result: Found, with_change: bool = False) -> str:
+def _motion(result: ContactFinding, with_change: bool = False) -> str:
     """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
     run = result.run
     if math.isnan(run.left):
@@ -202,47 +198,26 @@ def _motion(result: Found, with_change: bool = False) -> str:
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
 
 
-def sentence(scene: Scene, result: Found, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
+def sentence(scene: Scene, result: ContactFinding, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
     """Return the first line of the answer."""
     t = scene.time
-    scheme = scheme_words(t.alpha, t.delta, t.discount)
     law = "lagged" if result.lagged else "consistent"
     share = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
     if not result.explained:
-        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
         if result.alike:
             words = list(dict.fromkeys(one.words for one in result.alike))
             same = "gives" if len(words) == 1 else "give"
             return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(result)}."
+        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
         normal = f"the normal law leaves {per_cent(result.normal, 2)} %"
         return f"Departs, not explained: {why}; {normal}; {_motion(result)}."
-    faults = [slip.words for slip in corrected]
-    faults += [_fault(name, result) for name in ids if not CAUSES[name].benign and name not in ("sign", "unit")]
-    benign = [_benign(name, result) for name in ids if CAUSES[name].benign]
-    allowed = f", allowing for {' and '.join(benign)}" if benign else ""
-    if not faults:
-        return f"Same model, same scheme: {scheme}{allowed}; {_motion(result)}."
     if result.change:
         faults = [*(slip.words for slip in corrected), result.change]
         return f"Departs: {' and '.join(faults)}; {_motion(result, with_change=True)}."
-    first = _first(result, ids)
-    where = f" from step {first} on" if first else ""
-    return f"Same scheme: {scheme}, but departs{where}: {' and '.join(faults)}{allowed}; {share}."
-
-
-def _fault(name: str, result: Found) -> str:
-    value = result.values.get(name, 0.0)
-    words = {
-        "lagged-friction": "friction lags: at a slipping corner it is that of the step or iteration before",
-        "dead-band": f"an open contact closes only beyond a penetration of about {value:.3g} m",
-        "springs-factor": f"the contact springs are {value:.4g} times the scene's",
-        "normal-springs-factor": f"the normal springs alone are {value:.4g} times the scene's",
-    }
-    return words.get(name, CAUSES[name].words)
-
-
-def _benign(name: str, result: Found) -> str:
-    value = result.values.get(name, 0.0)
-    if name == "own-weight":
-        return f"the block's own weight ({value:.3g} x 9.81 m/s2)"
-    return f"a base that adds {100 * value:.2g} % to the static displacement"
+    words_by_id = {name: words_of(name, result.values.get(name, 0.0)) for name in ids} | words_of_slips(corrected)
+    remainder = _motion(result) if all_benign(ids) else share
+    return sentences.sentence(
+        sentences.Subject(
+            sentences.scheme_words(t.alpha, t.delta, t.discount), words_by_id, departure_of(result, ids), remainder
+        )
+    )

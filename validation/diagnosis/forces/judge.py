@@ -8,20 +8,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.diagnosis.causes import round_factor
-from validation.diagnosis.forces.forward import (
+from validation.diagnosis.forces.laws import Body, Followed, body_of, follow, motion_of
+from validation.diagnosis.forces.runs import (
     NO_RUN,
     SURROUNDINGS,
     Agreement,
+    OneChange,
     Surrounded,
     agreement,
     at_step,
+    one_number,
     surrounded,
 )
-from validation.diagnosis.forces.laws import Followed, follow
-from validation.diagnosis.forces.motion import Body, Scheme, body_of, motion_of
-from validation.diagnosis.forces.one_number import OneChange, one_number
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.scenes.tables import TimeSection
+from validation.theory.statics import moduli, size
 
 FITTED = 150  # steps that weight and softness are fitted to: a period of the springs and more
 CLOSE = 0.01  # of the mean limit of friction, within which a law gives the force that the motion shows
@@ -38,7 +40,7 @@ DEEP = 0.05  # of the mean penetration: what an open corner may show of it befor
 
 
 @dataclass(frozen=True)
-class Found:
+class ContactFinding:
     """What a history shows of its contact."""
 
     causes: tuple[str, ...]
@@ -57,7 +59,7 @@ class Found:
     alike: tuple[OneChange, ...] = ()  # changes of which each does
 
 
-def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
+def judge(scene: Scene, place: Array, step: float, rounding: Array) -> ContactFinding:
     """Judge displacements of the centroid along and across the base against a scene's contact.
 
     The same is said only of what the scene's own run gives, or its run with what surrounds the block; the laws say how
@@ -76,7 +78,7 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     """
     exact = at_step(scene, step, len(place))
     run = agreement(exact, place, rounding)
-    by_forces, fitted = _by_laws(scene, place, step, rounding)
+    by_forces, fitted = _by_laws(exact, place, rounding)
     if run.same and (run.until is None or by_forces.shares[scene.contact.rules] >= MOST_SLIPS):
         return replace(by_forces, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
     run = replace(run, same=False)
@@ -96,7 +98,7 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> Found:
     return replace(result, run=change.run, scene_run=scene_run, change=change.words)
 
 
-def _springs_or_base(result: Found, around: Surrounded, scene_run: Agreement) -> Found:
+def _springs_or_base(result: ContactFinding, around: Surrounded, scene_run: Agreement) -> ContactFinding:
     """Return a history on a base with the springs that give the same rows: named where their factor is a round one."""
     if "base-compliance" not in result.causes:
         return result
@@ -116,15 +118,15 @@ def _lags(scene: Scene) -> bool:
     return scene.contact.rules == "lagged"
 
 
-def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[Found, tuple[float, float]]:
+def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[ContactFinding, tuple[float, float]]:
     """Return what the forces of a motion show, and the fitted weight [-] and softness [ln]."""
-    scheme, plain = Scheme.of(scene, step), body_of(scene)
-    weight, softness = _fitted(plain, scheme, place[:FITTED])
+    time, plain = scene.time, body_of(scene)
+    weight, softness = _fitted(plain, time, place[:FITTED])
     body = plain.heavier(weight).softer(softness)
-    soft = _compliance(scene, body, softness)
+    soft = _compliance(scene, softness)
     yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
     bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
-    followed = [_Tried.of(one, scheme, place, rounding) for one in bodies]
+    followed = [_FollowedBody.of(one, time, place, rounding) for one in bodies]
     chosen = max(followed, key=lambda one: max(one.shares.values()))
     body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
     scene_rules = scene.contact.rules
@@ -134,7 +136,7 @@ def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[
     normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
     band = _band(body, run)
     causes, values = _causes(scene, weight, softness, soft, best, band)
-    if "springs-factor" in causes and not _along_too(yields, softness, scheme, place, best):
+    if "springs-factor" in causes and not _along_too(yields, softness, time, place, best):
         causes[causes.index("springs-factor")] = "springs-factor?"
     shares = chosen.shares
     active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
@@ -149,12 +151,14 @@ def _by_laws(scene: Scene, place: Array, step: float, rounding: Array) -> tuple[
     first = min(firsts, default=1 if "springs-factor" in causes else None)
     certain = tuple(name for name in causes if not name.endswith("?"))
     telling_steps = int(telling.sum())
-    result = Found(certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened)
+    result = ContactFinding(
+        certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened
+    )
     return result, (weight, softness)
 
 
 @dataclass(frozen=True, eq=False)
-class _Tried:
+class _FollowedBody:
     """A motion followed by both laws: the steps in which each holds, and how often."""
 
     body: Body
@@ -164,23 +168,23 @@ class _Tried:
     tolerance: float
 
     @classmethod
-    def of(cls, body: Body, scheme: Scheme, place: Array, rounding: Array) -> _Tried:
+    def of(cls, body: Body, time: TimeSection, place: Array, rounding: Array) -> _FollowedBody:
         """Follow it."""
-        motion = motion_of(place, scheme, body)
+        motion = motion_of(place, time, body)
         runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
-        tolerance = max(CLOSE, _digits(scheme, body, rounding, runs["consistent"]))
+        tolerance = max(CLOSE, _digits(time, body, rounding, runs["consistent"]))
         right = {name: _right(body, run, tolerance) for name, run in runs.items()}
         shares = {name: float(np.mean(is_right[runs[name].settled])) for name, is_right in right.items()}
         return cls(body, runs, right, shares, tolerance)
 
 
-def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
+def _fitted(body: Body, time: TimeSection, place: Array) -> tuple[float, float]:
     """Return the share of the own weight and the softness [ln] that the normal resultants ask for."""
     from scipy.optimize import least_squares
 
     def left(z: Array) -> Array:
         trial = body.heavier(float(z[0])).softer(float(z[1]))
-        run = follow(trial, motion_of(place, scheme, trial), False)
+        run = follow(trial, motion_of(place, time, trial), False)
         return np.asarray((run.given - run.shown)[:, 1] / run.scale)
 
     starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
@@ -189,30 +193,28 @@ def _fitted(body: Body, scheme: Scheme, place: Array) -> tuple[float, float]:
     return float(solution.x[0]), float(solution.x[1])
 
 
-def _along_too(body: Body, softness: float, scheme: Scheme, place: Array, law: str) -> bool:
+def _along_too(body: Body, softness: float, time: TimeSection, place: Array, law: str) -> bool:
     """Whether springs along the base by the factor of those across it suit a motion better than by its other powers."""
 
     def left(power: float) -> float:
         trial = replace(body, shear=body.shear * math.exp((1 - power) * softness))
-        run = follow(trial, motion_of(place, scheme, trial), law == "lagged")
+        run = follow(trial, motion_of(place, time, trial), law == "lagged")
         return float(np.mean(np.abs(run.given - run.shown)[run.settled, 0]))
 
     return left(1.0) < 0.5 * min(left(power) for power in POWERS)
 
 
-def _compliance(scene: Scene, body: Body, softness: float) -> float:
+def _compliance(scene: Scene, softness: float) -> float:
     """Return what softer springs add to the static displacement, as a share of it [-]."""
-    from validation.theory.statics import moduli
-
-    width = body.x[1] - body.x[0]
-    springs, block = 1 / (2 * scene.contact.stiffness), body.height / (4 * moduli(scene)[0] * width)
+    width, height = size(scene)
+    springs, block = 1 / (2 * scene.contact.stiffness), height / (4 * moduli(scene)[0] * width)
     return springs * math.expm1(softness) / (springs + block)
 
 
-def _digits(scheme: Scheme, body: Body, rounding: Array, run: Followed) -> float:
+def _digits(time: TimeSection, body: Body, rounding: Array, run: Followed) -> float:
     """Return what printed digits leave of a force, over the limit of friction: those of random ones."""
     random = np.random.default_rng(0).uniform(-0.5, 0.5, rounding.shape) * rounding
-    shaken = motion_of(random, scheme, replace(body, load=np.zeros(2)))
+    shaken = motion_of(random, time, replace(body, load=np.zeros(2)))
     return NOISE * body.mass * float(np.std(shaken.acceleration)) / _limit(body, run)
 
 

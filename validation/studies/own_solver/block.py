@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from validation.diagnosis import compare
+from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.reading import Foreign
 from validation.gates.gate import Status
+from validation.runs.history import PRESSURE
+from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.studies.own_solver import block_data, gates
 from validation.studies.own_solver.block_data import AtRest, Misreading
-from validation.studies.own_solver.evidence import diagnosis
 from validation.studies.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
 from validation.studies.own_solver.history import AT_REST
-from validation.studies.own_solver.session import LARGEST, Told
+from validation.studies.own_solver.session import LARGEST, GateReport
 
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
 FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
 WIDTH = 11  # of the first column
+LONGEST = 2000  # steps of a scene that is compared: every explanation that is tried steps through all of them
 MAY_FOLLOW = "may follow from it, look again when it is right"
 
 
-def block(results: Sequence[Told], every: bool = False) -> list[str]:
+def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
     """Return the lines of the block.
 
     Parameters
@@ -46,7 +52,7 @@ def block(results: Sequence[Told], every: bool = False) -> list[str]:
     return [*lines, *diagnosis(plain or _moving(failed), first(judged, plain)), *_unseen(judged)]
 
 
-def _table(results: Sequence[Told]) -> Iterator[str]:
+def _table(results: Sequence[GateReport]) -> Iterator[str]:
     """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
     yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
     for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
@@ -59,7 +65,7 @@ def _table(results: Sequence[Told]) -> Iterator[str]:
             yield f"{group:<{WIDTH}}{counts}   {says}"
 
 
-def _warnings(results: Sequence[Told]) -> Iterator[str]:
+def _warnings(results: Sequence[GateReport]) -> Iterator[str]:
     """Yield what makes the verdicts worth less: a solver of the suite answered, or two runs differ."""
     scenes = {t.scene for t in results if t.outcome == Outcome.COMPLETED}
     for solver in dict.fromkeys(name for t in results for name in t.same_as.split()):
@@ -84,7 +90,7 @@ def difference(share: float) -> str:
 # ---- what it tells --------------------------------------------------------------------------------------------------
 
 
-def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
+def first(judged: Sequence[GateReport], failed: Sequence[GateReport]) -> list[str]:
     """Return the groups that a fault lies in: the first that fails, and the pressure where it fails by itself.
 
     By itself means that the displacement of the same scene is right to rounding.
@@ -97,7 +103,7 @@ def first(judged: Sequence[Told], failed: Sequence[Told]) -> list[str]:
     return [*groups_at_fault, "pressure"] if alone or (groups and not groups_at_fault) else groups_at_fault
 
 
-def _headline(judged: Sequence[Told], failed: Sequence[Told], plain: Sequence[Told]) -> Iterator[str]:
+def _headline(judged: Sequence[GateReport], failed: Sequence[GateReport], plain: Sequence[GateReport]) -> Iterator[str]:
     """Yield what is right, and where the fault is to be looked for of which the plain scenes tell."""
     right = [g for g in GROUPS if any(t.group == g for t in judged) and not any(t.group == g for t in failed)]
     if judged:
@@ -110,7 +116,7 @@ def _headline(judged: Sequence[Told], failed: Sequence[Told], plain: Sequence[To
         yield f"        {', '.join(rest)}: {MAY_FOLLOW}"
 
 
-def _misread(judged: Sequence[Told], failed: Sequence[Told]) -> dict[Misreading, list[str]]:
+def _misread(judged: Sequence[GateReport], failed: Sequence[GateReport]) -> dict[Misreading, list[str]]:
     """Return what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong.
 
     Where it rests does not depend on the scheme, so that a slip of the scheme beside a misreading hides neither. A
@@ -123,14 +129,14 @@ def _misread(judged: Sequence[Told], failed: Sequence[Told]) -> dict[Misreading,
     return {} if any(not _follows(t, misreadings) for t in statics) else misreadings
 
 
-def _follows(result: Told, misread: Collection[Misreading]) -> bool:
+def _follows(result: GateReport, misread: Collection[Misreading]) -> bool:
     """Whether a gate is on a scene that a solver misreads."""
     case = gates.cases(result.study).get((result.scene, gates.JUDGED)) if misread else None
     return case is not None and any(block_data.is_misread(case.scene, one) for one in misread)
 
 
 def _block_data(
-    judged: Sequence[Told], failed: Sequence[Told], misread: Mapping[Misreading, list[str]]
+    judged: Sequence[GateReport], failed: Sequence[GateReport], misread: Mapping[Misreading, list[str]]
 ) -> Iterator[str]:
     """Yield with which data of the block a solver is right, and which of them it misreads."""
     data = block_data.datum_of()
@@ -162,13 +168,13 @@ def _block_data(
             yield f"wrong:  {BLOCK_DATA} - {words}: the moment of inertia, or where width and height enter"
 
 
-def _moving(failed: Sequence[Told]) -> list[Told]:
+def _moving(failed: Sequence[GateReport]) -> list[GateReport]:
     """Return the failing gates on the motion of a scene of `BLOCK_DATA` that comes to rest at the right place."""
     misplaced = {t.scene for t in failed if t.metric == AT_REST}
     return [t for t in failed if t.group == BLOCK_DATA and t.scene not in misplaced]
 
 
-def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
+def _failures(failed: Sequence[GateReport], every: bool) -> Iterator[str]:
     """Yield the failing gates with their values, group by group."""
     for group in (*GROUPS, BLOCK_DATA):
         of_group = [t for t in failed if t.group == group]
@@ -180,7 +186,7 @@ def _failures(failed: Sequence[Told], every: bool) -> Iterator[str]:
             yield f"  and {len(of_group) - SHOWN} more (-v lists them)"
 
 
-def outside(result: Told) -> str:
+def outside(result: GateReport) -> str:
     """Return value and band with so many digits that one sees the band's width and the value outside."""
     metric, low, high = result.metric, result.low, result.high
     if not isinstance(result.value, float | int):
@@ -195,7 +201,7 @@ def outside(result: Told) -> str:
 # ---- what was not judged --------------------------------------------------------------------------------------------
 
 
-def _endings(results: Sequence[Told]) -> Iterator[str]:
+def _endings(results: Sequence[GateReport]) -> Iterator[str]:
     """Yield how runs ended that gave no history to judge, each ending once with its scenes."""
     ended = [t for t in results if t.status == Status.FAIL and t.outcome not in ("", Outcome.COMPLETED)]
     for kind in dict.fromkeys(map(_ending, ended)):
@@ -205,13 +211,13 @@ def _endings(results: Sequence[Told]) -> Iterator[str]:
         yield f"  {_gates(of_kind)}: {_few([t.scene for t in of_kind])}"
 
 
-def _ending(result: Told) -> tuple[str, str, str]:
+def _ending(result: GateReport) -> tuple[str, str, str]:
     """Return what tells one ending from another: the place in the solver's code, but no number of a scene."""
     why, _, place = result.why.rpartition(" (") if result.outcome == Outcome.RAISED else (result.why, "", "")
     return result.outcome, re.sub(r"\d+", "", why), place
 
 
-def _not_run(results: Sequence[Told]) -> Iterator[str]:
+def _not_run(results: Sequence[GateReport]) -> Iterator[str]:
     """Yield why gates were not run, each reason once."""
     absent = [t for t in results if t.status == Status.NOT_RUN]
     if absent:
@@ -221,7 +227,7 @@ def _not_run(results: Sequence[Told]) -> Iterator[str]:
         yield f"  {_gates(of_reason)}: {why}"
 
 
-def _unseen(judged: Sequence[Told]) -> Iterator[str]:
+def _unseen(judged: Sequence[GateReport]) -> Iterator[str]:
     """Yield what no gate has seen of the solver: a pass says nothing of it."""
     judged_cases = {(t.study, t.scene): gates.cases(t.study).get((t.scene, gates.JUDGED)) for t in judged}
     kinds = gates.unseen(case.scene for case in judged_cases.values() if case is not None)
@@ -229,7 +235,7 @@ def _unseen(judged: Sequence[Told]) -> Iterator[str]:
         yield f"\nno gate saw: {', '.join(kinds)}; what passed says nothing of it"
 
 
-def _gates(results: Sequence[Told]) -> str:
+def _gates(results: Sequence[GateReport]) -> str:
     return f"{len(results)} gate{'s' * (len(results) > 1)}"
 
 
@@ -238,3 +244,37 @@ def _few(names: Sequence[str]) -> str:
     every = list(dict.fromkeys(names))
     more = f" and {len(every) - SHOWN} more scenes" if len(every) > SHOWN else ""
     return ", ".join(every[:SHOWN]) + more
+
+
+# ---- what `compare` finds -------------------------------------------------------------------------------------------
+
+
+def telling(failed: Sequence[GateReport], groups: Sequence[str]) -> GateReport | None:
+    """Return a failing gate of the scene that tells most.
+
+    It is the scene with the most failing gates of the groups that the fault lies in, then the most failing gates,
+    then the fewest steps; the first of equal ones.
+    """
+    short = [t for t in failed if t.steps <= LONGEST]
+    in_groups, every = Counter(t.scene for t in short if t.group in groups), Counter(t.scene for t in short)
+    return max(short, key=lambda t: (in_groups[t.scene], every[t.scene], -t.steps), default=None)
+
+
+def diagnosis(failed: Sequence[GateReport], groups: Sequence[str]) -> Iterator[str]:
+    """Yield what `compare` says of the scene that tells most; nothing where no history failed a gate."""
+    chosen = telling(failed, groups)
+    history = None if chosen is None else Results(chosen.results).history(chosen.key)
+    if chosen is None or history is None:
+        return
+    yield f"\ncompare, {chosen.scene} ({chosen.steps} steps)"
+    scene = gates.cases(chosen.study)[chosen.scene, gates.JUDGED].scene
+    try:
+        answer = compare(scene, Foreign(history.time, history.displacement, history.columns.get(PRESSURE)))
+    except Exception as error:  # numbers of anybody's code: the rest of the block stands without it
+        yield f"  nothing can be said: {error}"
+        return
+    yield f"  {answer.sentence}"
+    if answer.causes == [UNEXPLAINED]:
+        yield "  not explained: what is listed above stands, its cause is none that compare knows"
+    elif answer.causes:
+        yield f"  causes: {', '.join(answer.causes)}"

@@ -20,11 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.gates.gate import Gate
+from validation.metrics.poles import swing
 from validation.metrics.values import UNDEFINED, largest
 from validation.runs.history import Array, History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.theory.spectra import dda_frequency
 
 PENCIL = 1e-6  # the ratio of a history of these scenes is the operator's to this, see the gates on measured damping
 FREQUENCY = 10 * PENCIL  # relative: both numbers of the root enter, times 1 + alpha Omega^2, which is below 2
@@ -33,9 +33,7 @@ AT_REST = "displacement.at_rest"  # the metric that a history has in place of `d
 TAIL = 5  # the last fifth of the steps: several periods of the scenes that come to rest
 BEGUN = 2  # rows that are left out: an initial acceleration of its own, or a wrong first row, is no mode of the step
 POWERS = 5  # of the two-block model
-SAMPLES = 400  # enough for a pencil, few enough for its singular values
-TURN = 0.5  # rad between two samples at most, where rows are left out: far from the half turn that would be an alias
-HELD = 1e-4  # of the maximum: what the powers do not give back to four digits is no such sum
+TOLERATED = 1e-4  # of the maximum: what the powers do not give back to four digits is no such sum
 MARGIN = 50.0  # of a pencil's error over the bound of Cramer and Rao for one swinging power in noise
 
 
@@ -54,14 +52,14 @@ def shown(gate: Gate, scene: Scene, history: History) -> tuple[Gate, Value]:
         value, moving = rest(history.displacement)
         reason = f"{gate.reason}; measured as the middle of the last fifth, to what still moves there"
         return replace(_wider(gate, abs(value) * REST + moving), metric=AT_REST, reason=reason), value
-    swing = root(scene, history)
-    if swing is None:
+    strongest = root(scene, history)
+    if strongest is None:
         return gate, UNDEFINED
     if gate.metric == "mode1.frequency":
-        band = _wider(gate, gate.high * (FREQUENCY + swing.error))
-        return band, natural_frequency(scene, swing.frequency, swing.ratio)
+        band = _wider(gate, gate.high * (FREQUENCY + strongest.error))
+        return band, natural_frequency(scene, strongest.frequency, strongest.ratio)
     allowance = PENCIL if gate.metric == "mode1.damping" else 0.0  # the other gate's band holds it already
-    return replace(_wider(gate, allowance + swing.error), metric="mode1.measured_damping"), swing.ratio
+    return replace(_wider(gate, allowance + strongest.error), metric="mode1.measured_damping"), strongest.ratio
 
 
 def _wider(gate: Gate, half: float) -> Gate:
@@ -77,25 +75,16 @@ def rest(x: Array) -> tuple[float, float]:
 def root(scene: Scene, history: History) -> Root | None:
     """Return the strongest oscillation of the displacement by a matrix pencil, None where it is no sum of powers."""
     x = history.displacement[BEGUN:]
-    turn = dda_frequency(scene) * scene.time.step
-    thin = max(1, min(len(x) // SAMPLES, int(TURN / turn)))
-    size, step = largest(x), thin * scene.time.step
-    if len(x) <= 2 * POWERS or size == 0 or not np.isfinite(size):
+    size = largest(x)
+    if size == 0 or not np.isfinite(size):
         return None
-    y = x[: SAMPLES * thin : thin] / size
-    u = np.linalg.svd(np.lib.stride_tricks.sliding_window_view(y, len(y) // 2), full_matrices=False)[0][:, :POWERS]
-    z = np.linalg.eigvals(np.linalg.lstsq(u[:-1], u[1:], rcond=None)[0]).astype(complex)
-    z = z[(np.abs(z) > PENCIL) & (np.abs(z) < 1 + TURN)]
-    powers = z[None, :] ** np.arange(len(y))[:, None]
-    c = np.linalg.lstsq(powers, y.astype(complex), rcond=None)[0]
-    misfit = largest(np.abs(powers @ c - y))
-    swings = [(abs(ck), zk) for ck, zk in zip(c, z, strict=True) if zk.imag > PENCIL]
-    if misfit > HELD or not swings:
+    motion = swing(x, scene.time.step, POWERS)
+    pole = motion.pole
+    if pole is None or motion.misfit > TOLERATED:
         return None
-    amplitude, strongest = max(swings, key=lambda swing: swing[0])
-    logarithm = complex(np.log(strongest))
-    error = float(MARGIN * misfit / (2 * amplitude) * _bound(strongest, len(y)) / abs(logarithm))
-    return Root(abs(logarithm) / step, -logarithm.real / abs(logarithm), error)
+    relative_noise = MARGIN * motion.misfit * size / pole.amplitude
+    error = float(relative_noise * _bound(pole.value, motion.samples) / abs(np.log(pole.value)))
+    return Root(pole.frequency, pole.damping, error)
 
 
 def _bound(z: complex, samples: int) -> float:

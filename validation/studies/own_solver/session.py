@@ -27,7 +27,7 @@ ASKED_FOR = {"modes": "modes(scene)", "static": "static(scene)"}
 
 
 @dataclass(frozen=True)
-class Told:
+class GateReport:
     """What one gate said of a user's solver, as plain data that a process can hand to another."""
 
     id: str
@@ -64,14 +64,14 @@ class Session:
         solver = get_solver(self.user)
         return solver.parts() if isinstance(solver, UserSolver) else PARTS
 
-    def judge(self, name: str) -> tuple[Verdict, Told]:
+    def judge(self, name: str) -> tuple[Verdict, GateReport]:
         """Run what a gate needs and has not been run, and judge it; what cannot be judged is not run."""
         study, gate = gates.applying()[name]
         case = gates.cases(study)[gate.cases[0]]
         verdict = self._verdict(study, gate, case)
         row = self.finished.rows.get((case.scene.name, self.user))
         apart_in, apart = self._differences.get(case.scene.name, ("", 0.0))
-        return verdict, Told(
+        return verdict, GateReport(
             gate.id,
             study,
             case.scene.name,
@@ -166,6 +166,6 @@ class Session:
         return measured or row.metrics.get(gate.metric) == NOT_REPORTED
 
 
-def plain(result: Told) -> dict[str, object]:
+def plain(result: GateReport) -> dict[str, object]:
     """Return what a gate said as JSON takes it."""
     return asdict(result)
