@@ -47,6 +47,10 @@ SCENES: dict[str, dict[str, Any]] = {
         "contact": SPRINGS, "load": {"pressure": 5e6, "traction": 2e5}, "columns": ASIDE,
     },
     "shaken": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 1e6, "base_motion": ""}, "columns": ASIDE},
+    "ramped": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6, "ramp": 0.01}, "columns": USUAL},
+    "opening in a ramp": {
+        "block": SQUARE, "contact": OPENS, "load": {"pressure": -5e5, "gravity": 9.81, "ramp": 0.01}, "columns": USUAL,
+    },
     "damped": {
         "block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL,
         "damping": {"mass": 20.0, "stiffness": 3e-4},
@@ -76,7 +80,16 @@ SCENES: dict[str, dict[str, Any]] = {
     },
     "column": {"column": COLUMN, "input": RICKER, "columns": USUAL},
 }  # fmt: skip
-NOT_LINEAR = ("adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning")
+NOT_LINEAR = (
+    "opening in a ramp",
+    "adaptive",
+    "opening",
+    "opening sub-blocks",
+    "landing",
+    "sliding",
+    "lagged",
+    "turning",
+)
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
 # what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time
@@ -85,6 +98,7 @@ EXPONENTS = {
     "density": (-2, 1, 0), "stress": (0, 1, -2), "number": (0, 0, 0),  # of a slice of unit thickness
 }  # fmt: skip
 KINDS = {
+    "ramp": "time",
     "side": "length", "width": "length", "height": "length", "vertices": "length", "eccentricity": "length",
     "gap": "length", "band": "length", "thickness": "length", "density": "density", "base_density": "density",
     "young": "stress", "pressure": "stress", "traction": "stress", "shear_stiffness": "stress",
@@ -179,9 +193,9 @@ def assert_same(values: Mapping[str, Array], expected: Mapping[str, Array], roun
 TAKES = {  # what each solver takes; the other scenes it refuses by name
     "dda": tuple(SCENES),
     "dda-textbook": ("locked",),
-    "fem": tuple(name for name in SCENES if name not in ("lagged", "turning")),
+    "fem": tuple(name for name in SCENES if name not in ("opening in a ramp", "lagged", "turning")),
     "fenicsx": ("locked", "lateral", "sub-blocks", "shaken", "opening", "opening sub-blocks", "landing", "sliding"),
-    "bar": ("locked", "damped", "opening", "opening sub-blocks", "landing"),
+    "bar": ("locked", "ramped", "damped", "opening", "opening sub-blocks", "landing"),
     "continuum": ("locked", "damped"),
     "layers": ("column",),
     "block-events": ("locked", "shaken", "opening", "landing", "sliding"),

@@ -219,7 +219,7 @@ def refuse(scene: Scene, handles: frozenset[str]) -> None:
     """
     if unknown := [name for name in features.of(scene) if name not in handles]:
         raise NotImplementedError(f"the model has no {', '.join(unknown)}")
-    if (apart := features.damping_apart(scene)) is not None:
+    if (apart := features.clash(scene, features.DAMPING_APART)) is not None:
         raise NotImplementedError(apart)
     if scene.time.discount != 1:
         raise NotImplementedError("time.gg is the kinetic discount of DDA's scheme, which OpenSees does not have")
