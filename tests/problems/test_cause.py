@@ -188,6 +188,19 @@ def test_a_datum_in_other_units_is_named(key: str, factor: float, name: str) -> 
     assert "other units" in found.sentence
 
 
+@pytest.mark.parametrize(("name", "column", "factor"), [
+    ("opening", "displacement", 1e3), ("locked", "contact_pressure", 1e-6), ("column", "displacement_1", 1e2),
+])  # fmt: skip
+def test_a_column_in_other_units_is_named_where_nothing_else_is_wrong(name: str, column: str, factor: float) -> None:
+    exact = standard(problem(name)).exact
+    scaled = History(exact.time, {**exact.columns, column: factor * exact.columns[column]})
+    assert (named(name, scaled).ids, named(name, scaled).values) == (("unit",), {column: factor})
+    late = {key: np.append(0.0, x[:-1]) for key, x in scaled.columns.items()}
+    assert "unit" not in named(name, History(exact.time, late)).ids
+    loaded = {key: factor * x for key, x in exact.columns.items()}
+    assert "unit" not in named(name, History(exact.time, loaded)).ids  # which a load does as well
+
+
 def test_other_units_beside_the_usual_scheme_are_named() -> None:
     scene = problem("locked").scene.with_values({"block.density": 1e-3 * problem("locked").scene.block.density})
     found = named("locked", get_solver("dda").solve(scene).history)

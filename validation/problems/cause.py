@@ -19,6 +19,7 @@ from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import Values, laws
 from validation.diagnosis.one_change import (
+    NEAR_UNIT,
     UNITS,
     CandidateChange,
     Residual,
@@ -42,6 +43,7 @@ Change: TypeAlias = CandidateChange[Columns | None]  # to the columns of its num
 FACTORS = (1.0, 0.5, 0.75, 0.88, 1.12, 1.3, 2.0)  # to begin from where a run costs nothing; elsewhere the first
 LARGEST = 3.0  # of the logarithm of a factor; what is further away is forgotten, or in other units
 NEAR_UNITS = 0.3  # the same, from that of other units
+COLUMN_UNITS = (1e-6, 1e-3, 1e2, 1e3)  # factors of a column in other units: MPa, kPa, cm, mm
 DISCOUNTS = (0.99, 0.95, 0.8)  # of the velocity of a step
 DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
 MOST_LATE = 2.0  # steps
@@ -217,6 +219,8 @@ def cause(problem: Problem, history: History, reference: Standard) -> Cause:
     if plain := _plain(answer, reference):
         return plain
     runs = runs_of(problem.scene, reference)
+    if units := _units(answer, runs):
+        return units
     causes = Search(runs, answer).causes()
     if causes:
         return _named(causes)
@@ -232,6 +236,29 @@ def _plain(answer: Columns, reference: Standard) -> Cause | None:
     if all(float(np.max(np.abs(x))) <= NOTHING * _size(name, reference) for name, x in answer.items()):
         return Cause("nothing moves", ("nothing-moves",), left=0.0)
     return None
+
+
+def _units(answer: Columns, runs: Runs) -> Cause | None:
+    """Return which columns are in other units where nothing else is wrong: in SI units the answer passes.
+
+    One factor of all columns is that of a load as well, and is left to the search.
+    """
+    exact = runs.standard.exact.columns
+    factors: dict[str, float] = {}
+    for name, band in runs.standard.bands.items():
+        if name not in answer:
+            continue
+        x = exact[name][: band.rows]
+        factor = float(answer[name][: band.rows] @ x / (x @ x))
+        factors[name] = next((u for u in COLUMN_UNITS if math.isclose(factor, u, rel_tol=NEAR_UNIT)), 1.0)
+    remainder = runs.apart({name: answer[name] / factor for name, factor in factors.items()}, exact)
+    if len({*factors.values()}) == 1 or remainder > 1:
+        return None
+    other = {name: factor for name, factor in factors.items() if factor != 1}
+    sentence = " and ".join(
+        f"{name} is in other units, {factor:g} times the motion's" for name, factor in other.items()
+    )
+    return Cause(sentence, ("unit",), other, (), remainder)
 
 
 def _size(name: str, reference: Standard) -> float:
