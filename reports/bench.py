@@ -451,11 +451,11 @@ the last column is the greatest difference of the two answers over the maximum. 
 
 Microseconds of processor time a step of one history with its set-up, the least of some runs; the budget is what a step
 is allowed to take. What numba compiles is not counted. It is paid once an install, for the first history of each kind
-that takes plain Python more than a second: 7 s of processor time where the contacts slide freely, 15 s with shear, 25 s
-for a block that turns, each for one number of corners, and 25 s for the elements, from 50,000 steps on. That is more
-than the first such history saves, and whoever runs one runs more: 1e5 steps of a block that opens take two seconds in
-plain Python, and 0.02 s from then on. MuJoCo and pymunk step the same box as a rigid one on a plane with their own
-contact as it comes; each engine's step stands in a Python loop that keeps the motion.
+that takes plain Python more than a sixth of it: 7 s of processor time where the contacts slide freely, 15 s with
+shear, 25 s for a block that turns, each for one number of corners, and 25 s for the elements, from 50,000 steps on.
+That is more than the first such history saves, and whoever runs one runs more: 1e5 steps of a block that opens take
+two seconds in plain Python, and 0.02 s from then on. MuJoCo and pymunk step the same box as a rigid one on a plane with
+their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
 
 | what | steps | switches | ours [us] | budget [us] | met | MuJoCo [us] | pymunk [us] | answers apart |
 |---|---|---|---|---|---|---|---|---|

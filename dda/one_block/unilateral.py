@@ -40,6 +40,7 @@ from dda.stepping.energy import ENERGIES, GIVEN, spring_energies
 
 Array = NDArray[np.float64]
 
+SHEAR_COMPILE_TIME = 2.5  # with springs in shear, over that of contacts which slide freely
 PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
 
@@ -151,6 +152,7 @@ def solve_unilateral(
         (base,),
         (history, steps, options.cut),
         seconds,
+        1.0 if shear_law is None else SHEAR_COMPILE_TIME,
     )
     history = reached_history(history, reached)
     with np.errstate(all="ignore"):

@@ -23,6 +23,7 @@ from dda.stepping.driver import base_record, history_of, reached_history
 
 Array = NDArray[np.float64]
 
+COMPILE_TIME = 4.0  # of the loop, over that of contacts which slide freely
 PLAIN_STEP = 4e-4  # seconds of plain Python for each step
 
 
@@ -77,6 +78,7 @@ def solve_rolling(
         (base_record(base),),
         (history, steps, options.cut),
         steps * PLAIN_STEP,
+        COMPILE_TIME,
     )
     history = reached_history(history, reached)
     motion = motion_of(history.motion)

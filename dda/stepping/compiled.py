@@ -6,7 +6,7 @@ Compiled code is kept between processes in a directory of the user's cache, by t
 that cannot be written, where numba is missing or does not know this Python, the plain functions run. The numbers are
 the same: nothing is reordered or fused.
 
-Compiling takes 5 to 25 seconds, several times what the shortest history that is compiled takes in plain Python. It is
+Compiling takes 5 to 25 seconds, six times what the shortest history that is compiled takes in plain Python. It is
 paid once an install, and whoever runs one such history runs more: from then on 1e5 steps of a block that opens take
 0.02 s, where plain Python takes two seconds and more. Where code cannot be kept every process would pay, and only
 histories are compiled that take longer than that.
@@ -35,7 +35,7 @@ from dda.stepping.one_library import library_option
 Loop = Callable[..., Any]
 
 WORTHWHILE_KEPT = 0.8  # seconds of plain Python from which a loop is read from the cache, which takes about as long
-WORTHWHILE = 1.0  # the same from which it is compiled and kept: 1e5 steps of a block that opens
+WORTHWHILE = 1.0  # the same from which the smallest loop is compiled and kept: 1e5 steps of a block that opens
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
 PLAIN, COMPILED = "plain Python", "compiled"
@@ -46,7 +46,12 @@ logger = logging.getLogger("dda")
 
 
 def run_loop(
-    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], seconds: float
+    loop: Loop,
+    records: tuple[Any, ...],
+    series: tuple[Any, ...],
+    rows: tuple[Any, ...],
+    seconds: float,
+    compile_time: float = 1.0,
 ) -> tuple[Any, tuple[Any, ...], str]:
     """Run a loop over steps; return what it returns, the records that it left, and whether it was compiled, in words.
 
@@ -63,12 +68,14 @@ def run_loop(
         Arrays that it fills, and numbers.
     seconds
         About how long the plain function takes.
+    compile_time
+        How long it takes to compile, over what the smallest loop takes, that of contacts which slide freely.
     """
     with np.errstate(all="ignore"):
         if seconds >= WORTHWHILE_KEPT:
             converted = tuple(as_record(part) for part in records)
             arguments = (*converted, *series, *rows)
-            worthwhile = is_worthwhile(loop, seconds, types_of(arguments))
+            worthwhile = is_worthwhile(loop, seconds, types_of(arguments), compile_time)
             machine_code = compiled(loop, arguments) if worthwhile else None
             if machine_code is not None:
                 return machine_code(*arguments), converted, COMPILED
@@ -85,10 +92,12 @@ class Compilable:
         The plain function, of named tuples and numbers.
     seconds
         About how long all its calls take in plain Python.
+    compile_time
+        How long it takes to compile, over what the smallest loop takes.
     """
 
-    def __init__(self, function: Loop, seconds: float) -> None:
-        self.function, self.records = function, is_worthwhile(function, seconds)
+    def __init__(self, function: Loop, seconds: float, compile_time: float) -> None:
+        self.function, self.records = function, is_worthwhile(function, seconds, compile_time=compile_time)
         self.how = PLAIN
 
     def room(self, value: Any) -> Any:
@@ -116,17 +125,19 @@ def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
 
 
-def is_worthwhile(loop: Loop, seconds: float, types: tuple[Any, ...] | None = None) -> bool:
+def is_worthwhile(loop: Loop, seconds: float, types: tuple[Any, ...] | None = None, compile_time: float = 1.0) -> bool:
     """Tell whether plain Python takes so long that compiled code pays: at hand, to be kept, or to be made each time.
 
     Parameters
     ----------
     types
         Those of the arguments; None where they are not known yet, and code for any counts as at hand.
+    compile_time
+        How long it takes to compile, over what the smallest loop takes.
     """
     if seconds < WORTHWHILE_KEPT:  # and nothing is looked for, nor made, in the user's cache
         return False
-    if seconds < WORTHWHILE:
+    if seconds < compile_time * WORTHWHILE:
         at_hand = [known for compiled_loop, known in loops if compiled_loop is loop]
         return types in at_hand or (types is None and bool(at_hand)) or is_kept(loop, types)
     return seconds >= WORTHWHILE_ANEW or cache_directory() is not None

@@ -63,6 +63,7 @@ from dda.system.system import BlockSystem, Equations, inverses
 Array = NDArray[np.float64]
 
 LENGTHS = 16  # step lengths whose factors are kept
+COMPILE_TIME = 2.0  # of the search for contacts, over that of the smallest loop
 PLAIN_POINT = 3e-6  # seconds of a solve in plain Python for each pair of points
 
 
@@ -191,7 +192,7 @@ class OpeningBody:
         self.observers = opening.equations.rows(columns)[0]
         pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
         self.pressure = pressure / opening.system.base_length
-        self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2)
+        self.find = Compilable(find_contacts, steps * PLAIN_POINT * points**2, COMPILE_TIME)
         self.law = self.find.room(law_of(opening.law, limit))
         self.shear_law = self.find.room(shear_law_of(opening.law))
         self.work = self.find.room(work_for(points))

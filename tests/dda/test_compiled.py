@@ -57,7 +57,7 @@ def pair(solve, monkeypatch):
     """Return the result of compiled code and that of plain Python."""
     fast = solve()
     with monkeypatch.context() as patch:
-        patch.setattr(compiled, "is_worthwhile", lambda *given: False)
+        patch.setattr(compiled, "is_worthwhile", lambda *given, **more: False)
         plain = solve()
     assert any(compiled.COMPILED in note for note in fast.notes) and any(compiled.PLAIN in note for note in plain.notes)
     return fast, plain
@@ -208,18 +208,19 @@ def test_a_hundred_thousand_steps_of_a_block_that_opens_are_compiled_on_the_firs
     class Estimated(Exception):
         pass
 
-    def estimate(loop, records, series, rows, seconds):
-        estimates.append((loop, seconds))
+    def estimate(loop, records, series, rows, seconds, compile_time):
+        estimates.append((loop, seconds, None, compile_time))
         raise Estimated
 
     monkeypatch.setattr(unilateral, "run_loop", estimate)
-    for steps in (20_000, 100_000):
+    rough = replace(model, contact=Unilateral(1e9, shear=4e8, friction=30.0))  # whose code takes longer to compile
+    for block, steps in ((model, 20_000), (model, 100_000), (rough, 50_000), (rough, 150_000)):
         with pytest.raises(Estimated):
-            solve_unilateral(model, SCHEMES[0], steps)
+            solve_unilateral(block, SCHEMES[0], steps)
     monkeypatch.setattr(compiled, "cache_directory", lambda: Path())
-    assert [compiled.is_worthwhile(*one) for one in estimates] == [False, True]
+    assert [compiled.is_worthwhile(*one) for one in estimates] == [False, True, False, True]
     monkeypatch.setattr(compiled, "cache_directory", lambda: None)
-    assert [compiled.is_worthwhile(*one) for one in estimates] == [False, False]
+    assert not any(compiled.is_worthwhile(*one) for one in estimates)
 
 
 def optional_loop(numbers, more, kept):
