@@ -142,8 +142,8 @@ def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
 def test_a_broken_solver_fails_by_name() -> None:
     shown = through_the_gates("slack", "-x")
     assert "failed" in shown and "is outside [" in shown
-    shown = through_the_gates("hangs", "--dda-timeout", "1")
-    assert "passed," not in shown and "timeout: no history within 2 s, the time limit for 200 steps" in shown
+    shown = through_the_gates("hangs", "--dda-timeout", "3")  # within which it is loaded, on a busy machine too
+    assert "passed," not in shown and "timeout: no history within 4 s, the time limit for 200 steps" in shown
     assert "gates: not tried, since 2 scenes reached their time limit" in shown
 
 
