@@ -169,6 +169,15 @@ def test_a_missing_key_is_named() -> None:
         parse_scene(data, "x.toml")
 
 
+def test_layers_and_joints_of_a_column_are_swept_as_a_whole() -> None:
+    column = load_scene("field-column").definition()
+    layers = [column["column"]["layer"], [column["column"]["layer"][0] | {"blocks": 6}]]
+    cases = parse_scene(column | {"sweep": {"column.layer": layers}}, "x").expand()
+    assert [case.column.layer[0].blocks for case in cases if case.column is not None] == [12, 6]
+    with pytest.raises(InputError, match="sweep: must name a key of a table"):
+        parse_scene(column | {"sweep": {"column.layer.blocks": [6, 12]}}, "x")
+
+
 def test_sweep_is_a_product_or_a_zip() -> None:
     sweep = {"time.step": [0.1, 0.2], "contact.stiffness": [1e9, 1e10, 1e11]}
     assert len(parse(sweep=sweep).expand()) == 6

@@ -20,7 +20,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
-from validation.scenes.keys import Section, check_needs, keys_of
+from validation.scenes.keys import Section, check_needs
 from validation.scenes.kinds import SceneTables
 from validation.scenes.tables import GateSection, RunSection, TimeSection
 
@@ -207,8 +207,8 @@ def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str
 
 def _sweepable() -> set[str]:
     """Return the dotted keys of the tables that a sweep may vary."""
-    tables = tables_of_scenes().items()
-    return {f"{place}.{name}" for place, table in tables if place != "run" for name, *_ in keys_of(table)}
+    tables = {place: table for place, table in tables_of_scenes().items() if place != "run" and "." not in place}
+    return {f"{place}.{name}" for place, table in tables.items() for name in table.model_fields}
 
 
 _FILES = ("fem.mesh", "load.base_motion", "input.record")
