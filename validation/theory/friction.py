@@ -167,6 +167,7 @@ def _series(gg: float, n: Array) -> tuple[Array, Array]:
     """Return the sums G_n = 1 + gg + ... + gg^(n-1), and of G_k over k < n."""
     if gg == 1:
         return n, n * (n - 1) / 2
+    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1
     gained = -np.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else np.minimum(n, 1.0)
     return gained, (n - gained) / (1 - gg)
 
@@ -177,8 +178,5 @@ def distance_share(gg: float, step: float, time: float) -> float:
     The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
     """
     n = max(round(time / step), 1)
-    if gg >= 1:
-        return 1.0
-    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1.
-    velocity = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
-    return float((n / 2 + gg * (n - velocity) / (1 - gg)) / (n * n / 2))
+    _, summed = _series(gg, np.array(float(n)))
+    return float((n / 2 + gg * summed) / (n * n / 2))

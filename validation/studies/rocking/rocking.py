@@ -85,7 +85,7 @@ def gates() -> tuple[Gate, ...]:
 
 
 def swing_gates() -> Iterator[Gate]:
-    """Yield the gates on blocks released."""
+    """Yield the gates on blocks that are released from a tilt."""
     why = (
         "rigid block, by quadrature; below: the corner settles by up to 2 m g / p, which the tilt need not go back; "
         "both: the gap's straight line within a step, dt^2 theta'' / (theta' T) at the landing"
