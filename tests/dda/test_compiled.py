@@ -4,6 +4,7 @@ import functools
 import os
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -191,7 +192,14 @@ def test_what_is_kept_is_read_for_shorter_histories_than_are_compiled(fresh, mon
 
 
 def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeypatch, caplog):
-    monkeypatch.setattr(compiled, "MESSAGE_DELAY", 0.0)
+    class Elapsed(threading.Timer):
+        """A timer whose interval is over as soon as it starts: a real one is another thread, which may come too late."""
+
+        def start(self):
+            assert self.interval == compiled.MESSAGE_DELAY
+            self.function(*self.args)
+
+    monkeypatch.setattr(threading, "Timer", Elapsed)
     ran()
     assert [record.getMessage() for record in caplog.records] == ["compiling the loop over steps, once an install"]
     monkeypatch.setattr(compiled, "loops", {})
