@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from validation.scenes.keys import Key, Section
-from validation.scenes.tables import Count, NonNegative, Positive, Real
+from validation.scenes.tables import Angle, Count, NonNegative, Positive, Real, Stiffness
 
-MOST_HEIGHTS = 9  # whose displacement and stress a history may hold
+MOST_HEIGHTS = 99  # at which a history may look
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
 PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
+FrictionAngle = Annotated[Angle, Field(ge=0)]
+OPENS, SLIPS, MOVES = 'law = "unilateral"', 'law = "frictional"', 'law = "unilateral" or "frictional"'
 
 
 class LayerSection(Section):
@@ -20,16 +23,41 @@ class LayerSection(Section):
 
     thickness: Annotated[Positive, Key("m", "of the layer")]
     density: Annotated[Positive, Key("kg/m3", "mass of a volume")]
-    young: Annotated[Positive, Key("Pa", "Young's modulus")]
+    young: Annotated[Stiffness, Key("Pa", "Young's modulus; inf: rigid blocks, where contacts open or slip")]
     poisson: Annotated[PoissonRatio, Key("", "Poisson's ratio")] = 0.0
     blocks: Annotated[Count, Key("", "DDA blocks on each other")] = 1
+    velocity: Annotated[Real, Key("m/s", "at t = 0, upwards or with the shear", None, ("column." + MOVES,))] = 0.0
 
 
 class JointSection(Section):
     """A spring across the column, where two blocks meet, or between base and column."""
 
     height: Annotated[NonNegative, Key("m", "above the base")]
-    stiffness: Annotated[Positive, Key("Pa/m", "of the spring")]
+    stiffness: Annotated[Stiffness, Key("Pa/m", "of the spring; inf: rigid, where contacts open or slip")]
+    gap: Annotated[NonNegative, Key("m", "at t = 0", None, ("column." + OPENS,))] = 0.0
+    strength: Annotated[
+        Positive | None,
+        Key("Pa", "greatest shear stress; without, and without friction, it never slips", None, ("column." + SLIPS,)),
+    ] = None
+    friction: Annotated[
+        FrictionAngle | None,
+        Key(
+            "deg",
+            "in place of strength: its tangent times the static normal stress",
+            None,
+            ("column." + SLIPS, "column.gravity"),
+        ),
+    ] = None
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A face that opens or slips, per unit of area."""
+
+    height: float  # above the base [m]
+    stiffness: float  # [Pa/m], inf: rigid
+    gap: float  # at t = 0 [m]
+    strength: float  # greatest shear stress [Pa], inf: never slips
 
 
 class ColumnSection(Section):
@@ -44,7 +72,35 @@ class ColumnSection(Section):
     glue: Annotated[Positive | None, Key("Pa/m", "between blocks and to the base; absent: their faces move alike")] = (
         None
     )
-    base: Annotated[Literal["rigid", "springs", "transmitting"], Key("", "what the column stands on")] = "rigid"
+    law: Annotated[
+        Literal["bonded", "unilateral", "frictional"],
+        Key("", "of the springs: unilateral ones open under pressure, frictional ones slip in shear"),
+    ] = "bonded"
+    stiffness: Annotated[
+        Stiffness | None,
+        Key("Pa/m", "of the contacts at the faces without a joint; absent: these move alike", None, (MOVES,)),
+    ] = None
+    gap: Annotated[NonNegative, Key("m", "of these contacts at t = 0", None, (OPENS, "stiffness"))] = 0.0
+    strength: Annotated[
+        Positive | None, Key("Pa", "greatest shear stress of these contacts", None, (SLIPS, "stiffness"))
+    ] = None
+    friction: Annotated[
+        FrictionAngle | None,
+        Key(
+            "deg",
+            "in place of strength: its tangent times the static normal stress",
+            None,
+            (SLIPS, "stiffness", "gravity"),
+        ),
+    ] = None
+    gravity: Annotated[
+        NonNegative, Key("m/s2", "downwards; in shear it makes the static normal stress only", "g", (MOVES,))
+    ] = 0.0
+    solve_limit: Annotated[
+        Count | None,
+        Key("", "solves of the open-close iteration that end the run; absent: as many as it takes", None, (MOVES,)),
+    ] = None
+    base: Annotated[Literal["rigid", "springs", "transmitting", "free"], Key("", "what the column stands on")] = "rigid"
     base_stiffness: Annotated[Positive | None, Key("Pa/m", "of base = springs")] = None
     base_density: Annotated[Positive | None, Key("kg/m3", "of the half-space below a transmitting base")] = None
     base_speed: Annotated[Positive | None, Key("m/s", "of its waves; or base_young")] = None
@@ -55,6 +111,7 @@ class ColumnSection(Section):
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_base()
+        self._check_law()
         for name, values in (("joint.height", [j.height for j in self.joint]), ("heights", self.heights)):
             outside = [value for value in values if value > self.height * (1 + NEAR)]
             if outside:
@@ -81,6 +138,30 @@ class ColumnSection(Section):
         if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
             raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
 
+    def _check_law(self) -> None:
+        motion = {"unilateral": "pressure", "frictional": "shear"}.get(self.law, self.motion)
+        if self.motion != motion:
+            raise ValueError(f"law = {self.law!r} goes with motion = {motion!r} only, got {self.motion!r}")
+        if self.law == "bonded":
+            self._check_bonded()
+            return
+        if self.glue is not None:
+            raise ValueError(f"glue goes with law = 'bonded' only, got {self.glue:g}; stiffness is that of contacts")
+        if self.base in ("transmitting", "free") and any(joint.height == 0 for joint in self.joint):
+            raise ValueError(f"joint.height must be above 0 where the base is {self.base}, got a joint at the base")
+        if not self.contacts:
+            raise ValueError(f"stiffness or a joint is required with law = {self.law!r}, got neither")
+        for place in (self, *self.joint):
+            if place.strength is not None and place.friction is not None:
+                raise ValueError("strength and friction exclude each other, got both")
+
+    def _check_bonded(self) -> None:
+        for name, values in (("layer.young", self.layer), ("joint.stiffness", self.joint)):
+            if any(math.isinf(getattr(value, name.partition(".")[2])) for value in values):
+                raise ValueError(f"{name} must be finite with law = 'bonded', got inf")
+        if self.base == "free":
+            raise ValueError("base = 'free' goes with law = 'unilateral' or 'frictional' only, got 'bonded'")
+
     @property
     def height(self) -> float:
         """Height of the column [m]."""
@@ -103,6 +184,44 @@ class ColumnSection(Section):
         modulus = plane_modulus(self.base_young or 0.0, self.base_poisson, self.motion)
         return math.sqrt(self.base_density * modulus)
 
+    @property
+    def faces(self) -> tuple[float, ...]:
+        """Heights of the faces between blocks above the base, base and top included [m]."""
+        faces = [0.0]
+        for layer in self.layer:
+            low = faces[-1]
+            faces += [low + layer.thickness * number / layer.blocks for number in range(1, layer.blocks + 1)]
+        return tuple(faces)
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts that open or slip, from the base upwards; none where the column is bonded."""
+        if self.law == "bonded":
+            return ()
+        contacts = [self._contact(joint.height, joint) for joint in self.springs]
+        if self.stiffness is not None:
+            lowest = 1 if self.base in ("transmitting", "free") else 0
+            for height in self.faces[lowest:-1]:
+                if all(abs(height - contact.height) > NEAR * self.height for contact in contacts):
+                    contacts.append(self._contact(height, self))
+        return tuple(sorted(contacts, key=lambda contact: contact.height))
+
+    def _contact(self, height: float, stated: ColumnSection | JointSection) -> Contact:
+        """Return the contact at a height [m] with the numbers that a joint, or the column for all others, states."""
+        strength = math.inf if stated.strength is None else stated.strength
+        if stated.friction is not None:
+            strength = math.tan(math.radians(stated.friction)) * self.static_stress(height)
+        return Contact(height, stated.stiffness or 0.0, stated.gap, strength)
+
+    def static_stress(self, height: float) -> float:
+        """Return the weight above a height per unit of area [Pa]."""
+        stress, low = 0.0, 0.0
+        for layer in self.layer:
+            above = low + layer.thickness - height
+            stress += self.gravity * layer.density * min(max(above, 0.0), layer.thickness)
+            low += layer.thickness
+        return stress
+
     def modulus(self, layer: LayerSection) -> float:
         """Return the modulus of a layer for the motion [Pa]."""
         return plane_modulus(layer.young, layer.poisson, self.motion)
@@ -122,13 +241,17 @@ class InputSection(Section):
     """
 
     at: Annotated[Literal["base", "top"], Key("", "where the column is driven")] = "base"
-    shape: Annotated[Literal["ricker", "half-sine"] | None, Key("", "of the velocity, or of the pressure")] = None
+    shape: Annotated[
+        Literal["ricker", "half-sine", "triangle", "sine", "cosine"] | None,
+        Key("", "of the velocity, or of the pressure; triangle: from its greatest value at t = 0 to zero"),
+    ] = None
     velocity: Annotated[Real | None, Key("m/s", "greatest of a pulse at the base")] = None
     pressure: Annotated[Real | None, Key("Pa", "greatest of a pulse on the top")] = None
     frequency: Annotated[
-        Positive | None, Key("Hz", "of a Ricker pulse's greatest content; its middle comes at 2 / frequency")
+        Positive | None,
+        Key("Hz", "of a sine or cosine; of a Ricker pulse's greatest content, whose middle comes at 2 / frequency"),
     ] = None
-    duration: Annotated[Positive | None, Key("s", "of a half-sine")] = None
+    duration: Annotated[Positive | None, Key("s", "of a half-sine or triangle")] = None
     record: Annotated[
         str | None, Key("", "CSV file: time,velocity or time,acceleration at the base, time,pressure on the top")
     ] = None
@@ -140,7 +263,7 @@ class InputSection(Section):
         needed = set()
         if self.shape is not None:
             needed = {"velocity" if self.at == "base" else "pressure"}
-            needed |= {"frequency" if self.shape == "ricker" else "duration"}
+            needed |= {"duration" if self.shape in ("half-sine", "triangle") else "frequency"}
         given = self.model_fields_set & {"velocity", "pressure", "frequency", "duration"}
         what = f"{self.shape or 'a record'} at the {self.at}"
         if missing := sorted(needed - given):

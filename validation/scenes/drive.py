@@ -38,9 +38,11 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
     InputError
         The record cannot be read, or the scene has no column.
     """
-    signal = _signal(scene.input)
-    integral, value, derivative = signal(np.asarray(instants, float))
-    still = np.zeros_like(value)
+    instants = np.asarray(instants, float)
+    still = np.zeros_like(instants)
+    if scene.column is not None and scene.stated_input is None:  # weight or velocities move the column
+        return Motion(still, still, still, still)
+    integral, value, derivative = _signal(scene.input)(instants)
     if scene.input.at == "top":
         return Motion(still, still, still, value)
     return Motion(integral, value, derivative, still)
@@ -49,10 +51,12 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
 def _signal(section: InputSection) -> Signal:
     if section.record is not None:
         return read_signal(Path(section.record), section.at)
-    size = section.velocity if section.at == "base" else section.pressure
-    if section.shape == "ricker":
-        return partial(ricker, size or 0.0, section.frequency or 1.0)
-    return partial(half_sine, size or 0.0, section.duration or 1.0)
+    size = (section.velocity if section.at == "base" else section.pressure) or 0.0
+    if section.shape in ("half-sine", "triangle"):
+        pulse = half_sine if section.shape == "half-sine" else triangle
+        return partial(pulse, size, section.duration or 1.0)
+    wave = {"ricker": ricker, "sine": sine, "cosine": cosine}[section.shape or "ricker"]
+    return partial(wave, size, section.frequency or 1.0)
 
 
 def ricker(size: float, frequency: float, time: Array) -> Parts:
@@ -70,6 +74,26 @@ def half_sine(size: float, duration: float, time: Array) -> Parts:
     running = (time >= 0) & (time < duration)
     rise = np.where(running, size * turn * np.cos(turn * inside), 0.0)
     return size / turn * (1 - np.cos(turn * inside)), np.where(running, size * np.sin(turn * inside), 0.0), rise
+
+
+def triangle(size: float, duration: float, time: Array) -> Parts:
+    """Return a value that falls to zero, size (1 - t / T) up to t = T, its integral and its derivative."""
+    inside = np.clip(time, 0.0, duration)
+    running = (time >= 0) & (time < duration)
+    value = np.where(running, size * (1 - inside / duration), 0.0)
+    return size * inside * (1 - inside / (2 * duration)), value, np.where(running, -size / duration, 0.0)
+
+
+def sine(size: float, frequency: float, time: Array) -> Parts:
+    """Return a sine, size sin(2 pi f t), its integral from t = 0 and its derivative."""
+    w = 2 * np.pi * frequency
+    return size / w * (1 - np.cos(w * time)), size * np.sin(w * time), size * w * np.cos(w * time)
+
+
+def cosine(size: float, frequency: float, time: Array) -> Parts:
+    """Return a cosine, size cos(2 pi f t), its integral from t = 0 and its derivative."""
+    w = 2 * np.pi * frequency
+    return size / w * np.sin(w * time), size * np.cos(w * time), -size * w * np.sin(w * time)
 
 
 def read_signal(path: Path, at: str) -> Signal:

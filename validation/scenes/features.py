@@ -23,6 +23,11 @@ class Feature:
     of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
 
 
+def _law(scene: Scene) -> str | None:
+    """Return the law of a column's springs."""
+    return None if scene.column is None else scene.column.law
+
+
 Apart = tuple[tuple[str, frozenset[str]], ...]  # a feature to those that a solver does not take together with it
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
@@ -30,6 +35,8 @@ RAMP = "ramped load"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
 COLUMN = "column"
+UNILATERAL_COLUMN, FRICTIONAL_COLUMN = "column that opens", "column that slips"
+RIGID_BLOCKS, RIGID_JOINTS = "rigid blocks", "rigid joints"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 FEATURES = (
@@ -48,11 +55,26 @@ FEATURES = (
         ROTATION, lambda scene: scene.contact.law == "unilateral" and scene.run.geometry == "updated", linear=False
     ),
     Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
+    Feature(UNILATERAL_COLUMN, lambda scene: _law(scene) == "unilateral", linear=False, of_columns=True),
+    Feature(FRICTIONAL_COLUMN, lambda scene: _law(scene) == "frictional", linear=False, of_columns=True),
+    Feature(
+        RIGID_BLOCKS,
+        lambda scene: scene.column is not None and any(math.isinf(layer.young) for layer in scene.column.layer),
+        linear=False,
+        of_columns=True,
+    ),
+    Feature(
+        RIGID_JOINTS,
+        lambda scene: scene.column is not None and any(math.isinf(one.stiffness) for one in scene.column.contacts),
+        linear=False,
+        of_columns=True,
+    ),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
     Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
 )
+OF_MOVING_COLUMN = frozenset({UNILATERAL_COLUMN, FRICTIONAL_COLUMN})
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
 # Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.

@@ -58,10 +58,20 @@ def check_needs(tables: Mapping[str, Section]) -> None:
         The first such key, with table, rule and value.
     """
     for place, table in tables.items():
-        for name, value, key in stated(table):
-            for requirement in key.needs:
-                if not _fulfilled(requirement, place, tables):
-                    raise ValueError(f"{place}: {name} goes with {requirement} only, got {_short(value)} without it")
+        for inside, entry in [("", table), *_entries(table)]:
+            for name, value, key in stated(entry):
+                for requirement in key.needs:
+                    if not _fulfilled(requirement, place, tables):
+                        rule = f"{place}: {inside}{name} goes with {requirement} only"
+                        raise ValueError(f"{rule}, got {_short(value)} without it")
+
+
+def _entries(table: Section) -> Iterator[tuple[str, Section]]:
+    """Yield the tables of the lists in a table, each with the name of its list and a dot."""
+    for name in type(table).model_fields:
+        value = getattr(table, name)
+        if isinstance(value, tuple):
+            yield from ((f"{name}.", entry) for entry in value if isinstance(entry, Section))
 
 
 def _fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) -> bool:

@@ -19,7 +19,12 @@ from validation.scenes.tables import (
 
 Table = TypeVar("Table", bound=Section)
 OF_BLOCK, OF_COLUMN = ("block", "contact", "load"), ("column", "input")  # tables that exclude each other
-TAKE_COLUMNS = ("dda", "fem", "layers")  # the solvers that run a column's scene which names none
+# the solvers that run a column's scene which names none, by the law of its springs
+TAKE_COLUMNS = {
+    "bonded": ("dda", "fem", "layers"),
+    "unilateral": ("dda", "column-events"),
+    "frictional": ("dda", "column-events"),
+}
 
 
 class SceneTables(Section):
@@ -70,7 +75,10 @@ class SceneTables(Section):
     def _choose_solvers(cls, data: Any) -> Any:
         """Let a column's scene that names no solvers be run by those that take it."""
         if isinstance(data, dict) and "column" in data and isinstance(run := data.get("run", {}), dict):
-            return {**data, "run": {"solvers": list(TAKE_COLUMNS), **run}}
+            column = data["column"]
+            law = str(column.get("law")) if isinstance(column, dict) else ""
+            solvers = TAKE_COLUMNS.get(law, TAKE_COLUMNS["bonded"])
+            return {**data, "run": {"solvers": list(solvers), **run}}
         return data
 
     @model_validator(mode="after")
@@ -81,11 +89,18 @@ class SceneTables(Section):
             if given[field] is not None:
                 raise ValueError(f"{field}: does not go {'with' if self.column else 'without'} column, got it")
         for field in wanted:
-            if given[field] is None:
+            if given[field] is None and not (field == "input" and self._moves_alone()):
                 raise ValueError(f"{field}: is required, got nothing")
         if self.column is not None and (more := sorted(self.fem.model_fields_set - {"elements", "degree"})):
             raise ValueError(f"fem: {more[0]} does not go with column, got it")
         return self
+
+    def _moves_alone(self) -> bool:
+        """Tell whether weight or velocities at t = 0 move a column that nothing drives."""
+        column = self.column
+        if column is None:
+            return False
+        return (column.law == "unilateral" and column.gravity > 0) or any(layer.velocity for layer in column.layer)
 
     def files(self) -> tuple[tuple[str, str | None], ...]:
         """Return the fields that name a file, and what they name."""

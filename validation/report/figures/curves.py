@@ -25,13 +25,14 @@ MOST_DOTS = 400  # samples; more dots cannot be told apart
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
 
+UNITS = {"displacement": "m", "stress": "Pa", "velocity": "m/s", "force": "Pa", "gap": "m", "slip": "m"}
 EXACT = "exact"  # name of the line of an exact motion, whichever solution it comes from
 COLUMNS = {
     "displacement": ("Displacement", "m"),
     "contact_pressure": ("Contact pressure", "Pa"),
     "horizontal_displacement": ("Horizontal displacement", "m"),
     "rotation": ("Rotation", "rad"),
-    **{name: (name.replace("_", " ").capitalize(), "m" if name.startswith("d") else "Pa") for name in AT_HEIGHTS},
+    **{name: (name.replace("_", " ").capitalize(), UNITS[name.partition("_")[0]]) for name in AT_HEIGHTS},
 }
 
 

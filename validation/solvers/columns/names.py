@@ -6,19 +6,22 @@ import itertools
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.scenes.column import MOST_HEIGHTS, ColumnSection
+from validation.scenes.column import MOST_HEIGHTS, NEAR, ColumnSection
 from validation.scenes.scene import Scene
 
 STRESS = "stress"
+VELOCITY, FORCE, GAP, SLIP = "velocity", "force", "gap", "slip"
+BONDED = (DISPLACEMENT, STRESS)  # what a history may hold at each height
+MOVING = (*BONDED, VELOCITY, FORCE, GAP, SLIP)  # and where contacts open or slip: the last three at a contact only
 
 
-def at_heights(count: int) -> tuple[str, ...]:
-    """Return the names of displacement and stress at a number of heights."""
-    return tuple(f"{part}_{n}" for part, n in itertools.product((DISPLACEMENT, STRESS), range(1, count + 1)))
+def at_heights(count: int, parts: tuple[str, ...] = BONDED) -> tuple[str, ...]:
+    """Return the names of the columns at a number of heights."""
+    return tuple(f"{part}_{n}" for part, n in itertools.product(parts, range(1, count + 1)))
 
 
-AT_HEIGHTS = at_heights(MOST_HEIGHTS)
-OF_COLUMN = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
+AT_HEIGHTS = at_heights(MOST_HEIGHTS, MOVING)
+OF_COLUMN = (DISPLACEMENT, PRESSURE, *at_heights(MOST_HEIGHTS))
 
 
 def amplitude(scene: Scene) -> float:
@@ -37,10 +40,28 @@ def column_of(scene: Scene) -> ColumnSection:
     """
     if scene.column is None:
         raise InputError("is needed for what is asked", source=scene.name, field="column", value="a scene of a block")
-    column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(scene.column.heights)))
+    parts = BONDED if scene.column.law == "bonded" else MOVING
+    column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(scene.column.heights), parts))
     unknown = [name for name in scene.run.columns if name not in column_names]
     if unknown:
         raise InputError(
             f"must be among {', '.join(column_names)}", source=scene.name, field="run.columns", value=repr(unknown[0])
         )
+    _check_contacts(scene, scene.column)
     return scene.column
+
+
+def _check_contacts(scene: Scene, column: ColumnSection) -> None:
+    """Refuse the force, gap or slip of a height that is no contact's."""
+    faces = [contact.height for contact in column.contacts]
+    for name in scene.run.columns:
+        part, _, number = name.rpartition("_")
+        if part in (FORCE, GAP, SLIP):
+            height = column.heights[int(number) - 1]
+            if all(abs(height - face) > NEAR * column.height for face in faces):
+                raise InputError(
+                    f"must be of a height where a contact is ({', '.join(f'{face:g}' for face in faces[:8])} m)",
+                    source=scene.name,
+                    field="run.columns",
+                    value=f"{name} at {height:g} m",
+                )
