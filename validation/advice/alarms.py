@@ -9,7 +9,8 @@ contact ringing
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
 
-Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`.
+Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`, those of
+columns whose contacts open or slip in `.columns`.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import Protocol
 import numpy as np
 
 from validation.advice.alarm import Alarm as Alarm
+from validation.advice.columns import column_alarms
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.metrics.catalogue import pair as pair_metric
@@ -63,6 +65,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
         yield from _ringing(scene, rows)
         yield from contact_alarms(scene, rows)
         yield from friction_alarms(scene, rows)
+        yield from column_alarms(scene)
     yield from fixed_discount(listed)
 
 

@@ -151,9 +151,9 @@ class ColumnSection(Section):
             raise ValueError(f"joint.height must be above 0 where the base is {self.base}, got a joint at the base")
         if not self.contacts:
             raise ValueError(f"stiffness or a joint is required with law = {self.law!r}, got neither")
-        for place in (self, *self.joint):
-            if place.strength is not None and place.friction is not None:
-                raise ValueError("strength and friction exclude each other, got both")
+        strengths = [(self.strength, self.friction), *((joint.strength, joint.friction) for joint in self.joint)]
+        if any(strength is not None and friction is not None for strength, friction in strengths):
+            raise ValueError("strength and friction exclude each other, got both")
 
     def _check_bonded(self) -> None:
         for name, values in (("layer.young", self.layer), ("joint.stiffness", self.joint)):
