@@ -22,7 +22,6 @@ from typing import Protocol
 import numpy as np
 
 from validation.advice.alarm import Alarm as Alarm
-from validation.advice.columns import column_alarms
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.metrics.catalogue import pair as pair_metric
@@ -65,7 +64,6 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
         yield from _ringing(scene, rows)
         yield from contact_alarms(scene, rows)
         yield from friction_alarms(scene, rows)
-        yield from column_alarms(scene)
     yield from fixed_discount(listed)
 
 
