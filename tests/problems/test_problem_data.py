@@ -108,7 +108,7 @@ def seen(scene: Scene) -> dict[str, Any]:
     """Return what a scene's motion depends on."""
     if scene.column is not None:
         assert scene.column.law == "bonded"  # no problem's contacts open or slip yet
-        contacts = {"law", "stiffness", "gap", "strength", "friction", "gravity", "solve_limit"}
+        contacts = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
         plain = scene.column.model_dump(exclude={"base_density", "base_speed", *contacts})
         for layer in plain["layer"]:
             del layer["blocks"], layer["velocity"]  # a code of blocks has its own

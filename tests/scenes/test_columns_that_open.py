@@ -78,6 +78,8 @@ REFUSED = [
     ({"base": "free", "joint": [{"height": 0.0, "stiffness": 1.0}]}, "joint.height must be above 0"),
     ({"joint": [{"height": 1.0, "stiffness": 1.0, "strength": 1.0}]}, "joint.strength goes with column.law"),
     ({"layer": [LAYERS[0]]}, "input: is required"),
+    ({"gravity": 1.0, "settled": True, "base": "free"}, "settled goes with base = 'rigid' or 'springs' only"),
+    ({"settled": True}, "settled goes with gravity only"),
     (SHEAR | {"friction": 10.0, "strength": 1.0}, "strength and friction exclude each other"),
     (SHEAR | {"friction": 10.0, "gravity": 0.0}, "friction goes with gravity only"),
     (SHEAR | {"friction": 10.0, "gap": 0.1}, 'gap goes with law = "unilateral" only'),

@@ -31,7 +31,7 @@ WRITTEN = {  # keys of `contact`, `damping` and `run` that have words of their o
     *("mass", "solvers", "columns"),
 }
 # keys of a column whose contacts open or slip
-OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "solve_limit"}
+OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
 SWEPT_VALUES = 6  # of a key that are shown
 
 
