@@ -62,7 +62,7 @@ class BlockColumn(NamedTuple):
 class JointLaws(NamedTuple):
     """Contacts by the block above them, (n,) each; the first one is not used where the column does not rest on a base.
 
-    A column without a contact at its base has there a force N_0 that is known, or follows N_1 where a dashpot takes it.
+    Where there is none at the base, the force N_0 there is none, or follows N_1 by a dashpot or the base's own motion.
     """
 
     diagonal: Vector  # C_jj + 1/k_j [m/Pa]
@@ -82,6 +82,9 @@ class StepNumbers(NamedTuple):
     step: float  # dt [s]
     fall: float  # -g dt^2, acceleration by weight
     first: int  # number of the lowest contact
+    welded: int  # 1 where the lowest block's foot moves as the base does
+    welded_mobility: float  # dt^2 / (m/3 + alpha dt^2 K) of its top; 0 where it is rigid
+    welded_coupling: float  # (m/6) / (m/3 + alpha dt^2 K), by which its top lags behind its foot; -1 where it is rigid
     impedance: float  # z/dt of a half-space below
     dashpot: float  # 1 / (1 + delta dt z A_0/D_0): what the dashpot leaves of its force before the step
     dashpot_coupling: float  # by which N_1 changes the force N_0 of the dashpot
@@ -117,7 +120,8 @@ class DriveSteps(NamedTuple):
     """What drives the column at t = 0 and every step, (steps + 1,) each."""
 
     displacement: Vector  # of the base [m]
-    velocity: Vector  # of the incident wave above a half-space [m/s]
+    velocity: Vector  # of the base, or of the incident wave above a half-space [m/s]
+    acceleration: Vector  # of the base [m/s^2]
     pressure: Vector  # on the top [Pa]
 
 
@@ -292,8 +296,11 @@ def predict(
     se = state.se
     gap = state.gap
     relaxation = blocks.relaxation
-    below = drive.displacement[step] - drive.displacement[step - 1]
-    for i in range(len(u)):
+    if numbers.welded == 1:
+        below = predict_welded(numbers, blocks, state, drive, step)
+    else:
+        below = drive.displacement[step] - drive.displacement[step - 1]
+    for i in range(numbers.welded, len(u)):
         moved = gg * w[i] + early * s[i]
         u[i] += moved
         w[i] = gg * w[i] + late * s[i]
@@ -321,8 +328,8 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
     mobility = blocks.mobility
     half_stretch = blocks.half_stretch
     relaxation = blocks.relaxation
-    below = force[0]
-    for i in range(len(u)):
+    below = force[numbers.welded]
+    for i in range(numbers.welded, len(u)):
         above = force[i + 1]
         a = fall + mobility[i] * (below - above)
         ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
@@ -333,6 +340,55 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
         e[i] += alpha * ae
         we[i] += delta * ae
         se[i] = ae
+
+
+def predict_welded(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, drive: DriveSteps, step: int
+) -> float:
+    """Predict the lowest block, whose foot is the base; return how far its top moves without contact forces.
+
+    Displacement, velocity and acceleration of the foot are those of the base: from its displacement alone average
+    acceleration would make accelerations that alternate, ever more, around the right ones.
+    """
+    base = drive.displacement[step] - drive.displacement[step - 1]
+    base_speed = numbers.step * drive.velocity[step]
+    base_change = numbers.step * numbers.step * drive.acceleration[step]
+    top_speed = state.w[0] + state.we[0] / 2
+    top_change = state.s[0] + state.se[0] / 2
+    moved = numbers.gg * top_speed + (0.5 - numbers.alpha) * top_change
+    predicted_speed = numbers.gg * top_speed + (1.0 - numbers.delta) * top_change
+    if blocks.stiffness[0] == 0:
+        moved = base - numbers.alpha * base_change
+        predicted_speed = base_speed - numbers.delta * base_change
+    state.u[0] += (base + moved) / 2
+    state.e[0] += moved - base
+    state.w[0] = (base_speed + predicted_speed) / 2
+    state.we[0] = predicted_speed - base_speed
+    state.s[0] = base_change
+    return float(moved + numbers.alpha * top_acceleration(numbers, blocks, state, 0.0))
+
+
+def top_acceleration(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, above: float) -> float:
+    """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
+    weight = numbers.fall / blocks.mobility[0] / 2
+    force = weight - above - blocks.stiffness[0] * state.e[0]
+    return float(numbers.welded_mobility * force - numbers.welded_coupling * state.s[0])
+
+
+def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> None:
+    """Write the lowest block, whose foot is the base, and the force of the base on it."""
+    base_change = state.s[0]
+    a = top_acceleration(numbers, blocks, state, state.force[1])
+    state.u[0] += numbers.alpha * a / 2
+    state.e[0] += numbers.alpha * a
+    state.w[0] += numbers.delta * a / 2
+    state.we[0] += numbers.delta * a
+    if blocks.stiffness[0] == 0:
+        state.e[0] = 0.0
+        state.we[0] = 0.0
+    state.s[0] = (base_change + a) / 2
+    state.se[0] = a - base_change
+    state.force[0] = state.force[1] + (state.s[0] - numbers.fall) / blocks.mobility[0]
 
 
 def dashpot_force(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, velocity: float) -> float:
@@ -406,7 +462,9 @@ def make_column_steps(
         if outcome != FOUND:
             solves[step] = count
             return step - 1, outcome
-        if first > 0:
+        if numbers.welded == 1:
+            correct_welded(numbers, blocks, state)
+        elif first > 0:
             force[0] += numbers.dashpot_coupling * force[1]
         correct(numbers, blocks, state)
         solves[step] = count
@@ -449,7 +507,7 @@ def write_step(
         elif kind == FORCES:  # that of one contact, or the mean of both of a rigid block
             value = (1 - weight) * state.force[place] + weight * state.force[place + 1]
         elif kind == GAP:
-            value = max(state.gap[place], 0.0)
+            value = max(state.gap[place], 0.0) if joints.opens[place] == 1 else 0.0
         else:
             value = state.slip[place]
         values[step, k] = value
@@ -516,7 +574,8 @@ def account(
 ) -> None:
     """Add what a step loses, and what weight, pressure, base and half-space put in [J/m^2]; see `dda.stepping.energy`.
 
-    All forces act with the weights 1 - delta and delta at the two ends of the step.
+    All forces act with the weights 1 - delta and delta at the two ends of the step. A base that moves with a block
+    welded to it does not move as Newmark's formulas do: its work is as accurate as the scheme.
     """
     n = len(after.u)
     first = numbers.first

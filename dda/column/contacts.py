@@ -175,7 +175,8 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
         raise ValueError("law: must be unilateral or frictional, got 'bonded', which solve_column steps")
     if scheme.damped:
         raise ValueError("mass_damping: viscous damping does not go with contacts of a column, got it")
-    if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _all_springs(column)):
+    lowest = int(not column.rests_on_base or column.contacts[0] is None)
+    if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
     if options.at_rest and not (column.law == "unilateral" and column.rests_on_base):
         raise ValueError("at_rest: goes with unilateral contacts on a base that is prescribed, got it without")
@@ -184,18 +185,18 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
 # ---- equations -------------------------------------------------------------------------------------------------------
 
 
-def _all_springs(column: Column) -> list[Spring]:
-    """Return a spring at the foot of every block, rigid and inseparable where faces are welded."""
+def _springs_from(column: Column, first: int) -> list[Spring]:
+    """Return the spring at the foot of every block from one on, rigid and inseparable where faces are welded."""
     welded = Spring(0.0, math.inf)
-    springs = [welded if spring is None else spring for spring in column.contacts]
-    return springs if column.rests_on_base else springs[1:]
+    return [welded if spring is None else spring for spring in column.contacts[first:]]
 
 
 def step_equations(
     column: Column, scheme: Scheme, solve_limit: int | None = None
 ) -> tuple[StepNumbers, BlockColumn, JointLaws]:
     """Return the equations of a step as numbers."""
-    first = 0 if column.rests_on_base else 1
+    welded = column.rests_on_base and column.contacts[0] is None
+    first = 0 if column.rests_on_base and not welded else 1
     n = len(column.heights)
     dt2 = scheme.step**2
     mass = column.densities * column.heights
@@ -213,12 +214,17 @@ def step_equations(
     dashpot_coupling = -scheme.delta * impedance * across[0] * dashpot
     diagonal = own.copy()
     diagonal[1:] += own[:-1]
+    top = 0.0 if rigid[0] else dt2 / A[0]  # of the lowest block where its foot is the base
     if n > 1:
-        diagonal[1] += dashpot_coupling * across[0]
-    springs = _all_springs(column)
+        diagonal[1] += top - own[0] if welded else dashpot_coupling * across[0]
+    coupling = np.concatenate([[0.0], across])
+    if welded:
+        coupling[1] = 0.0
+    lowest = 0 if column.rests_on_base else 1
+    springs = _springs_from(column, lowest)
     compliance, lower, upper = np.zeros((3, n))
     opens = np.zeros(n, dtype=np.int64)
-    for j, (spring, face) in enumerate(zip(springs, column.contacts[first:], strict=True), first):
+    for j, (spring, face) in enumerate(zip(springs, column.contacts[lowest:], strict=True), lowest):
         compliance[j] = 1 / spring.stiffness
         lower[j] = -spring.strength
         upper[j] = spring.strength
@@ -227,7 +233,7 @@ def step_equations(
             lower[j] = 0.0
     joints = JointLaws(
         diagonal=scheme.alpha * diagonal + compliance,
-        coupling=scheme.alpha * np.concatenate([[0.0], across]),
+        coupling=scheme.alpha * coupling,
         compliance=compliance,
         lower=lower,
         upper=upper,
@@ -241,6 +247,9 @@ def step_equations(
         step=scheme.step,
         fall=-column.gravity * dt2,
         first=first,
+        welded=int(welded),
+        welded_mobility=float(top),
+        welded_coupling=-1.0 if rigid[0] else float(mass[0] / 6 / A[0]),
         impedance=impedance,
         dashpot=float(dashpot),
         dashpot_coupling=float(dashpot_coupling),
@@ -260,7 +269,7 @@ def _room_for_state(n: int) -> ColumnState:
 
 
 def _steps_of(drive: Drive) -> DriveSteps:
-    parts = (drive.displacement, drive.velocity, drive.pressure)
+    parts = (drive.displacement, drive.velocity, drive.acceleration, drive.pressure)
     return DriveSteps(*(np.array(part, dtype=float) for part in parts))
 
 
@@ -278,30 +287,59 @@ def start_state(
 ) -> ColumnState:
     """Return the state at t = 0: unstrained with the gaps of the contacts, or under static forces."""
     n = len(blocks.mass)
-    first = numbers.first
+    lowest = 0 if column.rests_on_base else 1
     state = _room_for_state(n)
+    base_speed = scheme.step * drive.velocity[0] if column.rests_on_base else 0.0
     state.w[:] = scheme.step * column.velocities
-    state.gap[first:] = [spring.gap for spring in _all_springs(column)]
+    rigid = joints.compliance == 0
+    rigid[:lowest] = False
+    welds = rigid & (joints.opens == 0) & np.isinf(joints.upper)  # their blocks get a common velocity at once
+    rigid_forces(blocks, state.w, state.we, base_speed, joints, welds, np.zeros(n + 1), lowest)
+    state.gap[lowest:] = [spring.gap for spring in _springs_from(column, lowest)]
     state.gap[0] -= drive.displacement[0]
-    bonded = np.isinf(joints.upper) & (joints.opens == 0)
     unilateral = joints.opens == 1
-    state.state[:] = np.where(unilateral, OPEN, STICK)
-    with np.errstate(all="ignore"):
-        state.force[:n] = np.where(state.gap == 0, 0.0, -state.gap / joints.compliance)
-    state.force[:n] = np.where(unilateral, np.maximum(state.force[:n], 0.0), state.force[:n])
+    # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
+    spring = joints.compliance > 0
+    state.force[:n] = np.where(spring, -state.gap / np.where(spring, joints.compliance, 1.0), 0.0)
     state.force[:n] = np.clip(state.force[:n], joints.lower, joints.upper)
     state.force[n] = drive.pressure[0]
     if at_rest:
         write_static(column, state, blocks, joints, float(drive.displacement[0]))
-    elif first > 0:
-        state.force[0] = numbers.impedance * scheme.step * (2 * drive.velocity[0] - column.velocities[0])
-    rigid = (joints.compliance == 0) & (not at_rest)
-    if first > 0:
-        rigid[0] = False
-    state.state[unilateral & (state.force[:n] > 0)] = STICK
+        rigid = np.zeros(n, dtype=bool)
+    elif not column.rests_on_base:
+        state.force[0] = numbers.impedance * (2 * scheme.step * drive.velocity[0] - state.w[0] + state.we[0] / 2)
+    state.state[:] = np.where(unilateral & (state.force[:n] <= 0), OPEN, STICK)
     if scheme.start == "consistent":
-        write_accelerations(drive, state, numbers, blocks, joints, rigid & (bonded | (state.gap == 0)))
+        unknown = rigid & (~unilateral | (state.gap == 0))
+        state.s[:] = numbers.fall
+        half_stretch = np.where(blocks.stiffness > 0, 6 * blocks.mobility, 0.0)
+        state.se[:] = -2 * half_stretch * blocks.stiffness * state.e
+        base_change = scheme.step**2 * drive.acceleration[0]
+        states = rigid_forces(blocks, state.s, state.se, base_change, joints, unknown, state.force, lowest)
+        state.state[unknown] = states[unknown]
+    if numbers.welded:
+        _move_foot(drive, state, numbers, blocks)
     return state
+
+
+def _move_foot(drive: Drive, state: ColumnState, numbers: StepNumbers, blocks: BlockColumn) -> None:
+    """Give the foot of the lowest block the motion of the base, and the base the force that this needs."""
+    base_speed = numbers.step * drive.velocity[0]
+    base_change = numbers.step**2 * drive.acceleration[0]
+    top_speed = state.w[0] + state.we[0] / 2
+    top_change = state.s[0] + state.se[0] / 2
+    if blocks.stiffness[0] == 0:
+        top_speed = base_speed
+        top_change = base_change
+    state.w[0] = (base_speed + top_speed) / 2
+    state.we[0] = top_speed - base_speed
+    state.s[0] = (base_change + top_change) / 2
+    state.se[0] = top_change - base_change
+    m = blocks.mass[0] / numbers.step**2
+    if blocks.stiffness[0] == 0:
+        state.force[0] = state.force[1] + m * (state.s[0] - numbers.fall)
+    else:
+        state.force[0] = m * (base_change / 3 + top_change / 6 - numbers.fall / 2) - blocks.stiffness[0] * state.e[0]
 
 
 def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints: JointLaws, base: float) -> None:
@@ -311,7 +349,7 @@ def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints
     state.force[:n] = state.force[n] + np.cumsum(weights[::-1])[::-1]
     mean = (state.force[:n] + state.force[1:]) / 2
     state.e[:] = np.where(blocks.stiffness > 0, -mean / np.where(blocks.stiffness > 0, blocks.stiffness, 1.0), 0.0)
-    initial_gaps = np.array([spring.gap for spring in _all_springs(column)])
+    initial_gaps = np.array([spring.gap for spring in _springs_from(column, 0)])
     state.gap[:] = -state.force[:n] * joints.compliance
     tops = base + np.cumsum(state.gap - initial_gaps + state.e)
     state.u[:] = tops - state.e / 2
@@ -319,43 +357,54 @@ def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints
         raise ValueError("at_rest: needs a pressure that holds the column down, got tension in a contact")
 
 
-def write_accelerations(
-    drive: Drive, state: ColumnState, numbers: StepNumbers, blocks: BlockColumn, joints: JointLaws, rigid: Array
-) -> None:
-    """Write the accelerations at t = 0 under the forces of the springs, and those of the rigid contacts with them.
+def rigid_forces(
+    blocks: BlockColumn,
+    mean: Array,
+    stretch: Array,
+    base: float,
+    joints: JointLaws,
+    rigid: Array,
+    force: Array,
+    lowest: int,
+) -> NDArray[np.int64]:
+    """Add to rates of mean and stretch what forces change, of rigid contacts those by which they keep together.
 
-    Rigid contacts that touch have the forces that keep them from coming closer, or from slipping, by the same
-    iteration on accelerations: it is that of a step in the limit of alpha dt^2 -> 0 times the accelerations.
+    It is the problem of a step, in the limit of short ones, for velocities or accelerations.
+
+    Parameters
+    ----------
+    mean, stretch
+        (n,) rates of all blocks in units of the step without forces; with them, when the function has returned.
+    base
+        The rate of the base.
+    rigid
+        Contacts whose forces are unknown.
+    force
+        (n + 1,) forces, or impulses; those of rigid contacts come out.
+
+    Returns
+    -------
+    (n,) states of the rigid contacts.
     """
-    n = len(blocks.mass)
-    elastic = blocks.stiffness > 0
-    mobility = blocks.mobility
-    half_stretch = np.where(elastic, 6 * mobility, 0.0)
-    relaxation = 2 * half_stretch * blocks.stiffness
-    mean = np.full(n, numbers.fall)
-    stretch = -relaxation * state.e
-    foot = mean - stretch / 2
+    n = len(mean)
+    half_stretch = np.where(blocks.stiffness > 0, 6 * blocks.mobility, 0.0)
+    own = blocks.mobility + half_stretch / 2
     top = mean + stretch / 2
-    own = mobility + half_stretch / 2
-    across = half_stretch / 2 - mobility
-    base = numbers.step**2 * drive.acceleration[0]
-    q = foot - np.concatenate([[base], top[:-1]])
-    limits = JointLaws(
+    q = mean - stretch / 2 - np.concatenate([[base], top[:-1]])
+    problem = JointLaws(
         diagonal=own + np.concatenate([[0.0], own[:-1]]),
-        coupling=np.concatenate([[0.0], across]),
+        coupling=np.concatenate([[0.0], half_stretch / 2 - blocks.mobility]),
         compliance=np.zeros(n),
-        lower=np.where(rigid, joints.lower, state.force[:n]),
-        upper=np.where(rigid, joints.upper, state.force[:n]),
+        lower=np.where(rigid, joints.lower, force[:n]),
+        upper=np.where(rigid, joints.upper, force[:n]),
         opens=np.where(rigid, joints.opens, 0),
     )
     work = _room(n)
     work.tried[:] = np.where(rigid, STICK, SLIP)
-    find_forces(limits, numbers.first, n, q, state.force, work, 0)
-    opened = rigid & (work.tried == OPEN) & (joints.opens == 1)
-    state.state[rigid] = np.where(opened, OPEN, work.tried)[rigid]
-    force = state.force
-    state.s[:] = mean + mobility * (force[:n] - force[1:])
-    state.se[:] = stretch - half_stretch * (force[:n] + force[1:])
+    find_forces(problem, lowest, n, q, force, work, 0)
+    mean += blocks.mobility * (force[:n] - force[1:])
+    stretch -= half_stretch * (force[:n] + force[1:])
+    return np.asarray(work.tried)
 
 
 # ---- what is observed ------------------------------------------------------------------------------------------------
