@@ -107,9 +107,13 @@ def rebuilt(scene: Scene) -> Scene:
 def seen(scene: Scene) -> dict[str, Any]:
     """Return what a scene's motion depends on."""
     if scene.column is not None:
-        plain = scene.column.model_dump(exclude={"base_density", "base_speed"})
+        assert scene.column.law == "bonded"  # no problem's contacts open or slip yet
+        contacts = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
+        plain = scene.column.model_dump(exclude={"base_density", "base_speed", *contacts})
         for layer in plain["layer"]:
-            del layer["blocks"]  # a code of blocks has its own
+            del layer["blocks"], layer["velocity"]  # a code of blocks has its own
+        for joint in plain["joint"]:
+            del joint["gap"], joint["strength"], joint["friction"]
         return plain | {"impedance": scene.column.impedance, "input": scene.input.model_dump()}
     block = scene.block.model_dump(exclude={"side", "width", "height"}) | {"outline": scene.block.outline}
     contact = scene.contact.model_dump() | {"shear_stiffness": scene.contact.shear}

@@ -9,7 +9,8 @@ contact ringing
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
 
-Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`.
+Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`, those of
+columns whose contacts open or slip in `.columns`.
 """
 
 from __future__ import annotations

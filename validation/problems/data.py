@@ -236,6 +236,8 @@ def column_data(scene: Scene) -> ColumnData | None:
     c = scene.column
     if c is None:
         return None
+    if c.law != "bonded" or c.base == "free":
+        raise InputError("must be bonded in a problem", source=scene.name, field="column.law", value=repr(c.law))
     layers = [
         LayerData(thickness_m=one.thickness, density_kg_per_m3=one.density, young_Pa=one.young, poisson=one.poisson)
         for one in c.layer
@@ -261,8 +263,13 @@ def _input_data(scene: Scene) -> InputData:
         A record drives it, which plain data do not hold.
     """
     drive = scene.input
-    if drive.shape is None:
-        raise InputError("must be a pulse in a problem", source=scene.name, field="input.record", value="a record")
+    if drive.shape not in ("ricker", "half-sine"):
+        raise InputError(
+            "must be a Ricker pulse or a half-sine in a problem",
+            source=scene.name,
+            field="input.shape",
+            value=drive.shape or "a record",
+        )
     return InputData(
         at=drive.at,
         shape=drive.shape,

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from validation.scenes.keys import Key, Section
-from validation.scenes.tables import Angle, Count, NonNegative, Positive, Real, Stiffness
+from validation.scenes.tables import Angle, Count, Flag, NonNegative, Positive, Real, Stiffness
 
 MOST_HEIGHTS = 99  # at which a history may look
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
@@ -96,6 +96,9 @@ class ColumnSection(Section):
     gravity: Annotated[
         NonNegative, Key("m/s2", "downwards; in shear it makes the static normal stress only", "g", (MOVES,))
     ] = 0.0
+    settled: Annotated[Flag, Key("", "whether it is at rest under its weight at t = 0", None, (OPENS, "gravity"))] = (
+        False
+    )
     solve_limit: Annotated[
         Count | None,
         Key("", "solves of the open-close iteration that end the run; absent: as many as it takes", None, (MOVES,)),
@@ -149,11 +152,13 @@ class ColumnSection(Section):
             raise ValueError(f"glue goes with law = 'bonded' only, got {self.glue:g}; stiffness is that of contacts")
         if self.base in ("transmitting", "free") and any(joint.height == 0 for joint in self.joint):
             raise ValueError(f"joint.height must be above 0 where the base is {self.base}, got a joint at the base")
+        if self.settled and self.base in ("transmitting", "free"):
+            raise ValueError(f"settled goes with base = 'rigid' or 'springs' only, got {self.base!r}")
         if not self.contacts:
             raise ValueError(f"stiffness or a joint is required with law = {self.law!r}, got neither")
-        for place in (self, *self.joint):
-            if place.strength is not None and place.friction is not None:
-                raise ValueError("strength and friction exclude each other, got both")
+        strengths = [(self.strength, self.friction), *((joint.strength, joint.friction) for joint in self.joint)]
+        if any(strength is not None and friction is not None for strength, friction in strengths):
+            raise ValueError("strength and friction exclude each other, got both")
 
     def _check_bonded(self) -> None:
         for name, values in (("layer.young", self.layer), ("joint.stiffness", self.joint)):

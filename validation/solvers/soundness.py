@@ -107,7 +107,11 @@ def _reach_of_column(scene: Scene) -> float:
     column = scene.column
     if column is None:
         raise InputError("is needed", source=scene.name, field="column", value="a scene of a block")
-    mass = max(sum(layer.thickness * layer.density for layer in column.layer), TINY)  # kg/m2
+    masses = [layer.thickness * layer.density for layer in column.layer]  # kg/m2
+    kinetic_energy = sum(mass * layer.velocity**2 / 2 for mass, layer in zip(masses, column.layer, strict=True))
+    # where contacts open, the lightest block may take all that is put in
+    of_blocks = [mass / layer.blocks for mass, layer in zip(masses, column.layer, strict=True)]
+    mass = max(sum(masses) if column.law == "bonded" else min(of_blocks), TINY)
     speeds = [math.sqrt(max(column.modulus(layer), TINY) / layer.density) for layer in column.layer]
     travel = sum(layer.thickness / speed for layer, speed in zip(column.layer, speeds, strict=True))
     step = scene.time.step
@@ -117,5 +121,6 @@ def _reach_of_column(scene: Scene) -> float:
     jumps = float(np.sum(np.abs(np.diff(drive.velocity, prepend=0.0))))
     base_displacement = time * jumps + float(np.max(np.abs(drive.displacement)))
     # A transmitting base takes in at most Z v^2 of the incident wave.
-    input_energy = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2))
-    return pressure_displacement + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)
+    input_energy = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2)) + kinetic_energy
+    fall = column.gravity * time * time
+    return pressure_displacement + fall + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from validation.advice.alarms import alarms
 from validation.advice.budget import budgets
+from validation.advice.columns import column_alarms
 from validation.engine import study
 from validation.engine.finished import Finished
 from validation.runs.records import Annotations
@@ -20,8 +22,9 @@ def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
     judged = {scene for scene, solver in finished.rows if role(solver) is Role.JUDGED}
     blocks = [scene for scene in scenes if scene.column is None]
+    of_columns = (column_alarms(scene) for scene in scenes if scene.name in judged)
     return {
-        "alarms": [alarm.record() for alarm in alarms(blocks, finished)],
+        "alarms": [alarm.record() for alarm in (*alarms(blocks, finished), *chain.from_iterable(of_columns))],
         "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
     }
 

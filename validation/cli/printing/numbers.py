@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.advice import contact
+from validation.advice.columns import column_alarms, limits
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
 from validation.scenes.scene import Scene
@@ -76,7 +77,9 @@ def numbers(scene: Scene) -> list[Number]:
 def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
     values = {number.name: number.value for number in derived}
-    return list(itertools.chain(*(part(scene, values) for part in (_unstable, _coarse, _landing, _steep))))
+    of_columns = (alarm.sentence for alarm in column_alarms(scene))
+    parts = (part(scene, values) for part in (_unstable, _coarse, _landing, _steep))
+    return [*itertools.chain(*parts), *of_columns]
 
 
 # ---- a block ------------------------------------------------------------------------------------------------------
@@ -166,12 +169,17 @@ def _column(scene: Scene) -> Iterator[Number]:
         travel_time += layer.thickness / speed
         top_impedance = layer.density * speed
         place = f"{number}: " if len(column.layer) > 1 else ""
-        yield from _layer(scene, place, speed, height)
+        if math.isfinite(speed):
+            yield from _layer(scene, place, speed, height)
+    yield from _contacts(scene)
+    if math.isinf(top_impedance) or travel_time == 0:  # rigid blocks carry no wave
+        return
     yield Number("H/c", travel_time, "s", "travel time of the wave through the column")
-    with suppress(InputError):  # DDA does not take the column
-        yield Number(
-            "dt stable", stable_step(scene), "s", "largest stable step of the blocks, glue and joints included"
-        )
+    if column.law == "bonded":
+        with suppress(InputError):  # DDA does not take the column
+            yield Number(
+                "dt stable", stable_step(scene), "s", "largest stable step of the blocks, glue and joints included"
+            )
     if column.impedance is not None:
         lowest = column.layer[0]
         base_impedance = lowest.density * math.sqrt(column.modulus(lowest) / lowest.density)
@@ -184,10 +192,26 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
     yield Number(f"{place}c", speed, "m/s", "wave speed")
     yield Number(f"{place}h", height, "m", "height of a block")
     yield Number(f"{place}c dt/h", speed * scene.time.step / height, "", "share of a block that it crosses per step")
-    frequency = scene.input.frequency
+    frequency = None if scene.stated_input is None else scene.stated_input.frequency
     yield Number(f"{place}f10", speed / (10 * height), "Hz", "frequency with ten blocks per wavelength")
     if frequency is not None:
         yield Number(f"{place}blocks", speed / (frequency * height), "", f"per wavelength at {frequency:g} Hz")
+
+
+def _contacts(scene: Scene) -> Iterator[Number]:
+    """Yield what is known of contacts that open or slip."""
+    known = limits(scene)
+    if known is None:
+        return
+    yield Number("contacts", known.contacts, "", "that open or slip")
+    if known.solves is not None:
+        yield Number("solves", known.solves, "", "of the open-close iteration that a step can need at most")
+    if known.far_face_step > 0:
+        yield Number("dt face", known.far_face_step, "s", "step below which a block's far face moves the wrong way")
+    if known.lowest is not None:
+        yield Number("w1", known.lowest, "rad/s", "lowest frequency of the stack, all contacts closed")
+    if known.settling is not None:
+        yield Number("t rest", known.settling, "s", "time in which the stack comes to rest to a thousandth")
 
 
 # ---- limits -------------------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ import numpy as np
 from validation.cli.printing import numbers
 from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
+from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
 
@@ -29,6 +30,8 @@ WRITTEN = {  # keys of `contact`, `damping` and `run` that have words of their o
     *("law", "stiffness", "shear_stiffness", "friction", "cohesion", "rule", "gap"),
     *("mass", "solvers", "columns"),
 }
+# keys of a column whose contacts open or slip
+OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
 SWEPT_VALUES = 6  # of a key that are shown
 
 
@@ -200,27 +203,42 @@ def _springs(scene: Scene) -> Iterator[str]:
         yield f"friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
 
 
+def _contacts_of_column(section: ColumnSection) -> Iterator[str]:
+    """Yield the keys of the contacts that open or slip and have no joint of their own."""
+    words = [described(name, value, key) for name, value, key in stated(section) if name in OF_CONTACTS]
+    if words:
+        yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
+
+
 def column(scene: Scene) -> Iterator[str]:
     """Yield the layers of a column from the top down, and what it stands on."""
     layered_column = scene.column
     if layered_column is None:
         return
-    excitation = scene.input
-    if excitation.shape is None:
+    excitation = scene.stated_input
+    if excitation is None:
+        signal = ""
+    elif excitation.shape is None:
         signal = f"record {(excitation.record or '').rpartition('/')[2]}"
     elif excitation.velocity is not None:
         signal = f"{excitation.shape}, {excitation.velocity:g} m/s"
     else:
         signal = f"{excitation.shape}, {excitation.pressure or 0:g} Pa"
-    top = f"{signal} on the top, {layered_column.motion} waves" if excitation.at == "top" else "free top"
+    driven_end = None if excitation is None else excitation.at
+    top = f"{signal} on the top, {layered_column.motion} waves" if driven_end == "top" else "free top"
     yield f"  +{'-' * INSIDE}+   {top}"
     for layer in reversed(layered_column.layer):
         cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
-        yield f"  |{cut}|   rho = {layer.density:g} kg/m3, E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        velocity = f", v = {layer.velocity:g} m/s" if layer.velocity else ""
+        material = "rigid" if math.isinf(layer.young) else f"E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        yield f"  |{cut}|   rho = {layer.density:g} kg/m3, {material}{velocity}"
         yield f"  +{'-' * INSIDE}+"
     for joint in layered_column.joint:
-        yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {joint.stiffness:g} Pa/m"
+        numbers = [described(name, value, key) for name, value, key in stated(joint) if name != "height"]
+        yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {', '.join(numbers)}"
     if layered_column.glue is not None:
         yield f"{' ' * (INSIDE + 7)}blocks glued by {layered_column.glue:g} Pa/m"
-    base_motion = f", {signal}, {layered_column.motion} waves" if excitation.at == "base" else ""
+    if layered_column.law != "bonded":
+        yield from _contacts_of_column(layered_column)
+    base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
     yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"

@@ -17,6 +17,11 @@ from validation.scenes.scene import Scene
 DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
 OF_POLYGONS = {"block.base", "block.top"}  # edges of a polygon, of which only the number of vertices is written
+_FACES = {
+    "bonded": "glued with",
+    "unilateral": "on contacts without tension of",
+    "frictional": "on contacts that slip, of",
+}  # how the faces of a column's blocks touch, by the law of its springs
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
@@ -250,7 +255,7 @@ def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
 def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
     """Yield the data of a block that are not `written` yet, by their keys, where they are not the defaults."""
     for place, table in scene.tables().items():
-        if place in ("block", "contact", "load", "damping"):
+        if place in ("block", "contact", "load", "damping", "column"):
             for name, value, key in stated(table):
                 if f"{place}.{name}" not in written | OF_POLYGONS:
                     yield f"{place}.{name}", described(name, value, key)
@@ -271,10 +276,11 @@ def _of_column(scene: Scene) -> list[tuple[str, str]]:
     column = scene.column
     if column is None:
         return []
-    drive = scene.input
+    drive = scene.stated_input
     blocks = sum(layer.blocks for layer in column.layer)
     joints = f"{len(column.joint)} joint{'s' * (len(column.joint) > 1)}" if column.joint else "no joints"
-    glue = "welded" if column.glue is None else f"glued with {short(column.glue, 2)} Pa/m"
+    springs = column.glue if column.law == "bonded" else column.stiffness
+    glue = "welded" if springs is None else f"{_FACES[column.law]} {short(springs, 2)} Pa/m"
     return [
         ("column.layer", f"{len(column.layer)} layer{'s' * (len(column.layer) > 1)} of {blocks} blocks in all"),
         ("column.height", f"{column.height:g} m high"),
@@ -282,7 +288,7 @@ def _of_column(scene: Scene) -> list[tuple[str, str]]:
         ("column.glue", glue),
         ("column.joint", joints),
         ("column.base", f"{column.base} base"),
-        ("input.shape", f"{drive.shape or 'record'} at the {drive.at}"),
+        *([("input.shape", f"{drive.shape or 'record'} at the {drive.at}")] if drive is not None else []),
     ]
 
 

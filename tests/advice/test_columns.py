@@ -1,0 +1,64 @@
+"""What is known of a column before a step is made, and which of its scenes raise an alarm."""
+
+import math
+
+import pytest
+
+from validation.advice import columns
+from validation.scenes.scene import parse_scene
+
+RIGID = {"thickness": 10.0, "density": 2500.0, "young": "inf", "blocks": 10}
+
+
+def stack(layer=RIGID, column=(), **time):
+    sections = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": [layer]}
+    data = {"column": sections | dict(column), "time": {"step": 1e-3, "steps": 10} | time}
+    return parse_scene(data | {"run": {"solvers": ["dda"]}}, "stack")
+
+
+def kinds(scene):
+    return [alarm.kind for alarm in columns.column_alarms(scene)]
+
+
+def test_a_stack_of_rigid_blocks_needs_one_solve_more_than_it_has_contacts():
+    known = columns.limits(stack())
+    assert (known.contacts, known.solves, known.far_face_step) == (10, 11, 0.0)
+    assert known.settling == pytest.approx(3.092, abs=6e-4)
+
+
+def test_the_bound_is_proven_above_the_step_of_the_far_face_only():
+    elastic = RIGID | {"young": 1e9}
+    turns = 1 / math.sqrt(1e9 / 2500) / math.sqrt(6 * 0.5)
+    above = columns.limits(stack(elastic, step=1.01 * turns))
+    below = columns.limits(stack(elastic, step=0.99 * turns))
+    assert (above.solves, below.solves) == (11, None)
+    assert above.lowest is None  # the closed form is that of rigid blocks
+
+
+@pytest.mark.parametrize(("limit", "raised"), [(6, True), (10, True), (11, False)])
+def test_too_few_solves_are_an_alarm(limit, raised):
+    assert (columns.FEW_SOLVES in kinds(stack(column={"solve_limit": limit}))) == raised
+
+
+@pytest.mark.parametrize(("step", "raised"), [(1e-4, True), (1e-2, False)])
+def test_a_step_below_that_of_the_far_face_is_an_alarm(step, raised):
+    assert (columns.FAR_FACE in kinds(stack(RIGID | {"young": 1e9}, step=step))) == raised
+
+
+@pytest.mark.parametrize(
+    ("time", "raised"), [({"alpha": 0.25, "delta": 0.5}, True), ({}, False), ({"delta": 0.5, "gg": 0.99}, False)]
+)
+def test_gain_by_switching_is_an_alarm_of_average_acceleration(time, raised):
+    assert (columns.GAINS in kinds(stack(**time))) == raised
+
+
+@pytest.mark.parametrize(("time", "raised"), [({}, True), ({"delta": 0.5}, False), ({"delta": 0.5, "gg": 0.9}, True)])
+def test_damping_that_changes_what_slips_is_an_alarm(time, raised):
+    sheared = {"motion": "shear", "law": "frictional", "strength": 1e4, "layer": [RIGID | {"velocity": 1.0}]}
+    assert (kinds(stack(column=sheared, **time)) == [columns.PATH]) == raised
+
+
+def test_a_bonded_column_has_neither():
+    data = {"column": {"motion": "shear", "layer": [RIGID | {"young": 1e9}]}, "time": {"step": 1e-3, "steps": 10}}
+    scene = parse_scene(data | {"input": {"shape": "ricker", "velocity": 1.0, "frequency": 1.0}}, "bonded")
+    assert columns.limits(scene) is None and kinds(scene) == []

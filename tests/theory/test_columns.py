@@ -1,0 +1,46 @@
+"""Closed forms of columns whose contacts open or slip, against eigenvalues and a mass matrix."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.theory import columns
+
+
+@pytest.mark.parametrize("blocks", [1, 2, 7])
+def test_the_lowest_frequency_is_that_of_a_chain_of_masses(blocks):
+    chain = 2 * np.eye(blocks) - np.eye(blocks, k=1) - np.eye(blocks, k=-1)
+    chain[-1, -1] = 1.0  # nothing above the top
+    lowest = math.sqrt(3e9 / 2500 * np.linalg.eigvalsh(chain)[0])
+    assert columns.lowest_frequency(3e9, 2500, blocks) == pytest.approx(lowest, rel=1e-12)
+
+
+@pytest.mark.parametrize("alpha", [0.25, 0.5])
+def test_the_far_face_of_a_block_turns_at_its_step(alpha):
+    height, density, modulus = 2.0, 2600.0, 3e9
+    mass = density * height / 6 * np.array([[2.0, 1.0], [1.0, 2.0]])
+    stiffness = modulus / height * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    turns = columns.far_face_step(math.sqrt(modulus / density), height, alpha)
+    for step, sign in ((0.99 * turns, -1), (1.01 * turns, 1)):
+        answer = np.linalg.solve(mass + alpha * step**2 * stiffness, [1.0, 0.0])
+        assert np.sign(answer[1]) == sign
+    assert columns.far_face_step(math.inf, height, alpha) == 0
+    assert columns.far_face_step(1.0, height, 0.0) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("delta", "gg", "step", "blocks", "seconds"),
+    [(1.0, 1.0, 1e-3, 10, 3.092), (0.5, 0.98, 1e-3, 10, 0.691), (1.0, 1.0, 1e-3, 20, 11.771)],
+)
+def test_a_stack_rests_when_the_notes_say(delta, gg, step, blocks, seconds):
+    omega = columns.lowest_frequency(1e9, 2500, blocks)
+    assert columns.settling_time(omega, step, delta, gg) == pytest.approx(seconds, abs=6e-4)
+
+
+def test_nothing_damps_average_acceleration_without_a_discount():
+    assert columns.settling_time(10.0, 1e-3, 0.5, 1.0) == math.inf
+
+
+def test_every_contact_at_rest_carries_what_is_above():
+    assert columns.static_forces([3.0, 2.0, 1.0], 10.0) == [16.0, 13.0, 11.0]

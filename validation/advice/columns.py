@@ -1,0 +1,127 @@
+"""Columns whose contacts open or slip: what is known before a step is made, and the alarms of such scenes.
+
+solve limit
+    The open-close iteration is ended before the solves that the contacts can need: a stack that touches is never solved
+    by cutting the step.
+far face moves the wrong way
+    The step is so short that a push at the foot of a block of one strain opens the contact above it at once, before
+    any wave arrives there.
+gain by switching
+    Average acceleration without discount: a contact that opens gains energy, and a stack at rest is thrown up.
+residual slip by the step
+    Algorithmic or kinetic damping changes what slips, and what has slipped stays.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from validation.advice.alarm import Alarm
+from validation.scenes.column import ColumnSection, LayerSection
+from validation.scenes.scene import Scene
+from validation.theory import columns
+
+FEW_SOLVES = "solve limit"
+FAR_FACE = "far face moves the wrong way"
+GAINS = "gain by switching"
+PATH = "residual slip by the step"
+
+
+@dataclass(frozen=True)
+class ColumnLimits:
+    """What follows of a scene with a column whose contacts open or slip, before anything is run."""
+
+    contacts: int
+    solves: int | None  # that a step can need; None where no bound is proven
+    far_face_step: float  # below which some block's far face moves the wrong way [s]
+    lowest: float | None  # lowest frequency of a stack of equal rigid blocks [rad/s]
+    settling: float | None  # time in which such a stack comes to rest to a thousandth [s]
+
+
+def limits(scene: Scene) -> ColumnLimits | None:
+    """Return what is known of a scene before it is run, None of another scene."""
+    column = scene.column
+    if column is None or column.law == "bonded":
+        return None
+    t = scene.time
+    turned = far_face_step(column, t.alpha)
+    proven = column.law == "unilateral" and t.step >= turned
+    count = len(column.contacts)
+    lowest = _lowest(column)
+    settling = None if lowest is None else columns.settling_time(lowest, t.step, t.delta, t.discount)
+    return ColumnLimits(count, columns.greatest_solves(count) if proven else None, turned, lowest, settling)
+
+
+def far_face_step(column: ColumnSection, alpha: float) -> float:
+    """Return the step below which a block of a column answers a push at one face the wrong way at the other [s]."""
+    return max(
+        columns.far_face_step(_speed(column, layer), layer.thickness / layer.blocks, alpha) for layer in column.layer
+    )
+
+
+def _speed(column: ColumnSection, layer: LayerSection) -> float:
+    return math.sqrt(column.modulus(layer) / layer.density)
+
+
+def _lowest(column: ColumnSection) -> float | None:
+    """Return the lowest frequency of a stack of equal rigid blocks on a base [rad/s], None of another column."""
+    masses = {layer.density * layer.thickness / layer.blocks for layer in column.layer}
+    stiffnesses = {contact.stiffness for contact in column.contacts}
+    blocks = sum(layer.blocks for layer in column.layer)
+    rigid = all(math.isinf(layer.young) for layer in column.layer)
+    if not rigid or len(masses) + len(stiffnesses) > 2 or len(column.contacts) != blocks:
+        return None
+    (stiffness,) = stiffnesses
+    (mass,) = masses
+    return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
+
+
+def column_alarms(scene: Scene) -> Iterator[Alarm]:
+    """Yield the alarms of a scene with a column whose contacts open or slip."""
+    column = scene.column
+    known = limits(scene)
+    if column is None or known is None:
+        return
+    t = scene.time
+    if column.law == "frictional":
+        yield from _path(scene)
+        return
+    needed = columns.greatest_solves(known.contacts)
+    if column.solve_limit is not None and column.solve_limit < needed:
+        yield Alarm(
+            FEW_SOLVES,
+            scene.name,
+            f"{column.solve_limit} solves of the open-close iteration are allowed, where {known.contacts} contacts can "
+            f"need {needed}; a shorter step does not help blocks that touch",
+            {"solve_limit": column.solve_limit, "needed": needed},
+        )
+    if t.step < known.far_face_step:
+        yield Alarm(
+            FAR_FACE,
+            scene.name,
+            f"below a step of {known.far_face_step:.3g} s a push at one face of a block of one strain moves its other "
+            "face the wrong way: contacts open before the wave arrives; more blocks a layer lower this step",
+            {"step": t.step, "far_face_step": known.far_face_step},
+        )
+    if t.delta == 0.5 and t.discount == 1:
+        yield Alarm(
+            GAINS,
+            scene.name,
+            "under delta = 1/2 without a discount every contact that opens gains energy, and a stack does not come to "
+            "rest; delta = 0.6 with alpha = 0.3025, or a smaller step, gains less",
+            {"delta": t.delta},
+        )
+
+
+def _path(scene: Scene) -> Iterator[Alarm]:
+    t = scene.time
+    if t.delta > 0.5 or t.discount < 1:
+        yield Alarm(
+            PATH,
+            scene.name,
+            "what slips depends on the path: damping by delta, gg and step changes the slip that remains, and can "
+            "turn its sign; compare with column-events or with alpha = 1/4, delta = 1/2",
+            {"delta": t.delta, "gg": t.discount, "step": t.step},
+        )

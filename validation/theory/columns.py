@@ -1,0 +1,88 @@
+r"""Columns whose contacts open or slip: how the open-close iteration ends, when a stack rests, and its static state.
+
+A step under the scheme makes of the contacts of N blocks one problem with a tridiagonal matrix, whose entries beside
+the diagonal are at most zero where a block is rigid or
+
+    c dt / h >= 1 / sqrt(6 alpha),
+
+c the speed of its wave and h its height. Then the states change one way only from the second solve on, and the
+iteration ends after at most N + 1 solves, whatever the scheme's delta and gg. Below, a push at the foot of a block of
+one strain moves its far face the wrong way: the contact above opens before any wave has arrived.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+FAR_FACE = 6.0  # of the Courant number 1 / sqrt(6 alpha): consistent mass of a block of one strain
+
+
+def greatest_solves(contacts: int) -> int:
+    """Return the most solves that the open-close iteration of a step can need, the confirming one included."""
+    return contacts + 1
+
+
+def far_face_step(speed: float, height: float, alpha: float) -> float:
+    """Return the step below which a push at one face of a block moves the other face the wrong way [s].
+
+    Zero for a rigid block, infinite for alpha = 0.
+
+    Parameters
+    ----------
+    speed
+        Of the block's wave [m/s].
+    height
+        Of the block [m].
+    """
+    if alpha <= 0:
+        return math.inf
+    return height / speed / math.sqrt(FAR_FACE * alpha)
+
+
+def lowest_frequency(stiffness: float, mass: float, blocks: int) -> float:
+    """Return the lowest natural frequency of equal rigid blocks on each other on a base, all contacts closed [rad/s].
+
+    w1 = 2 sqrt(k / m) sin(pi / (2 (2 N + 1))).
+
+    Parameters
+    ----------
+    stiffness
+        Of each contact per unit of area [Pa/m].
+    mass
+        Of a block per unit of area [kg/m2].
+    """
+    return 2 * math.sqrt(stiffness / mass) * math.sin(math.pi / (2 * (2 * blocks + 1)))
+
+
+def settling_time(omega: float, step: float, delta: float, gg: float, share: float = 1e-3) -> float:
+    """Return the time in which a vibration falls to a share of its amplitude under a step that is small for it [s].
+
+    ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)): the algorithmic damping of the scheme and the
+    discount, which is a rate per step. Infinite where neither damps.
+
+    Parameters
+    ----------
+    omega
+        Of the vibration [rad/s].
+    """
+    rate = omega**2 * (delta - 0.5) * step / 2 + (1 - gg) / (2 * step)
+    return math.log(1 / share) / rate if rate > 0 else math.inf
+
+
+def static_forces(weights: Sequence[float], pressure: float = 0.0) -> list[float]:
+    """Return the forces of the contacts of a column at rest [Pa], from the base upwards.
+
+    Each carries the weights above it and the pressure on the top, whatever happened before.
+
+    Parameters
+    ----------
+    weights
+        Of the blocks per unit of area [Pa], from the base upwards.
+    """
+    forces = []
+    above = pressure
+    for weight in reversed(weights):
+        above += weight
+        forces.append(above)
+    return forces[::-1]
