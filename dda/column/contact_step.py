@@ -45,6 +45,8 @@ LIMIT = 4  # outcome besides those of `dda.stepping.driver`: the limit of solves
 SWEEPS = 4  # solves for each contact with all states updated at once; N + 1, in shear 2 N + 1, are the most known
 ONE_BY_ONE = 1000  # solves for each contact after that, beyond any known problem
 STORED_NOW = 3  # kinetic, strain and spring energy of a step, before its sums
+MOMENTUM, WIDEST, DEEPEST, OPEN_SHARE, FURTHEST = range(STORED_NOW + SUMS, STORED_NOW + SUMS + 5)  # after them
+RECORDED = FURTHEST + 1
 
 MOTION, SPEED, STRAIN, FORCES, GAP, SLIDE = range(6)  # what an observer reads
 
@@ -443,7 +445,7 @@ def make_column_steps(
     solves, switches
         (steps + 1,) solves of the open-close iteration, the confirming one included, and states that changed.
     energies
-        (steps + 1, STORED_NOW + SUMS), or no rows if they are not asked for.
+        (steps + 1, RECORDED), or no rows if they are not asked for.
     """
     n = len(state.u)
     first = numbers.first
@@ -550,16 +552,35 @@ def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:
 def store(
     numbers: StepNumbers, blocks: BlockColumn, joints: JointLaws, state: ColumnState, energies: Rows, step: int
 ) -> None:
-    """Write kinetic energy, strain energy and that of the springs [J/m^2]."""
+    """Write kinetic energy, strain energy and that of the springs [J/m^2], momentum, and the extremes of contacts."""
     strain = 0.0
     springs = 0.0
+    momentum = 0.0
+    widest = 0.0
+    deepest = 0.0
+    furthest = 0.0
+    open_contacts = 0
+    contacts = 0
     for i in range(len(state.u)):
         strain += blocks.stiffness[i] * state.e[i] * state.e[i] / 2
+        momentum += blocks.mass[i] * state.w[i]
         if i >= numbers.first:
             springs += joints.compliance[i] * state.force[i] * state.force[i] / 2
+        furthest = max(furthest, abs(state.slip[i]))
+        if joints.opens[i] == 1:
+            widest = max(widest, state.gap[i])
+            deepest = max(deepest, 0.0 - state.gap[i])
+            contacts += 1
+            if state.state[i] == OPEN:
+                open_contacts += 1
     energies[step, 0] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
     energies[step, 1] = strain
     energies[step, 2] = springs
+    energies[step, MOMENTUM] = momentum / numbers.step
+    energies[step, WIDEST] = widest
+    energies[step, DEEPEST] = deepest
+    energies[step, OPEN_SHARE] = open_contacts / max(contacts, 1)
+    energies[step, FURTHEST] = furthest
 
 
 def account(

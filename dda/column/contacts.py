@@ -18,6 +18,7 @@ from dda.column.contact_step import (
     GAP,
     LIMIT,
     MOTION,
+    RECORDED,
     SLIDE,
     SPEED,
     STORED_NOW,
@@ -61,9 +62,9 @@ class ColumnOptions:
     """
 
     solve_limit: int | None = None  # solves of the open-close iteration that end the run; None: as many as it takes
-    at_rest: bool = False  # start under the static forces of weight and first pressure, not unstrained with all gaps
+    settled: bool = False  # start at rest under weight and the first pressure, not unstrained with all gaps
     states: bool = False  # keep the states of all contacts at every step
-    energies: bool = False  # keep the energies of every step
+    energies: bool = False  # keep energies, momentum and extremes of the contacts at every step
 
     def __post_init__(self) -> None:
         """Check the limit."""
@@ -80,15 +81,32 @@ class ColumnContactResult(Result):
     step_solves: NDArray[np.int64]  # solves of the open-close iteration, the confirming one included, (steps,)
     step_switches: NDArray[np.int64]  # contacts whose state changed in a step, (steps,)
     states: NDArray[np.int8] | None  # 0 open, 1 stuck, 2 and -2 slipping, (blocks, steps), by the block above
-    balance: Array | None  # what the energies are made of
+    record: Array | None  # (RECORDED, steps + 1) from t = 0 on: energies, momentum, extremes of contacts
+
+    def state_of(self, contact: int) -> NDArray[np.int8]:
+        """Return the states at the foot of a block, (steps,).
+
+        Raises
+        ------
+        ValueError
+            If the states were not asked for.
+        """
+        if self.states is None:
+            raise ValueError("states: must be asked for before the steps are made, got none")
+        return self.states[contact]
 
     @cached_property
     def energies(self) -> dict[str, Array] | None:
-        """By `ENERGIES` [J/m^2], losses summed from t = 0 on; that of the load is minus the work done on the column."""
-        if self.balance is None:
+        """By `ENERGIES` [J/m^2], losses summed from t = 0 on; that of the load is zero at t = 0.
+
+        It is minus the work that weight, pressure, base and half-space do on the column, less what is stored at first.
+        """
+        if self.record is None:
             return None
-        sums = self.balance[STORED_NOW:]
-        return dict(zip(ENERGIES, (*self.balance[:STORED_NOW], -sums[GIVEN], *sums[:4]), strict=True))
+        stored = self.record[:STORED_NOW, 1:]
+        sums = self.record[STORED_NOW : STORED_NOW + SUMS, 1:]
+        load = -sums[GIVEN] - self.record[1:STORED_NOW, 0].sum()
+        return dict(zip(ENERGIES, (*stored, load, *sums[:4]), strict=True))
 
 
 def contact_column_names(heights: Sequence[float]) -> tuple[str, ...]:
@@ -136,17 +154,17 @@ def solve_contact_column(
     n = len(column.heights)
     observed = observed_columns(column, columns, heights)
     numbers, blocks, joints = step_equations(column, scheme, options.solve_limit)
-    state = start_state(column, scheme, drive, options.at_rest, numbers, blocks, joints)
+    state = start_state(column, scheme, drive, options.settled, numbers, blocks, joints)
     values = np.zeros((instants, len(columns)))
     states = np.zeros((instants if options.states else 0, n), dtype=np.int8)
     solves, switches = zeros(instants, instants, dtype=np.int64)
-    energies = np.zeros((instants if options.energies else 0, STORED_NOW + SUMS))
+    record = np.zeros((instants if options.energies else 0, RECORDED))
     ready = perf_counter()
     (reached, ended), _, how = run_loop(
         make_column_steps,
         (),
         (numbers, blocks, joints, state, _room_for_state(n), _room(n), _steps_of(drive), observed),
-        (values, states, solves, switches, energies),
+        (values, states, solves, switches, record),
         instants * (PLAIN_STEP + n * PLAIN_BLOCK),
     )
     rows = slice(1, reached + 1)
@@ -165,7 +183,7 @@ def solve_contact_column(
         step_solves=solves[rows],
         step_switches=switches[rows],
         states=states[rows].T if options.states else None,
-        balance=energies[rows].T if options.energies else None,
+        record=record[: reached + 1].T if options.energies else None,
     )
 
 
@@ -178,8 +196,8 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
     lowest = int(not column.rests_on_base or column.contacts[0] is None)
     if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
-    if options.at_rest and not (column.law == "unilateral" and column.rests_on_base):
-        raise ValueError("at_rest: goes with unilateral contacts on a base that is prescribed, got it without")
+    if options.settled and not (column.law == "unilateral" and column.rests_on_base):
+        raise ValueError("settled: goes with unilateral contacts on a base that is prescribed, got it without")
 
 
 # ---- equations -------------------------------------------------------------------------------------------------------
@@ -280,7 +298,7 @@ def start_state(
     column: Column,
     scheme: Scheme,
     drive: Drive,
-    at_rest: bool,
+    settled: bool,
     numbers: StepNumbers,
     blocks: BlockColumn,
     joints: JointLaws,
@@ -303,7 +321,7 @@ def start_state(
     state.force[:n] = np.where(spring, -state.gap / np.where(spring, joints.compliance, 1.0), 0.0)
     state.force[:n] = np.clip(state.force[:n], joints.lower, joints.upper)
     state.force[n] = drive.pressure[0]
-    if at_rest:
+    if settled:
         write_static(column, state, blocks, joints, float(drive.displacement[0]))
         rigid = np.zeros(n, dtype=bool)
     elif not column.rests_on_base:
@@ -354,7 +372,7 @@ def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints
     tops = base + np.cumsum(state.gap - initial_gaps + state.e)
     state.u[:] = tops - state.e / 2
     if np.any((state.force[:n] < 0) & (joints.opens == 1)):
-        raise ValueError("at_rest: needs a pressure that holds the column down, got tension in a contact")
+        raise ValueError("settled: needs a pressure that holds the column down, got tension in a contact")
 
 
 def rigid_forces(

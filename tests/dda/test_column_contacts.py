@@ -540,7 +540,7 @@ def test_what_comes_to_rest_rests_in_the_static_solution(weights: tuple[float, f
     np.testing.assert_allclose(stepped, tops, rtol=1e-10)
     begun = (
         solve_contact_column(
-            column, Scheme(*weights, gg, step, "consistent"), still(3), names, heights, ColumnOptions(at_rest=True)
+            column, Scheme(*weights, gg, step, "consistent"), still(3), names, heights, ColumnOptions(settled=True)
         )
         if not any(layer.velocity for layer in blocks)
         else None
@@ -577,12 +577,12 @@ def test_a_stack_settles_when_the_closed_form_says(
     assert settled == pytest.approx(measured, rel=0.05)
 
 
-def test_a_column_that_starts_at_rest_stays_there() -> None:
+def test_a_column_that_starts_settled_stays_there() -> None:
     column = CASES["A3"].column
     names = [f"displacement_{k + 1}" for k in range(6)]
     scheme = Scheme(0.25, 0.5, 1.0, 1e-5, "consistent")
     result = solve_contact_column(
-        column, scheme, still(200), names, CASES["A3"].heights[:6], ColumnOptions(at_rest=True, energies=True)
+        column, scheme, still(200), names, CASES["A3"].heights[:6], ColumnOptions(settled=True, energies=True)
     )
     for name in names:
         np.testing.assert_allclose(result.columns[name], result.columns[name][0], rtol=1e-11)
@@ -694,12 +694,12 @@ BLOCK = Layer(1.0, 2500.0, 1e9)
             ),
         ),
         (
-            "at_rest",
+            "settled",
             lambda: solve_contact_column(
                 Column([BLOCK], law="unilateral", unsupported=True),
                 Scheme(0.5, 1.0, 1.0, 1e-3),
                 still(1),
-                options=ColumnOptions(at_rest=True),
+                options=ColumnOptions(settled=True),
             ),
         ),
         (

@@ -22,7 +22,7 @@ class ColumnCase(NamedTuple):
     until: float
     exact: dict[str, float]  # a column of a history to its value at `until`; at a height by its number in `heights`
     heights: list[float]
-    at_rest: bool = False
+    settled: bool = False
 
 
 def nothing(t: np.ndarray) -> Drive:
@@ -68,14 +68,14 @@ def middles(blocks: list[Layer]) -> list[float]:
     return [float(x) for x in (feet[1:] + feet[:-1]) / 2]
 
 
-def case(column: Column, drive: Motion, until: float, at_rest: bool = False, **exact: list[float | None]) -> ColumnCase:
+def case(column: Column, drive: Motion, until: float, settled: bool = False, **exact: list[float | None]) -> ColumnCase:
     """Return a case; `exact` holds values of the blocks' middles, and of the joints from the lowest for `slip`."""
     heights = middles(list(column.layers))
     values = {}
     for part, row in exact.items():
         shift = len(heights) if part == "slip" else 0
         values.update({f"{part}_{shift + k + 1}": value for k, value in enumerate(row) if value is not None})
-    return ColumnCase(column, drive, until, values, [*heights, *(joint.height for joint in column.joints)], at_rest)
+    return ColumnCase(column, drive, until, values, [*heights, *(joint.height for joint in column.joints)], settled)
 
 
 RIGID, INF = math.inf, math.inf
@@ -104,7 +104,7 @@ CASES = {
         unilateral(layers([1.0] * 6, [2500.0] * 6, [1e9] * 6, [0.0] * 6), [1e10] * 6, [0.0] * 6),
         half_sine_on_top,
         0.01,
-        at_rest=True,
+        settled=True,
         displacement=[
             -0.0009942924468433,
             -0.002645196854866,
@@ -131,7 +131,7 @@ CASES = {
         unilateral(layers([1.0] * 3, [2500.0] * 3, [1e8] * 3, [-SHAKE * 4 * np.pi] * 3), [1e8] * 3, [0.0] * 3),
         shaken(-SHAKE, 4 * np.pi),
         0.65,
-        at_rest=True,
+        settled=True,
         displacement=[-0.08370234214322, -0.09190361830169, -0.09208629666771],
     ),
     "A7": case(
@@ -184,7 +184,7 @@ def stepped_case(
     scheme = Scheme(*weights, gg, step, start)  # type: ignore[arg-type]
     drive = case.drive(step * np.arange(steps + 1))
     return solve_contact_column(
-        case.column, scheme, drive, list(case.exact), case.heights, ColumnOptions(at_rest=case.at_rest)
+        case.column, scheme, drive, list(case.exact), case.heights, ColumnOptions(settled=case.settled)
     )
 
 
