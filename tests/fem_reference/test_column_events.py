@@ -6,7 +6,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from oracles.column_cases import COLUMNS, RIGID, KnownColumn, blocks, half_unit, kind_of
+from oracles.column_motions import COLUMNS, RIGID, KnownColumn, blocks, half_unit, kind_of
 from oracles.column_oracle import integrated, random_column
 
 from fem_reference.events import column_drive as drives
