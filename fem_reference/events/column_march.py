@@ -241,10 +241,7 @@ class March:
     def _advance(self, segment: Segment, share: arb, whole: arb, limit: arb) -> None:
         """Move to a share of a step, or to its border where the share reaches it."""
         start, span = self.start, arb(segment.length)
-        if share >= whole:
-            time = limit
-        else:
-            time = (start.time + share * span).mid()
+        time = limit if share >= whole else (start.time + share * span).mid()
         at = (time - start.time) / span
         rest = ball(segment.tail)
         u, v = [], []
