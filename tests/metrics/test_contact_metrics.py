@@ -95,7 +95,8 @@ FAULTS = {  # what a reader of an adapter would slip, and metrics that tell
                                       {"energy.rise", "energy.imbalance", "energy.kinetic"}),
     "velocity downwards": ({"velocity": -(MADE.velocity if MADE.velocity is not None else ONES)},
                            {"contact.restitution"}),
-    "a count from zero": ({"solves": np.array([0.0, 1.0, 1.0, 0.0])}, {"contact.mean_solves", "contact.p99_solves", "contact.most_solves"}),
+    "a count from zero": ({"solves": np.array([0.0, 1.0, 1.0, 0.0])},
+                          {"contact.mean_solves", "contact.p99_solves", "contact.most_solves"}),
 }  # fmt: skip
 
 
