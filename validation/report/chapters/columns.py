@@ -32,7 +32,6 @@ from validation.studies.columns import known, study
 from validation.theory import columns
 
 DDA = "dda"
-STIFF = 1264.911064  # 2 sqrt(k/m) of the stacks of rigid blocks [rad/s]
 DELTA_COLORS = {0.5: "#0072b2", 0.55: "#56b4e9", 0.6: "#009e73", 0.75: "#e69f00", 1.0: "#d55e00"}
 PIECE_COLORS = {1: "#d55e00", 4: "#e69f00", 16: "#009e73", 64: "#0072b2"}  # by blocks in a piece
 LEAD = (
@@ -139,7 +138,7 @@ def solves_figure(groups: Groups, directory: Path) -> FigureBlock:
     for name, title in (("columns-solves-rest", "Comes to rest"), ("columns-solves-shaken", "Shaken on")):
         lines = []
         for delta, stacks in by_delta(groups, name).items():
-            points = [(STIFF * case.scene.time.step, case.number(DDA, "contact.mean_solves")) for case in stacks]
+            points = [(study.STIFF * case.scene.time.step, case.number(DDA, "contact.mean_solves")) for case in stacks]
             steps, means = np.array([(x, y) for x, y in points if y is not None]).reshape(-1, 2).T
             lines.append(ChartLine(f"δ = {delta:g}", steps, means, DELTA_COLORS[delta], dots=DOTS))
         panels.append(ChartPanel(title, "ω dt", "mean solves a step", lines, names="upper left", **axes))
