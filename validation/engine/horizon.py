@@ -1,8 +1,9 @@
 """The horizon of a unilateral contact: how long two correct codes agree before the switches amplify rounding.
 
-A run with p (1 + 1e-12), of a column with its densities so, stands for the other code. Its distance from the run is at first that of rounding, some digits
-enlarged, and grows with every switch; where it exceeds `validation.metrics.contact.AGREED`, histories tell nothing any
-more, and only what holds for every history (momentum, energy, complementarity) is left to judge.
+A run with p (1 + 1e-12), of a column with its densities so, stands for the other code. Its distance from the run is at
+first that of rounding, some digits enlarged, and grows with every switch; where it exceeds
+`validation.metrics.contact.AGREED`, histories tell nothing any more, and only what holds for every history (momentum,
+energy, complementarity) is left to judge.
 """
 
 from __future__ import annotations

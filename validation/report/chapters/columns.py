@@ -20,7 +20,7 @@ from validation.report.chapters.data import (
     verdicts_of,
 )
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, cell, plain
+from validation.report.chapters.text import DASH, cell
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.space_time import SpaceTime, space_time_figure
@@ -150,12 +150,13 @@ def solves_table(groups: Groups) -> Table:
     rows = []
     for name, words in (("columns-solves-rest", "comes to rest"), ("columns-solves-shaken", "shaken on")):
         for delta, stacks in by_delta(groups, name).items():
-            numbers = []
+            cells = dict.fromkeys(study.STEPS, DASH)
             for case in stacks:
                 mean, most = (case.number(DDA, f"contact.{part}_solves") for part in ("mean", "most"))
-                numbers.append(DASH if mean is None or most is None else f"{mean:.3f} / {most:.0f}")
-            rows.append((words, f"{delta:g}", *numbers))
-    heads = ("Stack", "δ", ("Mean / most solves by ω dt", "0.1", "0.5", "2", "10"))
+                if mean is not None and most is not None:
+                    cells[round(study.STIFF * case.scene.time.step, 3)] = f"{mean:.3f} / {most:.0f}"
+            rows.append((words, f"{delta:g}", *cells.values()))
+    heads = ("Stack", "δ", ("Mean / most solves by ω dt", *(f"{step:g}" for step in study.STEPS)))
     return table(heads, rows, "Twenty rigid blocks at α = 1/2; at most 21 solves are possible.")
 
 
@@ -217,7 +218,7 @@ def scheme_words(scene: Scene) -> Sequence[str]:
     """Return scheme, discount and step of a case."""
     t = scene.time
     scheme = "(1/2, 1)" if t.delta == 1 else "(1/4, 1/2)"
-    return scheme, f"{t.discount:g}", plain(1e3 * t.step)
+    return scheme, f"{t.discount:g}", f"{1e3 * t.step:g}"
 
 
 def slip_table(groups: Groups, rows: DerivedRows) -> Table:
