@@ -7,6 +7,7 @@ that stiff contacts lose no digits.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -68,7 +69,7 @@ def active(states: Sequence[int]) -> Array:
 
 def rate_of(model: ColumnModel, states: Sequence[int]) -> float:
     """Return a bound of the rates of the motion while the contacts keep their states [rad/s]."""
-    return model.bounds.squared_rate(active(states)) ** 0.5 + model.bounds.damping
+    return math.sqrt(model.bounds.squared_rate(active(states))) + model.bounds.damping
 
 
 def step_length(model: ColumnModel, states: Sequence[int], forces: Forces) -> float:

@@ -125,8 +125,9 @@ class ColumnEventMotion(Motion):
         return [self._column(name, state) for name in self.names]
 
     def _column(self, name: str, state: ColumnHistory) -> Array:
+        """Return a column of the history; of two blocks that meet at a height it is the lower one's."""
         if name == DISPLACEMENT:
-            return state.top[-1]
+            return np.asarray(state.top[-1])
         if name == PRESSURE:
             return state.base_force
         part, _, number = name.rpartition("_")
@@ -134,14 +135,14 @@ class ColumnEventMotion(Motion):
         if part in (FORCE, GAP, SLIP):
             # a contact's height is the top of the block below it; the base's is the foot of the first block
             joint = block if share == 0 else block + 1
-            return {FORCE: state.force, GAP: state.gap, SLIP: state.slip}[part][joint]
+            return np.asarray({FORCE: state.force, GAP: state.gap, SLIP: state.slip}[part][joint])
         if part == STRESS:
             modulus = self.problem.blocks[block].modulus
             if math.isinf(modulus):
-                return (state.face_force[block] + state.face_force[block + 1]) / 2
-            return -modulus / self.problem.blocks[block].height * (state.top[block] - state.foot[block])
+                return np.asarray(state.face_force[block : block + 2].mean(axis=0))
+            return np.asarray(modulus / self.problem.blocks[block].height * (state.foot[block] - state.top[block]))
         faces = (state.foot, state.top) if part == DISPLACEMENT else (state.foot_velocity, state.top_velocity)
-        return (1 - share) * faces[0][block] + share * faces[1][block]
+        return np.asarray((1 - share) * faces[0][block] + share * faces[1][block])
 
     def _block_at(self, height: float) -> tuple[int, float]:
         """Return the block at a height and the share of its height below; of two that meet there, the lower one."""
