@@ -93,7 +93,7 @@ class ColumnContactResult(Result):
         """
         if self.states is None:
             raise ValueError("states: must be asked for before the steps are made, got none")
-        return self.states[contact]
+        return np.asarray(self.states[contact])
 
     @cached_property
     def energies(self) -> dict[str, Array] | None:
