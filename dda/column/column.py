@@ -207,10 +207,7 @@ class Column:
     @cached_property
     def springs(self) -> list[float | None]:
         """Stiffness of the spring below every block [Pa/m], None where faces move alike."""
-        stiffnesses = [self.glue] * len(self.heights)
-        for joint in self.joints:
-            stiffnesses[self.face_of(joint)] = joint.stiffness
-        return stiffnesses
+        return [self.glue if contact is None else contact.stiffness for contact in self.contacts]
 
     def block_at(self, height: float) -> tuple[int, float]:
         """Return the block at a height and the share of its height below; of two that meet there, the lower one.

@@ -33,7 +33,7 @@ from dda.column.contact_step import (
     find_forces,
     make_column_steps,
 )
-from dda.column.stepping import DISPLACEMENT, PRESSURE, Drive
+from dda.column.stepping import DISPLACEMENT, PRESSURE, Drive, column_names
 from dda.contact.dense import zeros
 from dda.contact.kernel import FOUND
 from dda.contact.unilateral import OPEN, SLIP, STICK
@@ -93,7 +93,7 @@ class ColumnContactResult(Result):
         """
         if self.states is None:
             raise ValueError("states: must be asked for before the steps are made, got none")
-        return self.states[contact]
+        return np.asarray(self.states[contact])
 
     @cached_property
     def energies(self) -> dict[str, Array] | None:
@@ -107,12 +107,6 @@ class ColumnContactResult(Result):
         sums = self.record[STORED_NOW : STORED_NOW + SUMS, 1:]
         load = -sums[GIVEN] - self.record[1:STORED_NOW, 0].sum()
         return dict(zip(ENERGIES, (*stored, load, *sums[:4]), strict=True))
-
-
-def contact_column_names(heights: Sequence[float]) -> tuple[str, ...]:
-    """Return the names of the columns of a history: of top and base, then of every height that is asked for."""
-    names = [f"{name}_{number + 1}" for name in AT_HEIGHTS for number in range(len(heights))]
-    return (DISPLACEMENT, PRESSURE, *names)
 
 
 def solve_contact_column(
@@ -430,7 +424,7 @@ def rigid_forces(
 
 def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[float]) -> Observed:
     """Return what the columns read."""
-    names = contact_column_names(heights)
+    names = column_names(heights, AT_HEIGHTS)
     for name in columns:
         if name not in names:
             raise ValueError(f"columns: must be among {', '.join(names)}, got {name!r}")
@@ -465,36 +459,3 @@ def _contact_at(column: Column, name: str, height: float) -> int:
         if abs(joint.height - height) <= 1e-9 * column.faces[-1]:
             return face
     raise ValueError(f"heights: {name} needs a contact there, got {height!r} m")
-
-
-def highest_contact_frequency(column: Column) -> float:
-    """Return the highest natural frequency [rad/s] with all springs at work, which limits an explicit scheme.
-
-    Rigid contacts that may open or slip are left out: they only lower it.
-    """
-    from scipy.linalg import eigh, null_space
-
-    mass = column.densities * column.heights
-    n = len(mass)
-    elastic = np.flatnonzero(np.isfinite(column.moduli))
-    inertia = np.concatenate([mass, mass[elastic] / 12])
-    stiffness = np.diag(np.concatenate([np.zeros(n), column.moduli[elastic] / column.heights[elastic]]))
-    stretch = np.zeros((n, len(inertia)))
-    stretch[elastic, n + np.arange(len(elastic))] = 0.5
-    mean = np.eye(n, len(inertia))
-    openings = mean - stretch
-    openings[1:] -= (mean + stretch)[:-1]
-    welds = []
-    for row, spring in list(zip(openings, column.contacts, strict=True))[0 if column.rests_on_base else 1 :]:
-        if spring is None:
-            welds.append(row)
-        elif math.isfinite(spring.stiffness):
-            stiffness += spring.stiffness * np.outer(row, row)
-    scale = 1 / np.sqrt(inertia)
-    scaled = stiffness * np.outer(scale, scale)
-    if welds:
-        free = null_space(np.array(welds) * scale)
-        scaled = free.T @ scaled @ free
-    if not len(scaled):
-        return 0.0
-    return math.sqrt(max(float(eigh(scaled, eigvals_only=True)[-1]), 0.0))

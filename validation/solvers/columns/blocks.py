@@ -10,7 +10,7 @@ import numpy as np
 import dda
 from dda.column.column import Column, Layer, Spring
 from dda.column.contact_step import DEEPEST, FURTHEST, MOMENTUM, OPEN_SHARE, WIDEST
-from dda.column.contacts import ColumnContactResult, ColumnOptions, highest_contact_frequency, solve_contact_column
+from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.column.response import column_response, highest_frequency
 from dda.column.stepping import Drive, solve_column
 from dda.contact.unilateral import OPEN, SLIP
@@ -94,7 +94,7 @@ class ContactColumn(BlockColumn):
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the scheme while all contacts are closed."""
-        return dda_limit(lambda: highest_contact_frequency(self.column))
+        return dda_limit(lambda: highest_frequency(self.column))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
