@@ -84,7 +84,9 @@ def polynomial(coefficients: list[arb], end: arb) -> Smooth:
     return local
 
 
-def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> Fall | None:
+def first_fall(
+    function: Smooth, end: arb, touches: list[arb] | None = None, stop_in_noise: bool = False
+) -> Fall | None:
     """The first point in (0, end] at which a function falls through zero, None if it does not.
 
     Parameters
@@ -96,6 +98,8 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> 
     touches
         Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
         crossing can be neither proven nor excluded; they count as none.
+    stop_in_noise
+        Take an interval for such a point as soon as the function changes less in it than its value is uncertain.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
     pending = [(arb(0), end)]
@@ -115,6 +119,9 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> 
             if function(high, arb(0)).value < 0:
                 return _root(function, low, high) if falls else Fall(middle + ball(half), True)
             if not falls and touches is not None:
+                touches.append(middle)
+        elif stop_in_noise and value.contains(0) and (abs(slope) + change) * half < value.rad():
+            if touches is not None:
                 touches.append(middle)
         else:
             pending += [(middle, high), (low, middle)]
