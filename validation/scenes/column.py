@@ -127,7 +127,7 @@ class ColumnSection(Section):
             self.base, ("base_density", "base_speed", "base_young", "base_poisson")
         )
         if wrong := [name for name in given if name not in allowed]:
-            raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got it")
+            raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got {getattr(self, wrong[0])!r}")
         if self.base == "springs" and self.base_stiffness is None:
             raise ValueError("base_stiffness is required with base = 'springs', got nothing")
         if self.base == "transmitting":
@@ -137,7 +137,7 @@ class ColumnSection(Section):
                     f"{', '.join(given) or 'nothing'}"
                 )
             if self.base_speed is not None and "base_poisson" in given:
-                raise ValueError("base_poisson goes with base_young only, got it with base_speed")
+                raise ValueError("base_poisson goes with base_young only, got {self.base_poisson:g} with base_speed")
         if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
             raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
 
@@ -274,5 +274,5 @@ class InputSection(Section):
         if missing := sorted(needed - given):
             raise ValueError(f"{missing[0]} is required with {what}, got nothing")
         if more := sorted(given - needed):
-            raise ValueError(f"{more[0]} does not go with {what}, got it")
+            raise ValueError(f"{more[0]} does not go with {what}, got {getattr(self, more[0])!r}")
         return self

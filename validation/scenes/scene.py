@@ -173,6 +173,8 @@ def _short(value: object) -> str:
     """Return a value for a name; digits beyond six are kept, since names must tell cases apart."""
     if isinstance(value, list | tuple):
         return "x".join(map(_short, value))
+    if isinstance(value, dict):  # a layer or a joint
+        return "/".join(map(_short, value.values()))
     if not isinstance(value, float):
         return str(value)
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)

@@ -32,6 +32,7 @@ STUDIES = {
     "rocking": "validation.studies.rocking.rocking:STUDY",
     "toppling": "validation.studies.rocking.toppling:STUDY",
     "waves": "validation.studies.waves.study:study",
+    "columns": "validation.studies.columns.study:study",
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
     "field": "validation.studies.field.study:study",

@@ -26,6 +26,7 @@ CHAPTERS: dict[str, str] = {
     "rocking": "validation.report.chapters.opened.turning:rocking_chapter",
     "toppling": "validation.report.chapters.opened.turning:toppling_chapter",
     "waves": "validation.report.chapters.waves:chapter",
+    "columns": "validation.report.chapters.columns:chapter",
     "response": "validation.report.chapters.vibrations.response:chapter",
     "field": "validation.report.chapters.field:chapter",
 }
