@@ -1,8 +1,8 @@
 """Elastic bars on each other, exact in space and time while their joints open, close, stick and slip.
 
-The waves in the bars and the forces in the joints are pieces of exponentials times polynomials (`bars_march`),
-computed in ball arithmetic: a switch is enclosed, and where rounding and switches amplify the balls too far, or the
-pieces grow too many, the motion ends at a named horizon.
+The waves in the bars and the forces in the joints are pieces of exponentials times polynomials (`bars_march`). They are
+computed twice, in more digits the second time, until both agree on every switch; where rounding and switches cost all
+digits, or the pieces grow too many, the motion ends at a named horizon.
 """
 
 from __future__ import annotations
@@ -19,24 +19,23 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.bars_march import CLOSED, OPEN, Joint, JointPiece, Wave, WavePiece, nodes_of
 from fem_reference.events.bars_model import BarsProblem
-from fem_reference.events.enclosure import bits_of, precision, radius_of
+from fem_reference.events.enclosure import bits_of, precision
 from fem_reference.events.exponential_sum import ExponentialSum
 from fem_reference.events.switches import (
-    ProvenMotion,
+    LostDigitsError,
     Switch,
     TooManySwitchesError,
     TooMuchWorkError,
-    with_enough_digits,
 )
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 60
-"""Decimal digits of the first computation."""
-MOST_DIGITS = 480
+DIGITS = 40
+"""Decimal digits of the first computation; the second one has twice as many."""
+MOST_DIGITS = 320
 """Decimal digits of the last one."""
-PROMISED = 1e-20
-"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
+PROMISED = 1e-15
+"""Part of the end of the motion by which the instants of the switches of two computations may differ."""
 ADVANCES = 60_000
 """Greatest number of times that a joint or an end of the column goes on."""
 KINDS = {OPEN: "opens", CLOSED: "closes"}
@@ -54,6 +53,15 @@ class BarsHistory:
 
 
 @dataclass(frozen=True)
+class JointHistory:
+    """A joint at given instants."""
+
+    force: Array  # N, or T on what is above [Pa], shape (times,)
+    gap: Array  # y [m], shape (times,)
+    slip: Array  # r [m], shape (times,)
+
+
+@dataclass(frozen=True)
 class PointHistory:
     """A point of a bar at given instants."""
 
@@ -63,7 +71,7 @@ class PointHistory:
 
 
 @dataclass(frozen=True)
-class BarsMotion(ProvenMotion):
+class BarsMotion:
     """Exact motion of bars from t = 0 to `end`."""
 
     problem: BarsProblem
@@ -71,7 +79,6 @@ class BarsMotion(ProvenMotion):
     digits: int  # decimal digits of the computation
     switches: tuple[Switch, ...]  # of all joints in the order of time, ``corner`` being the number of the joint
     closed_at_start: tuple[bool, ...]  # of each joint, just after t = 0; one that slips or sticks counts as closed
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded; none was taken [s]
     joints: tuple[Joint | None, ...]
     up: tuple[Wave, ...]  # p of each bar, from its foot
     down: tuple[Wave, ...]  # d of each bar, from its top
@@ -86,12 +93,25 @@ class BarsMotion(ProvenMotion):
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
+        bars = range(len(self.problem.bars))
         with precision(bits_of(self.digits)):
-            bars = range(len(self.problem.bars))
             velocity = np.array([[self._mean_velocity(i, arb(float(s))) for s in t] for i in bars])
-            rows = np.array([[self._joint_row(joint, arb(float(s))) for s in t] for joint in self.joints])
-        rows = rows.reshape(len(self.joints), len(t), 3)
-        return BarsHistory(t, velocity, rows[:, :, 0], rows[:, :, 1], rows[:, :, 2])
+        joints = [self.joint(number, t) for number in bars]
+        rows = [np.array([getattr(joint, part) for joint in joints]) for part in ("force", "gap", "slip")]
+        return BarsHistory(t, velocity, *rows)
+
+    def joint(self, number: int, times: ArrayLike) -> JointHistory:
+        """One joint at instants in any order.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t = instants(times, self.end)
+        with precision(bits_of(self.digits)):
+            rows = np.array([self._joint_row(self.joints[number], arb(float(s))) for s in t]).reshape(len(t), 3)
+        return JointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
 
     def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
         """A point of a bar, its height above the foot of the bar [m], at instants in any order.
@@ -183,19 +203,19 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     end
         Last instant [s].
     digits
-        Decimal digits of the computation, at least 50; twice as many are taken, up to `MOST_DIGITS`, where the instants
-        of the switches are not enclosed to `PROMISED`.
+        Decimal digits of the first computation, at least 30. Twice as many are taken, up to `MOST_DIGITS`, until two
+        computations agree on all switches to `PROMISED`; the last one is returned.
     limit
         Greatest number of switches.
 
     Raises
     ------
     ValueError
-        If `end` is not positive and finite or `digits` is below 50.
+        If `end` is not positive and finite or `digits` is below 30.
     TooManySwitchesError
         If there are more switches than `limit`.
     LostDigitsError
-        If waves and switches amplify what the motion may be off until nothing can be decided.
+        If waves and switches amplify the rounding until computations differ in every number of digits.
     TooMuchWorkError
         If joints and ends go on more often than `ADVANCES`.
 
@@ -209,11 +229,30 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     """
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
-    if digits < 50:
-        raise ValueError(f"digits: must be at least 50, got {digits!r}")
-    return with_enough_digits(
-        lambda digits: _solved(problem, float(end), digits, limit), digits, MOST_DIGITS, PROMISED * end
-    )
+    if digits < 30:
+        raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    motion = _solved(problem, float(end), digits, limit)
+    while motion.digits < MOST_DIGITS:
+        finer = _solved(problem, float(end), 2 * motion.digits, limit)
+        until = _agree_until(motion, finer)
+        if until is None:
+            return finer
+        motion = finer
+    raise LostDigitsError(until, f"{len(motion.switches)} switches have cost the digits")
+
+
+def _agree_until(motion: BarsMotion, finer: BarsMotion) -> float | None:
+    """None, or the instant of the first switch in which two motions differ by more than is promised [s]."""
+    for switch, other in zip(motion.switches, finer.switches, strict=False):
+        alike = (switch.corner, switch.kind) == (other.corner, other.kind)
+        with precision(bits_of(finer.digits)):
+            difference = abs(arb(switch.midpoint) - arb(other.midpoint))
+        if not alike or difference > PROMISED * finer.end:
+            return min(switch.time, other.time)
+    counts = len(motion.switches), len(finer.switches)
+    if counts[0] != counts[1]:
+        return max(motion.switches, finer.switches, key=len)[min(counts)].time
+    return None
 
 
 def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMotion:
@@ -234,7 +273,6 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMo
             if advances % 100 == 0 and sum(len(joint.switches) for joint in joints) > limit:
                 raise TooManySwitchesError(float(node.time), f"more than {limit} switches")
         by_number = {joint.number: joint for joint in joints}
-        touches = sorted(float(touch) for joint in joints for touch in joint.touches)
         numbers = range(len(problem.bars))
         return BarsMotion(
             problem=problem,
@@ -242,7 +280,6 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMo
             digits=digits,
             switches=_switches(joints),
             closed_at_start=tuple(i in by_number and by_number[i].pieces[0].state != OPEN for i in numbers),
-            touches=tuple(touches),
             joints=tuple(by_number.get(i) for i in numbers),
             up=tuple(up),
             down=tuple(down),
@@ -256,5 +293,5 @@ def _switches(joints: Sequence[Joint]) -> tuple[Switch, ...]:
         for time, state in joint.switches:
             midpoint = time.mid().str(40, radius=False)
             kind = KINDS.get(state, state)
-            switches.append(Switch(float(time), str(joint.number), kind, midpoint, radius_of(time)))
+            switches.append(Switch(float(time), str(joint.number), kind, midpoint))
     return tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner))))

@@ -20,9 +20,7 @@ from dataclasses import dataclass, field
 from flint import arb, ctx
 
 from fem_reference.events.bars_model import BarJoint, BarsProblem, Drive
-from fem_reference.events.enclosure import is_blank, radius_of
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
-from fem_reference.events.switches import LostDigitsError
 
 OPEN, CLOSED, STICKS, FORWARDS, BACKWARDS = "open", "closed", "sticks", "slips forwards", "slips backwards"
 """States of a joint; it slips forwards where its upper face moves towards + over the lower one."""
@@ -70,7 +68,7 @@ class Arrival:
         finest = abs(time).mid() * arb(2) ** (-ctx.prec // 2)
         while self.piece + 1 < len(self.wave.pieces):
             ahead = self.wave.pieces[self.piece + 1].start + self.delay - time
-            if not (ahead.contains(0) or ahead.mid() <= finest):
+            if ahead.mid() > finest:
                 break
             self.piece += 1
             arrived = True
@@ -126,13 +124,11 @@ class Joint:
     admittance_above: arb  # 1 / z [m/(Pa s)]
     admittance_below: arb
     static: arb  # force in which the waves have no part [Pa]
-    scale: arb  # of the openings [m]
     time: arb = field(default_factory=lambda: arb(0))
     opening: arb = field(default_factory=lambda: arb(0))  # y or r at that time [m]
     force: arb = field(default_factory=lambda: arb(0))  # T at that time, of a frictional spring [Pa]
     pieces: list[JointPiece] = field(default_factory=list)
     switches: list[tuple[arb, str]] = field(default_factory=list)  # instant and new state
-    touches: list[arb] = field(default_factory=list)  # instants at which a switch is neither proven nor excluded
 
     @property
     def mobility(self) -> arb:
@@ -166,7 +162,7 @@ class Joint:
                 self.leaving_down.append(self.time, (below - change * self.admittance_below).without_noise())
         if before is not None and state != before:
             self.switches.append((self.time, state))
-        remainder = earliest((self.above, self.below), end) - self.time
+        remainder = (earliest((self.above, self.below), end) - self.time).mid()
         self._go_on(piece, remainder, self._watched(piece, relative))
         self.leaving_up.known_until = self.time
         if self.leaving_down is not None:
@@ -174,7 +170,7 @@ class Joint:
 
     def _contact_state(self, relative: ExponentialSum) -> str:
         """Closed or open just after now; where nothing moves it stays as it was, at first open."""
-        if not is_blank(self.opening):
+        if self.opening != 0:
             return CLOSED if self.opening < 0 else OPEN
         sign = relative.first_sign()
         if sign == 0:
@@ -187,8 +183,7 @@ class Joint:
             return STICKS
         strength = arb(self.law.strength)
         for direction, state in ((1, BACKWARDS), (-1, FORWARDS)):  # of the force, against which it slips
-            reserve = strength - self.force * direction
-            if not self.rigid and not (is_blank(reserve) or reserve < 0):
+            if not self.rigid and self.force * direction < strength:
                 continue
             slip_rate = relative.plus(self.mobility * strength * direction) * -direction
             sign = slip_rate.without_noise().first_sign()
@@ -200,11 +195,11 @@ class Joint:
         """The functions of a state, of the relative velocity K that the arriving waves would have without a force."""
         nothing = ExponentialSum(relative.rates)
         if state == OPEN:
-            return JointPiece(self.time, state, nothing, relative.integral(self.opening).without_noise())
+            return JointPiece(self.time, state, nothing, relative.integral(self.opening).without_noise(True))
         if state == CLOSED and self.rigid:
-            return JointPiece(self.time, state, (relative * (-1 / self.mobility)), nothing)
+            return JointPiece(self.time, state, relative * (-1 / self.mobility), nothing)
         if state == CLOSED:
-            gap = relative.relaxed(self.stiffness * self.mobility, self.opening).without_noise()
+            gap = relative.relaxed(self.stiffness * self.mobility, self.opening).without_noise(True)
             return JointPiece(self.time, state, gap * -self.stiffness, gap)
         if state == STICKS:
             if self.rigid:
@@ -222,44 +217,39 @@ class Joint:
         return 1 if state == BACKWARDS else -1
 
     def _watched(self, piece: JointPiece, relative: ExponentialSum) -> list[ExponentialSum]:
-        """The functions of which one falls through zero where the state ends."""
+        """The functions, of the size of velocities or for a gap of lengths, of which one falls where the state ends."""
         if piece.state == OPEN:
             return [piece.opening]
         if piece.state == CLOSED:
-            return [piece.force if self.rigid else piece.opening * -1]
+            return [relative * -1 if self.rigid else piece.opening * -1]
         strength = arb(self.law.strength)
         if piece.state == STICKS:
             if math.isinf(self.law.strength):
                 return []
-            return [(piece.force * sign).plus(strength) for sign in (-1, 1)]
+            return [((piece.force * sign).plus(strength) * self.mobility).without_noise() for sign in (-1, 1)]
         direction = self._direction(piece.state)
         return [(relative.plus(self.mobility * strength * direction) * -direction).without_noise()]
 
     def _go_on(self, piece: JointPiece, remainder: arb, watched: Sequence[ExponentialSum]) -> None:
         """Advance to the first fall of a watched function, or by the remainder."""
-        finest = arb(2) ** (-ctx.prec // 3)
+        of_gap = piece.state == OPEN or (piece.state == CLOSED and not self.rigid)
         elapsed = remainder
         switching = -1
         for number, function in enumerate(watched):
-            near: list[arb] = []
-            fall = function.first_fall(elapsed.upper(), near)
-            self.touches += [self.time + s for s in near if s > remainder * finest]  # the start itself is none
+            fall = function.first_fall(elapsed, of_gap)
             if fall is not None:
                 switching = number
-                if elapsed - fall.at > finest * remainder:
-                    elapsed = fall.at
-        self.time += elapsed
-        self.opening = piece.opening(elapsed)
+                elapsed = min(elapsed, fall)
+        self.time = (self.time + elapsed).mid()
+        self.opening = piece.opening(elapsed).mid()
         if piece.state in (OPEN, CLOSED):
-            closed = piece.state == CLOSED
-            if switching >= 0 or is_blank(self.opening) or bool(self.opening < 0) != closed:
+            none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
+            if none or bool(self.opening < 0) != (piece.state == CLOSED):
                 self.opening = arb(0)
         elif not self.rigid:
-            self.force = piece.force(elapsed)
+            self.force = piece.force(elapsed).mid()
             if piece.state == STICKS and switching >= 0:
                 self.force = arb(self.law.strength) * (1, -1)[switching]
-        if radius_of(self.opening) > self.scale * finest:
-            raise LostDigitsError(float(self.time), "the switches have cost most of the digits")
 
 
 def earliest(arrivals: Sequence[Arrival], end: arb) -> arb:
@@ -292,23 +282,22 @@ def nodes_of(problem: BarsProblem, end: float) -> tuple[list[Node | Joint], list
     for bar in bars:
         start = ExponentialSum.polynomial(rates, [arb(bar.velocity) / 2])
         for waves in (up, down):
-            waves.append(Wave([WavePiece(-bar.travel, start)], arb(0)))
+            waves.append(Wave([WavePiece(-bar.travel.mid(), start)], arb(0)))
     nodes: list[Node | Joint] = []
-    scale = rates.velocity * arb(end)
     for j, (bar, law) in enumerate(zip(bars, problem.joints, strict=True)):
-        above = Arrival(down[j], bar.travel)
+        above = Arrival(down[j], bar.travel.mid())
         if law is None:
             nodes.append(Node((above,), up[j], arb(0)))
             continue
         if j:
-            below = Arrival(up[j - 1], bars[j - 1].travel)
+            below = Arrival(up[j - 1], bars[j - 1].travel.mid())
         else:
             half_space = math.isfinite(problem.base_impedance)
             below = driven(rates, problem.base, arb(1 if half_space else 0.5), problem.fall / 2)
         admittance = 1 / bar.impedance
         lower = down[j - 1] if j else None
         static = problem.static_force(j)
-        joint = Joint(j, law, above, below, up[j], lower, admittance, problem.mobility(j) - admittance, static, scale)
+        joint = Joint(j, law, above, below, up[j], lower, admittance, problem.mobility(j) - admittance, static)
         if law.law == "unilateral" and not problem.settled:
             joint.opening = arb(law.gap)
         elif law.law == "unilateral" and not joint.rigid:
@@ -316,5 +305,5 @@ def nodes_of(problem: BarsProblem, end: float) -> tuple[list[Node | Joint], list
         joint.force = static
         nodes.append(joint)
     pressure = driven(rates, problem.top, arb(1))
-    nodes.append(Node((Arrival(up[-1], bars[-1].travel), pressure), down[-1], -1 / bars[-1].impedance))
+    nodes.append(Node((Arrival(up[-1], bars[-1].travel.mid()), pressure), down[-1], -1 / bars[-1].impedance))
     return nodes, up, down

@@ -147,6 +147,16 @@ def recorded(instants: Sequence[float], values: Sequence[float]) -> Drive:
     return (*pieces, DrivePiece(instants[-1]))
 
 
+def accelerated(instants: Sequence[float], accelerations: Sequence[float]) -> Drive:
+    """The velocity of a record of accelerations, which is linear between its rows and zero before and after them."""
+    pieces = []
+    velocity = 0.0
+    for (start, a), (end, next_a) in itertools.pairwise(zip(instants, accelerations, strict=True)):
+        pieces.append(DrivePiece(start, (velocity, a, (next_a - a) / (end - start) / 2)))
+        velocity += (a + next_a) / 2 * (end - start)
+    return (*pieces, DrivePiece(instants[-1], (velocity,)))
+
+
 @dataclass(frozen=True)
 class BarsProblem:
     """Bars from the base upwards, unstrained at t = 0, when all loads come on.
@@ -226,4 +236,5 @@ class BarsProblem:
         sizes = [abs(bar.velocity) for bar in self.bars] + [abs(self.gravity) * end]
         sizes += [float(self.static_force(0)) / z]
         sizes += [piece.size for piece in self.base] + [piece.size / z for piece in self.top]
-        return Rates(distinct(values), arb(max(sizes) or 1.0), arb(end))
+        travel = arb(min(float(bar.travel) for bar in self.bars))
+        return Rates(distinct(values), arb(max(sizes) or 1.0), travel, arb(end))

@@ -84,9 +84,7 @@ def polynomial(coefficients: list[arb], end: arb) -> Smooth:
     return local
 
 
-def first_fall(
-    function: Smooth, end: arb, touches: list[arb] | None = None, stop_in_noise: bool = False
-) -> Fall | None:
+def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, floor: arb | None = None) -> Fall | None:
     """The first point in (0, end] at which a function falls through zero, None if it does not.
 
     Parameters
@@ -98,8 +96,8 @@ def first_fall(
     touches
         Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
         crossing can be neither proven nor excluded; they count as none.
-    stop_in_noise
-        Take an interval for such a point as soon as the function changes less in it than its value is uncertain.
+    floor
+        Size below which the function counts as zero, and as no crossing.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
     pending = [(arb(0), end)]
@@ -120,9 +118,8 @@ def first_fall(
                 return _root(function, low, high) if falls else Fall(middle + ball(half), True)
             if not falls and touches is not None:
                 touches.append(middle)
-        elif stop_in_noise and value.contains(0) and (abs(slope) + change) * half < value.rad():
-            if touches is not None:
-                touches.append(middle)
+        elif floor is not None and abs(value) + (abs(slope) + change) * half < floor:
+            continue
         else:
             pending += [(middle, high), (low, middle)]
     return None

@@ -1,28 +1,36 @@
-"""Sums of exponentials times polynomials in ball arithmetic, f(s) = Re sum of Q_r(s) exp(r s), and where one falls.
+"""Sums of exponentials times polynomials in many digits, f(s) = Re sum of Q_r(s) exp(r s), and where one falls.
 
 Waves in bars with springs between them are such functions: a rate is zero, the decay rate -kappa of a spring against
 the bars that it joins, or i w of a sine that drives them. All functions of one motion share a table of rates, so that
 terms of the same rate are added and cancel.
+
+The coefficients are rounded to numbers without a radius: from echo to echo the balls of such sums, whose terms cancel,
+grow by many digits where their functions lose none. What a motion is off is seen from one in more digits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
-from flint import acb, acb_poly, arb, arb_poly, ctx
+from flint import acb, acb_poly, arb, arb_poly
 
-from fem_reference.events.enclosure import Fall, Local, ball, first_fall, is_blank
+from fem_reference.events.enclosure import first_fall, polynomial
 
 Rate = arb | acb
 Polynomial = arb_poly | acb_poly
-NOISE_BITS = 100
-"""Bits, of the size of the velocities, below which a coefficient that may be zero counts as zero."""
-SPARE_BITS = 20
-"""Bits beyond the precision below which a coefficient counts as zero even if it is none."""
-
-BISECTIONS = 40
-"""Quarters in which the reach of a derivative's sign is sought."""
+NEGLIGIBLE_BITS = 80
+"""Bits, of the size of the velocities, below which a coefficient counts as zero: bars that touch at rest, whose
+contacts would otherwise open and close in turns of no size and at the cost of all digits."""
+STRETCH = 2.0
+"""Time over which a function is taken as a power series, over that in which its fastest exponential decays."""
+ORDER = 48
+"""Terms of that series; 2^48 / 48! = 2e-47."""
+HALVINGS = 16
+"""Doublings by which the intervals of the search grow behind a zero at its start."""
+NEWTON_STEPS = 4
+"""Steps in which a root of the series becomes one of the function."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +39,7 @@ class Rates:
 
     values: tuple[Rate, ...]  # rates [1/s]; the first is zero
     velocity: arb  # size of the velocities [m/s]
+    travel: arb  # shortest time of a wave along a bar [s]
     end: arb  # last instant [s]
 
     def index(self, rate: Rate) -> int:
@@ -45,6 +54,21 @@ class Rates:
             if isinstance(value, acb) == isinstance(rate, acb) and value.overlaps(rate):
                 return number
         raise LookupError(f"rate: must be in the table, got {rate}")
+
+    @cached_property
+    def negligible(self) -> arb:
+        """Velocity that counts as zero [m/s]."""
+        return (self.velocity * arb(2) ** -NEGLIGIBLE_BITS).mid()
+
+    @cached_property
+    def negligible_length(self) -> arb:
+        """Length that counts as zero [m]."""
+        return (self.negligible * self.travel).mid()
+
+    @cached_property
+    def fastest(self) -> arb:
+        """Greatest size of a derivative over its function [1/s]."""
+        return max([1 / self.travel, *(abs(rate) for rate in self.values)], key=float).mid()
 
     def unit(self, number: int) -> arb:
         """Size of a derivative of a term over the term [1/s]."""
@@ -138,18 +162,16 @@ class ExponentialSum:
         terms[own] = terms[own] + arb_poly([start - particular(arb(0))])
         return ExponentialSum(self.rates, terms)
 
-    def without_noise(self) -> ExponentialSum:
-        """The function without the terms that rounding has left of what cancels, and without those far below it."""
+    def without_noise(self, integrated: bool = False) -> ExponentialSum:
+        """The function, rounded, without the terms that are negligible beside the velocities, or their integrals."""
+        size = self.rates.negligible_length if integrated else self.rates.negligible
         terms: dict[int, Polynomial] = {}
         for number, Q in self.terms.items():
             unit = self.rates.unit(number)
-            uncertain = self.rates.velocity * arb(2) ** -NOISE_BITS
-            negligible = self.rates.velocity * arb(2) ** -(ctx.prec + SPARE_BITS)
+            negligible = size
             coefficients = Q.coeffs()
             for k, c in enumerate(coefficients):
-                if abs(c) < negligible or (c.contains(0) and abs(c) < uncertain):
-                    coefficients[k] = arb(0)
-                uncertain *= unit
+                coefficients[k] = arb(0) if abs(c) < negligible else c.mid()
                 negligible *= unit
             cleaned = type(Q)(coefficients)
             if cleaned.length():
@@ -157,55 +179,68 @@ class ExponentialSum:
         return ExponentialSum(self.rates, terms)
 
     def first_sign(self) -> int:
-        """Sign just after zero, 0 for the zero function."""
+        """Sign just after zero of a velocity, 0 for the zero function."""
         function = self
+        negligible = self.rates.negligible
         for _ in range(sum(2 * Q.length() for Q in self.terms.values())):
             value = function(arb(0))
-            if not is_blank(value):
+            if abs(value) > negligible:
                 return 1 if value > 0 else -1
             function = function.derivative()
+            negligible *= self.rates.fastest
         return 0
 
-    def first_fall(self, end: arb, touches: list[arb] | None = None) -> Fall | None:
+    def first_fall(self, end: arb, integrated: bool = False) -> arb | None:
         """The first s in (0, end] at which the function, positive just after zero, falls through it, or None.
 
-        See `enclosure.first_fall`.
+        Its size is that of velocities, or of their integrals; what is negligible beside them is no crossing.
         """
         if not self:
             return None
+        end = end.mid()
+        floor = self.rates.negligible_length if integrated else self.rates.negligible
+        start = arb(0)
+        flat = bool(abs(self(start)) < floor)
+        while start < end:
+            here = self.shifted(start).without_noise(integrated)
+            rates = [abs(self.rates.values[number]) for number in here.terms if number]
+            length = (end - start).mid()
+            if rates:
+                length = min(length, (STRETCH / max(rates)).mid())
+            if flat:  # a zero of a high order at the start, beside which bounds over the whole length say nothing
+                length = min(length, max(start, (length * arb(2) ** -HALVINGS).mid()))
+            # as one power series: its terms have cancelled, which those of polynomials and exponentials do in no ball
+            fall = first_fall(polynomial(here.series(), length), length, floor=floor)
+            if fall is not None:
+                return self._polished((start + fall.at).mid())
+            start = (start + length).mid()
+        return None
+
+    def series(self) -> list[arb]:
+        """Coefficients of the power series about zero, as many as `ORDER` and those of polynomials."""
+        total = arb_poly([])
+        for number, Q in self.terms.items():
+            if not number:
+                total += Q
+                continue
+            rate = self.rates.values[number]
+            powers = [type(rate)(1)]
+            for k in range(1, ORDER):
+                powers.append(powers[-1] * rate / k)
+            product = (Q * type(Q)(powers)).coeffs()[:ORDER]
+            total += arb_poly([c.real if isinstance(c, acb) else c for c in product])
+        return list(total.coeffs())
+
+    def _polished(self, root: arb) -> arb:
+        """A root of the series as one of the function, by Newton's method as far as that changes it little."""
         slope = self.derivative()
-        bend = slope.derivative()
-        start = self._positive_until(end)
-        near: list[arb] = []
-
-        def local(middle: arb, half: arb) -> Local:
-            now = middle + start
-            return Local(self(now), slope(now), bend(now + ball(half)))
-
-        fall = first_fall(local, (end - start).mid(), near, stop_in_noise=True)
-        if touches is not None:
-            touches += [start + s for s in near]
-        return None if fall is None else Fall(fall.at + start, fall.grazing)
-
-    def _positive_until(self, end: arb) -> arb:
-        """A point up to which a function that is zero at zero is positive by the first derivative that is not.
-
-        Below it the function is smaller than its rounding, so that no bisection could tell.
-        """
-        derivative = self
-        for _ in range(sum(2 * Q.length() for Q in self.terms.values())):
-            value = derivative(arb(0))
-            if not is_blank(value):
+        change = self.rates.travel * arb(2) ** -NEGLIGIBLE_BITS
+        for _ in range(NEWTON_STEPS):
+            step = self(root) / slope(root)
+            if not abs(step) < change:
                 break
-            derivative = derivative.derivative()
-        if derivative is self or not value > 0:
-            return arb(0)
-        reach = (end / 4).mid()
-        for _ in range(BISECTIONS):
-            if derivative(reach / 2 + ball(reach / 2)) > 0:
-                return reach
-            reach = (reach / 4).mid()
-        return arb(0)
+            root = (root - step).mid()
+        return root
 
 
 def _particular(G: Polynomial, rate: Rate) -> Polynomial:

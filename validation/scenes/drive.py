@@ -104,6 +104,17 @@ def read_signal(path: Path, at: str) -> Signal:
     InputError
         The file cannot be read, its header is another, or its instants do not increase.
     """
+    return partial(recorded, *read_record(path, at))
+
+
+def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
+    """Read the instants of a record, its values, and how often these were derived from a displacement.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, its header is another, or its instants do not increase.
+    """
     names, table = read_table(path)
     allowed = ("velocity", "acceleration") if at == "base" else ("pressure",)
     if len(names) != 2 or names[1] not in allowed:
@@ -113,7 +124,7 @@ def read_signal(path: Path, at: str) -> Signal:
         raise InputError("must hold at least two rows of finite numbers", source=path, value=f"{len(table)} rows")
     if np.any(np.diff(table[:, 0]) <= 0):
         raise InputError("time must increase from row to row", source=path, value="another order")
-    return partial(recorded, table[:, 0], table[:, 1], ORDERS[names[1]])
+    return table[:, 0], table[:, 1], ORDERS[names[1]]
 
 
 def recorded(instants: Array, values: Array, order: int, time: Array) -> Parts:

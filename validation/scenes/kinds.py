@@ -87,7 +87,9 @@ class SceneTables(Section):
         wanted, other = (OF_COLUMN, OF_BLOCK) if self.column is not None else (OF_BLOCK, OF_COLUMN)
         for field in other:
             if given[field] is not None:
-                raise ValueError(f"{field}: does not go {'with' if self.column else 'without'} column, got a table of it")
+                raise ValueError(
+                    f"{field}: does not go {'with' if self.column else 'without'} column, got a table of it"
+                )
         for field in wanted:
             if given[field] is None and not (field == "input" and self._moves_alone()):
                 raise ValueError(f"{field}: is required, got nothing")
