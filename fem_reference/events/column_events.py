@@ -14,13 +14,15 @@ is zero in all derivatives, as those of blocks in common flight, carry no force;
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_poly
 from numpy.typing import ArrayLike
 
-from fem_reference.events.column_flow import OPEN, SLIPS, expand, step_length
+from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_length
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import bits_of, precision
@@ -34,8 +36,10 @@ MOST_DIGITS = 960
 """Decimal digits of the last one, where switches cost those of the ones before."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-REPORT_DIGITS = 32
-"""Decimal digits in which the motion is evaluated where it is reported."""
+REPORT_DIGITS = 28
+"""Decimal digits in which the series are summed where the motion is reported."""
+REPORT_ANGLE = 0.75
+"""Angle over which floats sum a series [rad]."""
 ROUNDING = 4 * np.finfo(float).eps
 """Part of a displacement by which floats round it."""
 
@@ -54,7 +58,7 @@ class ColumnHistory:
     stretch_velocity: Array  # rate of y [m/s]
     slip: Array  # r of each joint [m]
     states: Array  # of each joint: 0 open, 1 closed or sticks, 2 and -2 slips towards + and -
-    base_force: Array  # force of the base on the column [Pa], shape (times,)
+    face_force: Array  # force of what is below each block on it, then that on the top [Pa], shape (blocks + 1, times)
     kinetic: Array  # kinetic energy [J/m2], shape (times,)
     strain: Array  # strain energy of the blocks [J/m2]
     springs: Array  # energy of the joints [J/m2]
@@ -71,6 +75,11 @@ class ColumnHistory:
     def velocity(self) -> Array:
         """Mean of the rates of the faces of each block [m/s]."""
         return (self.foot_velocity + self.top_velocity) / 2
+
+    @property
+    def base_force(self) -> Array:
+        """Force of the base on the column [Pa]; in shear minus the shear stress."""
+        return np.asarray(self.face_force[0])
 
     @property
     def gap(self) -> Array:
@@ -118,7 +127,9 @@ class ColumnMotion(ProvenMotion):
         model = self.model
         u = np.empty((model.size, len(t)))
         v = np.empty((model.size, len(t)))
-        base = np.empty((2, len(t)))
+        a = np.empty((model.size, len(t)))
+        base = np.empty((3, len(t)))
+        pressure = np.empty(len(t))
         contacts = len(model.contacts)
         stretch = np.empty((contacts, len(t)))
         reference = np.zeros((contacts, len(t)))
@@ -131,22 +142,19 @@ class ColumnMotion(ProvenMotion):
                 node = self.nodes[index]
                 rows = np.flatnonzero(begun == index)
                 last = float(arb(float(t[rows].max())) - node.start.time)
-                length = min(step_length(model, node.states, node.forces), max(last, 1e-30) * (1 + 1e-9))
+                longest = step_length(model, node.states, node.forces)
+                length = min(longest, max(last, 1e-30) * (1 + 1e-9))
                 segment = expand(model, node.states, node.start, node.forces, length)
-                shares = [(arb(moment) - node.start.time) / arb(length) for moment in t[rows].tolist()]
-                count = len(segment.terms)
-                powers = [_powers(share, count) for share in shares]
-                P = arb_mat([list(row) for row in zip(*powers, strict=True)])
-                slopes = arb_mat([[k * power[k - 1] if k else arb(0) for power in powers] for k in range(count)]) * (
-                    1 / arb(length)
-                )
-                U = arb_mat([list(row) for row in zip(*segment.terms, strict=True)])
-                u[:, rows] = _floats(U * P)
-                v[:, rows] = _floats(U * slopes)
-                B = arb_mat([segment.base])
-                base[:, rows] = np.vstack([_floats(B * P), _floats(B * slopes)])
-                if contacts:
-                    stretch[:, rows] = _floats(arb_mat(segment.stretches) * P)
+                passed = np.array([float(arb(moment) - node.start.time) for moment in t[rows].tolist()]) / length
+                series = [segment.polynomial(i) for i in range(model.size)]
+                series += [arb_poly(part) for part in (segment.base, segment.pressure, *segment.stretches)]
+                values, rates, bends = _evaluated(series, passed, length, ANGLE * length / longest)
+                u[:, rows] = values[: model.size]
+                v[:, rows] = rates[: model.size]
+                a[:, rows] = bends[: model.size]
+                base[:, rows] = [part[model.size] for part in (values, rates, bends)]
+                pressure[rows] = values[model.size + 1]
+                stretch[:, rows] = values[model.size + 2 :]
                 for c, contact in enumerate(model.contacts):
                     state = node.states[c]
                     states[c, rows] = state
@@ -160,28 +168,27 @@ class ColumnMotion(ProvenMotion):
                         reference[c, rows] = float(node.start.references[c])
                 error = float(node.error.upper()) * np.exp(model.bounds.soft * length / 2)
                 radius[rows] = error * reach + ROUNDING * np.abs(u[:, rows]).max(axis=0)
-        return self._history(t, u, v, base, stretch, reference, travel, states, radius)
+        motion = u, v, a
+        return self._history(t, motion, base, pressure, (stretch, reference, travel), states, radius)
 
     def _history(
         self,
         t: Array,
-        u: Array,
-        v: Array,
+        motion: tuple[Array, Array, Array],
         base: Array,
-        stretch: Array,
-        reference: Array,
-        travel: Array,
+        pressure: Array,
+        joints: tuple[Array, Array, Array],
         states: Array,
         radius: Array,
     ) -> ColumnHistory:
+        """Put what the unknowns do into faces and joints."""
         model, problem = self.model, self.problem
+        stretch, reference, travel = joints
         shape = len(problem.blocks), len(t)
-        u = np.vstack([u, base[:1]])  # the last row is where `BASE` points to
-        v = np.vstack([v, base[1:]])
-        foot, top = (np.array([u[face] for face in faces]) for faces in zip(*model.faces, strict=True))
-        foot_velocity, top_velocity = (
-            np.array([v[face] for face in faces]) for faces in zip(*model.faces, strict=True)
-        )
+        # the last row is where `BASE` points to
+        u, v, a = (np.vstack([part, of_base]) for part, of_base in zip(motion, base, strict=True))
+        feet, tops = ([face[side] for face in model.faces] for side in (0, 1))
+        foot, top, foot_velocity, top_velocity = u[feet], u[tops], v[feet], v[tops]
         force, y, y_rate, slip, joint_states = (np.zeros(shape) for _ in range(5))
         springs, friction = np.zeros(len(t)), np.zeros(len(t))
         for c, contact in enumerate(model.contacts):
@@ -215,7 +222,7 @@ class ColumnMotion(ProvenMotion):
             stretch_velocity=y_rate,
             slip=slip,
             states=joint_states,
-            base_force=self._base_force(t, u, v, base, force),
+            face_force=self._face_force(force, (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0]),
             kinetic=kinetic.sum(axis=0),
             strain=strain.sum(axis=0),
             springs=springs,
@@ -224,25 +231,45 @@ class ColumnMotion(ProvenMotion):
             displacement_radius=radius,
         )
 
-    def _base_force(self, t: Array, u: Array, v: Array, base: Array, force: Array) -> Array:
-        """Force of the base on the column [Pa]."""
+    def _face_force(self, force: Array, acceleration: Array, pressure: Array, outflow: Array) -> Array:
+        """Force on the foot of each block, by the law of its joint or else by the momentum of what is above it [Pa]."""
         problem = self.problem
+        faces = np.empty((len(problem.blocks) + 1, len(pressure)))
+        faces[-1] = pressure
+        for i in range(len(problem.blocks) - 1, -1, -1):
+            block = problem.blocks[i]
+            if problem.joints[i] is not None:
+                faces[i] = force[i]
+            else:
+                faces[i] = faces[i + 1] + block.density * block.height * (acceleration[i] + problem.gravity)
         if problem.base == "free":
-            return np.zeros(len(t))
-        if problem.base == "transmitting":
-            return np.asarray(problem.impedance * (2 * base[1] - v[0]))
-        return force[0]
+            faces[0] = 0.0
+        elif problem.base == "transmitting":
+            faces[0] = problem.impedance * outflow
+        return faces
 
 
-def _powers(share: arb, count: int) -> list[arb]:
-    powers = [arb(1)]
-    for _ in range(count - 1):
-        powers.append(powers[-1] * share)
-    return powers
+def _evaluated(series: Sequence[arb_poly], shares: Array, length: float, angle: float) -> tuple[Array, Array, Array]:
+    """Values, rates and second derivatives in time of series in the share of a step, shape (series, shares).
 
-
-def _floats(matrix: arb_mat) -> Array:
-    return np.array([*map(float, matrix.entries())]).reshape(matrix.nrows(), matrix.ncols())
+    Floats sum a series over a small angle without loss; over more than that its terms cancel. So the step is cut into
+    parts, and balls move the series to the beginning of each.
+    """
+    results = np.empty((3, len(series), len(shares)))
+    parts = max(1, math.ceil(angle / REPORT_ANGLE))
+    numbers = np.clip(np.floor(shares * parts), 0, parts - 1).astype(int)
+    for part in np.unique(numbers).tolist():
+        rows = np.flatnonzero(numbers == part)
+        moved = arb_poly([arb(part) / parts, arb(1) / parts])
+        terms = [[float(c) for c in polynomial(moved).coeffs()] for polynomial in series]
+        coefficients = np.zeros((len(series), max(3, *map(len, terms))))
+        for row, line in zip(coefficients, terms, strict=True):
+            row[: len(line)] = line
+        powers = (shares[rows] * parts - part) ** np.arange(coefficients.shape[1])[:, None]
+        for order in range(3):
+            results[order][:, rows] = coefficients @ powers[: coefficients.shape[1]] * (parts / length) ** order
+            coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
+    return results[0], results[1], results[2]
 
 
 def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> ColumnMotion:

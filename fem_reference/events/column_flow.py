@@ -7,6 +7,7 @@ that stiff contacts lose no digits.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -52,6 +53,7 @@ class Segment:
     terms: list[list[arb]]  # of the unknowns, one list a term
     stretches: list[list[arb]]  # y of each contact [m]
     base: list[arb]  # displacement of the base [m]
+    pressure: list[arb]  # on the top [Pa]
     tail: arb  # bounds all further terms of an unknown, and three derivatives of them in the share of the step
     drive_tails: tuple[arb, arb]  # the same of the base's displacement and of the pressure
 
@@ -67,7 +69,7 @@ def active(states: Sequence[int]) -> Array:
 
 def rate_of(model: ColumnModel, states: Sequence[int]) -> float:
     """Return a bound of the rates of the motion while the contacts keep their states [rad/s]."""
-    return model.bounds.squared_rate(active(states)) ** 0.5 + model.bounds.damping
+    return math.sqrt(model.bounds.squared_rate(active(states))) + model.bounds.damping
 
 
 def step_length(model: ColumnModel, states: Sequence[int], forces: Forces) -> float:
@@ -141,7 +143,7 @@ def expand(
         factor = span * span / ((k + 1) * (k + 2))
         terms.append([a * factor for a in model.accelerations(force)])
     if not full:
-        return Segment(length, terms, stretches, base, arb("inf"), (arb("inf"), arb("inf")))
+        return Segment(length, terms, stretches, base, pressure, arb("inf"), (arb("inf"), arb("inf")))
     tails = [piece.tail(start.time, length, count - 2) for piece in forces]
     # From here on the drives add nothing: |C_(k+2)| <= (x^2 |C_k| + x (k+1) |C_(k+1)|) / ((k+1)(k+2)), x the angle.
     ratio = arb(angle) / count
@@ -149,7 +151,7 @@ def expand(
     before = max((abs(c).upper() for c in terms[-2]), default=zero)
     largest = max((last * ratio).upper(), (before * ratio * ratio * 1.1).upper())
     tail = (TAIL_SUM * arb(count) ** 3 * largest).upper()
-    return Segment(length, terms, stretches, base, tail, (tails[0].upper(), tails[1].upper()))
+    return Segment(length, terms, stretches, base, pressure, tail, (tails[0].upper(), tails[1].upper()))
 
 
 class Watch(NamedTuple):

@@ -79,9 +79,7 @@ class March:
         self.limit = limit
         contacts = model.contacts
         zero = arb(0)
-        self.start = Start(
-            zero, [zero] * model.size, [model.velocities[i] for i in range(model.size)], [zero] * len(contacts)
-        )
+        self.start = Start(zero, [zero] * model.size, [zero] * model.size, [zero] * len(contacts))
         self.states = [OPEN if model.unilateral else STICKS for _ in contacts]
         self.travels = [zero for _ in contacts]
         self.slip_starts = [zero for _ in contacts]  # reference where the present slip began
@@ -111,7 +109,7 @@ class March:
         breaks = sorted({t for course in self.courses for t in course.breaks if 0 < t < self.end})
         self.forces = self._forces_from(0.0)
         u = self.model.displacements(self._base(0))
-        self._place(arb(0), u, self.start.v)
+        self._place(arb(0), u, self.model.velocities(self._base(1)))
         self._settle(set(), recording=False)
         self.states_at_start = tuple(self.states)
         for border in [*breaks, self.end]:
@@ -241,10 +239,7 @@ class March:
     def _advance(self, segment: Segment, share: arb, whole: arb, limit: arb) -> None:
         """Move to a share of a step, or to its border where the share reaches it."""
         start, span = self.start, arb(segment.length)
-        if share >= whole:
-            time = limit
-        else:
-            time = (start.time + share * span).mid()
+        time = limit if share >= whole else (start.time + share * span).mid()
         at = (time - start.time) / span
         rest = ball(segment.tail)
         u, v = [], []

@@ -55,8 +55,8 @@ class ColumnJoint:
 class ColumnProblem:
     """A column of blocks on a base.
 
-    At t = 0 all blocks are unstrained and at zero displacement, or at rest under their weight; a face that moves as the
-    base does has its motion at once, and the other face of its block the velocity of the block.
+    At t = 0 all blocks are unstrained and at zero displacement, or at rest under their weight. Welded faces, also one
+    on the base, get one velocity at once, by impulses on them.
 
     Raises
     ------
@@ -101,11 +101,6 @@ class ColumnProblem:
             raise ValueError(f"joints[0]: must be None on a base that is {self.base}, got {self.joints[0]!r}")
         for j, joint in enumerate(self.joints):
             if joint is None:
-                if j and self.blocks[j].velocity != self.blocks[j - 1].velocity:
-                    raise ValueError(
-                        f"blocks[{j}].velocity: must be that of the block below, to which it is welded, "
-                        f"got {self.blocks[j].velocity!r}"
-                    )
                 continue
             if not (math.isfinite(joint.stiffness) and joint.stiffness > 0):
                 raise ValueError(f"joints[{j}].stiffness: must be positive and finite, got {joint.stiffness!r}")
@@ -152,7 +147,6 @@ class ColumnModel:
         self.struts: list[Strut] = []
         self.contacts: list[Contact] = []
         self.rigid_masses: list[tuple[int, arb]] = []
-        self.velocities: dict[int, arb] = {}
         weights: dict[int, arb] = {}
         previous, count = BASE, 0
         for j, (block, joint) in enumerate(zip(problem.blocks, problem.joints, strict=True)):
@@ -167,7 +161,6 @@ class ColumnModel:
             elif foot != BASE:
                 self.rigid_masses.append((foot, mass))
             for face in (foot, top):
-                self.velocities[face] = arb(block.velocity)
                 weights[face] = weights.get(face, arb(0)) - mass * arb(problem.gravity) / 2
             if joint is not None:
                 k = arb(joint.stiffness)
@@ -183,6 +176,25 @@ class ColumnModel:
         self.weights = [weights[i] for i in range(count)]
         self.impedance = arb(problem.impedance) if problem.base == "transmitting" else None
         self._factorise()
+
+    def velocities(self, base: arb) -> list[arb]:
+        """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
+        blocks = self.problem.blocks
+        by_face: dict[int, list[arb]] = {BASE: [base]}
+        for (foot, top), block in zip(self.faces, blocks, strict=True):
+            for face in {foot, top}:
+                by_face.setdefault(face, []).append(arb(block.velocity))
+        if all(speed == speeds[0] for speeds in by_face.values() for speed in speeds):
+            return [by_face[i][0] for i in range(self.size)]
+        momentum = [arb(0)] * self.size
+        for (foot, top), block in zip(self.faces, blocks, strict=True):
+            share = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
+            for face in (foot, top):
+                if face != BASE:
+                    momentum[face] = momentum[face] + share
+        if self.base_coupling is not None:
+            momentum[0] = momentum[0] - self.base_coupling * base
+        return self.accelerations(momentum)
 
     def displacements(self, base: arb) -> list[arb]:
         """Displacement of each unknown at t = 0, where the base is."""

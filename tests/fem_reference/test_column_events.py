@@ -211,6 +211,22 @@ def test_a_welded_foot_passes_a_jump_of_the_base_on() -> None:
     np.testing.assert_allclose(state.top_velocity[0], [0.0, -0.5], atol=1e-5)
 
 
+def test_welded_blocks_get_one_velocity_by_an_impulse_between_them() -> None:
+    pair = (ColumnBlock(1.0, 2500, 1e9, 1.0), ColumnBlock(2.0, 2500, RIGID, -0.2), ColumnBlock(1.0, 2500, 1e9))
+    problem = ColumnProblem(pair, (None, None, ColumnJoint(1e9, 1.0)), base="free")
+    state = solve(problem, 1e-4).at([0.0])
+    # mobilities of the faces that meet: 4 / m of the elastic one, 1 / m of the rigid one; 2 / m the other way
+    impulse = 1.2 / (4 / 2500 + 1 / 5000)
+    np.testing.assert_allclose(state.top_velocity[0], 1.0 - 4 * impulse / 2500, rtol=1e-14)
+    np.testing.assert_allclose(state.foot_velocity[1], state.top_velocity[0], rtol=1e-14)
+    np.testing.assert_allclose(state.foot_velocity[0], 1.0 + 2 * impulse / 2500, rtol=1e-14)
+    on_base = replace(problem, base="rigid", blocks=(ColumnBlock(1.0, 2500, 1e9, -1.0), *pair[:2]))
+    on_base = replace(on_base, joints=(None, ColumnJoint(1e9, 1.0), None))
+    state = solve(on_base, 1e-4).at([0.0])
+    assert state.foot_velocity[0, 0] == 0
+    np.testing.assert_allclose(state.top_velocity[0], -1.5, rtol=1e-14)
+
+
 def test_a_graze_is_named_and_not_guessed() -> None:
     # a rigid block thrown upwards under a lid that it reaches with its last velocity: both are free of forces
     height = 0.5**2 / 2 / 9.8125  # exact in floats: 0.25 / 19.625 is not, so that the miss is below 1e-17 m
@@ -244,7 +260,7 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.Monke
         ({"law": "glued"}, "law"),
         ({"base": "transmitting", "joints": (None, None)}, "impedance"),
         ({"blocks": (ColumnBlock(1.0, 1.0), ColumnBlock(1.0, -1.0))}, "blocks[1].density"),
-        ({"blocks": (ColumnBlock(1.0, 1.0), ColumnBlock(1.0, 1.0, 1e9, 2.0))}, "blocks[1].velocity"),
+        ({"blocks": (ColumnBlock(1.0, 1.0), ColumnBlock(1.0, 1.0, 1e9, math.nan))}, "blocks[1].velocity"),
     ],
 )
 def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field: str) -> None:

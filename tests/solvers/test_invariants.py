@@ -216,6 +216,7 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
     "layers": ("column",),
     "block-events": ("locked", "shaken", "opening", "landing", "sliding"),
     "bar-events": ("opening", "landing"),
+    "column-events": OF_CONTACTS,
     "dda-60": ("locked",),
     "fem-60": ("locked",),
     "bar-60": ("locked",),

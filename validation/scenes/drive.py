@@ -97,7 +97,12 @@ def cosine(size: float, frequency: float, time: Array) -> Parts:
 
 
 def read_signal(path: Path, at: str) -> Signal:
-    """Read a record; before its first and after its last row its column is zero.
+    """Read a record; before its first and after its last row its column is zero."""
+    return partial(recorded, *read_record(path, at))
+
+
+def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
+    """Return instants and values of a record, and which derivative of a displacement (of an impulse) the values are.
 
     Raises
     ------
@@ -113,7 +118,7 @@ def read_signal(path: Path, at: str) -> Signal:
         raise InputError("must hold at least two rows of finite numbers", source=path, value=f"{len(table)} rows")
     if np.any(np.diff(table[:, 0]) <= 0):
         raise InputError("time must increase from row to row", source=path, value="another order")
-    return partial(recorded, table[:, 0], table[:, 1], ORDERS[names[1]])
+    return table[:, 0], table[:, 1], ORDERS[names[1]]
 
 
 def recorded(instants: Array, values: Array, order: int, time: Array) -> Parts:
