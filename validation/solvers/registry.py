@@ -30,7 +30,6 @@ BUILT_IN = {
     "block-events": "validation.solvers.events:BlockEvents",
     "bar-events": "validation.solvers.events:BarEvents",
     "column-events": "validation.solvers.columns.events:ColumnEvents",
-||||||| 089e912
     "bars-events": "validation.solvers.columns.bars:BarsEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
     "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
