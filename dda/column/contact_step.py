@@ -19,8 +19,9 @@ contact feels its neighbours less than half as much as itself. Where all B <= 0,
 second solve on, and N contacts take N + 1 solves at most. If states changed `SWEEPS` times the number of contacts, one
 state is changed at a time (Murty 1974), which ends for every such matrix.
 
-What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments), so that
-neither stiff springs nor a long flight cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
+What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments); the
+displacements follow from these, from the base upwards. So neither stiff springs nor long steps, in which weight alone
+would move a block by g dt^2, cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
 
 The kernel of a block, `dda.contact.kernel`, is dense and knows four states and two forces a contact; `dda.stepping`'s
 loop keeps forces, gaps and states of all contacts at every step, and cuts. A column of N blocks needs neither: its
@@ -73,6 +74,7 @@ class JointLaws(NamedTuple):
     lower: Vector  # bounds of the force [Pa]
     upper: Vector
     opens: States  # 1 of a unilateral contact
+    gap: Vector  # at t = 0 [m]
 
 
 class StepNumbers(NamedTuple):
@@ -290,21 +292,20 @@ def predict(
     early = 0.5 - alpha
     late = 1.0 - numbers.delta
     fall = alpha * numbers.fall
-    u = state.u
     w = state.w
     s = state.s
     e = state.e
     we = state.we
     se = state.se
     gap = state.gap
+    state.u[0] += gg * w[0] + early * s[0]
     relaxation = blocks.relaxation
     if numbers.welded == 1:
         below = predict_welded(numbers, blocks, state, drive, step)
     else:
         below = drive.displacement[step] - drive.displacement[step - 1]
-    for i in range(numbers.welded, len(u)):
+    for i in range(numbers.welded, len(w)):
         moved = gg * w[i] + early * s[i]
-        u[i] += moved
         w[i] = gg * w[i] + late * s[i]
         moved += fall
         half = gg * we[i] + early * se[i]
@@ -320,7 +321,6 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
     alpha = numbers.alpha
     delta = numbers.delta
     fall = numbers.fall
-    u = state.u
     w = state.w
     s = state.s
     e = state.e
@@ -331,12 +331,11 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
     half_stretch = blocks.half_stretch
     relaxation = blocks.relaxation
     below = force[numbers.welded]
-    for i in range(numbers.welded, len(u)):
+    for i in range(numbers.welded, len(w)):
         above = force[i + 1]
         a = fall + mobility[i] * (below - above)
         ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
         below = above
-        u[i] += alpha * a
         w[i] += delta * a
         s[i] = a
         e[i] += alpha * ae
@@ -362,7 +361,6 @@ def predict_welded(
     if blocks.stiffness[0] == 0:
         moved = base - numbers.alpha * base_change
         predicted_speed = base_speed - numbers.delta * base_change
-    state.u[0] += (base + moved) / 2
     state.e[0] += moved - base
     state.w[0] = (base_speed + predicted_speed) / 2
     state.we[0] = predicted_speed - base_speed
@@ -381,7 +379,6 @@ def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState
     """Write the lowest block, whose foot is the base, and the force of the base on it."""
     base_change = state.s[0]
     a = top_acceleration(numbers, blocks, state, state.force[1])
-    state.u[0] += numbers.alpha * a / 2
     state.e[0] += numbers.alpha * a
     state.w[0] += numbers.delta * a / 2
     state.we[0] += numbers.delta * a
@@ -399,6 +396,23 @@ def dashpot_force(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState,
     foot += numbers.delta * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
     force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
     return force
+
+
+def place_blocks(numbers: StepNumbers, joints: JointLaws, state: ColumnState, base: float) -> None:
+    """Write the mean displacements from stretches, gaps and slips, above the base or above the lowest block."""
+    u = state.u
+    e = state.e
+    if numbers.first == 0 or numbers.welded == 1:
+        lowest = 0
+        below = base
+    else:
+        lowest = 1
+        u[0] += numbers.alpha * state.s[0]
+        below = u[0] + e[0] / 2
+    for i in range(lowest, len(u)):
+        foot = below + (state.gap[i] - joints.gap[i]) + state.slip[i]
+        u[i] = foot + e[i] / 2
+        below = foot + e[i]
 
 
 def accept_contacts(joints: JointLaws, first: int, state: ColumnState, work: ColumnWork) -> int:
@@ -471,6 +485,7 @@ def make_column_steps(
         correct(numbers, blocks, state)
         solves[step] = count
         switches[step] = accept_contacts(joints, first, state, work)
+        place_blocks(numbers, joints, state, drive.displacement[step])
         if len(energies) > 0:
             for k in range(STORED_NOW, STORED_NOW + SUMS):
                 energies[step, k] = energies[step - 1, k]

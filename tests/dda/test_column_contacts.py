@@ -590,6 +590,22 @@ def test_a_column_that_starts_settled_stays_there() -> None:
     assert result.step_switches.sum() == 0
 
 
+@pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e18, math.inf])
+@pytest.mark.parametrize("step", [1e-9, 1e-3, 1.0, 1e6])
+def test_neither_stiff_contacts_nor_long_steps_cost_digits(stiffness: float, step: float) -> None:
+    """Rigid, soft and stiff blocks at rest: in a step of 1 s the weight alone would move them by ten metres."""
+    column = unilateral(layers([1.0] * 6, [2500.0] * 6, [1e9, 1e12, RIGID] * 2, [0.0] * 6), [stiffness] * 6, [0.0] * 6)
+    scheme = Scheme(0.5, 1.0, 1.0, step, "consistent")
+    names = ["displacement", "contact_pressure", "stress_1"]
+    result = solve_contact_column(column, scheme, still(60), names, [0.5], ColumnOptions(settled=True))
+    weight = 2500 * 9.81
+    stretch = -weight * (5.5 / 1e9 + 4.5 / 1e12 + 2.5 / 1e9 + 1.5 / 1e12)
+    exact = (stretch - 21 * weight / stiffness, 6 * weight, 5.5 * weight)
+    for name, value in zip(names, exact, strict=True):
+        np.testing.assert_allclose(result.columns[name], value, rtol=1e-13)
+    assert result.step_switches.sum() == 0
+
+
 def test_undamped_average_acceleration_throws_a_stack_up_by_switching() -> None:
     """At w dt = 1.26 the stack of ten that never rests gains energy from contacts that open."""
     column = CASES["A5"].column
