@@ -84,7 +84,7 @@ def polynomial(coefficients: list[arb], end: arb) -> Smooth:
     return local
 
 
-def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> Fall | None:
+def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, floor: arb | None = None) -> Fall | None:
     """The first point in (0, end] at which a function falls through zero, None if it does not.
 
     Parameters
@@ -96,6 +96,8 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> 
     touches
         Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
         crossing can be neither proven nor excluded; they count as none.
+    floor
+        Size below which the function counts as zero, and as no crossing.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
     pending = [(arb(0), end)]
@@ -116,6 +118,8 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None) -> 
                 return _root(function, low, high) if falls else Fall(middle + ball(half), True)
             if not falls and touches is not None:
                 touches.append(middle)
+        elif floor is not None and abs(value) + (abs(slope) + change) * half < floor:
+            continue
         else:
             pending += [(middle, high), (low, middle)]
     return None

@@ -30,6 +30,7 @@ BUILT_IN = {
     "block-events": "validation.solvers.events:BlockEvents",
     "bar-events": "validation.solvers.events:BarEvents",
     "column-events": "validation.solvers.columns.events:ColumnEvents",
+    "bars-events": "validation.solvers.columns.bars:BarsEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
     "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
     "bar-60": "validation.solvers.sixty_digits.adapters:PreciseBar",

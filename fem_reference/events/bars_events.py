@@ -1,0 +1,297 @@
+"""Elastic bars on each other, exact in space and time while their joints open, close, stick and slip.
+
+The waves in the bars and the forces in the joints are pieces of exponentials times polynomials (`bars_march`). They are
+computed twice, in more digits the second time, until both agree on every switch; where rounding and switches cost all
+digits, or the pieces grow too many, the motion ends at a named horizon.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from flint import arb
+from numpy.typing import ArrayLike
+
+from fem_reference.events.bars_march import CLOSED, OPEN, Joint, JointPiece, Wave, WavePiece, nodes_of
+from fem_reference.events.bars_model import BarsProblem
+from fem_reference.events.enclosure import bits_of, precision
+from fem_reference.events.exponential_sum import ExponentialSum
+from fem_reference.events.switches import (
+    LostDigitsError,
+    Switch,
+    TooManySwitchesError,
+    TooMuchWorkError,
+)
+from fem_reference.problem.instants import instants
+from fem_reference.problem.problem import Array
+
+DIGITS = 40
+"""Decimal digits of the first computation; the second one has twice as many."""
+MOST_DIGITS = 320
+"""Decimal digits of the last one."""
+PROMISED = 1e-15
+"""Part of the end of the motion by which the instants of the switches of two computations may differ."""
+ADVANCES = 60_000
+"""Greatest number of times that a joint or an end of the column goes on."""
+KINDS = {OPEN: "opens", CLOSED: "closes"}
+
+
+@dataclass(frozen=True)
+class BarsHistory:
+    """The motion at given instants."""
+
+    time: Array  # instants [s], shape (times,)
+    mean_velocity: Array  # of each bar [m/s], shape (bars, times)
+    force: Array  # N of each joint, or T on what is above; 0 where nothing is below [Pa], shape (bars, times)
+    gap: Array  # gap y, negative where a spring is pressed, 0 of a joint that does not open [m], shape (bars, times)
+    slip: Array  # slip r, 0 of a joint that does not slip [m], shape (bars, times)
+
+
+@dataclass(frozen=True)
+class JointHistory:
+    """A joint at given instants."""
+
+    force: Array  # N, or T on what is above [Pa], shape (times,)
+    gap: Array  # y [m], shape (times,)
+    slip: Array  # r [m], shape (times,)
+
+
+@dataclass(frozen=True)
+class PointHistory:
+    """A point of a bar at given instants."""
+
+    displacement: Array  # u [m], shape (times,)
+    velocity: Array  # rate of u [m/s], shape (times,)
+    stress: Array  # compression positive, of the shear the stress on what is above [Pa], shape (times,)
+
+
+@dataclass(frozen=True)
+class BarsMotion:
+    """Exact motion of bars from t = 0 to `end`."""
+
+    problem: BarsProblem
+    end: float  # last instant [s]
+    digits: int  # decimal digits of the computation
+    switches: tuple[Switch, ...]  # of all joints in the order of time, ``corner`` being the number of the joint
+    closed_at_start: tuple[bool, ...]  # of each joint, just after t = 0; one that slips or sticks counts as closed
+    joints: tuple[Joint | None, ...]
+    up: tuple[Wave, ...]  # p of each bar, from its foot
+    down: tuple[Wave, ...]  # d of each bar, from its top
+    advances: int  # times that a joint or an end went on
+
+    def at(self, times: ArrayLike) -> BarsHistory:
+        """The motion at instants in any order.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t = instants(times, self.end)
+        bars = range(len(self.problem.bars))
+        with precision(bits_of(self.digits)):
+            velocity = np.array([[self._mean_velocity(i, arb(float(s))) for s in t] for i in bars])
+        joints = [self.joint(number, t) for number in bars]
+        rows = [np.array([getattr(joint, part) for joint in joints]) for part in ("force", "gap", "slip")]
+        return BarsHistory(t, velocity, *rows)
+
+    def joint(self, number: int, times: ArrayLike) -> JointHistory:
+        """One joint at instants in any order.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t = instants(times, self.end)
+        with precision(bits_of(self.digits)):
+            rows = np.array([self._joint_row(self.joints[number], arb(float(s))) for s in t]).reshape(len(t), 3)
+        return JointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
+
+    def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
+        """A point of a bar, its height above the foot of the bar [m], at instants in any order.
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`, or the height is not in the bar.
+        """
+        t = instants(times, self.end)
+        length = self.problem.bars[bar].length
+        if not 0 <= height <= length:
+            raise ValueError(f"height: must be from 0 to {length!r}, got {height!r}")
+        with precision(bits_of(self.digits)):
+            rows = np.array([self._point(bar, height, arb(float(s))) for s in t]).reshape(len(t), 3)
+        return PointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
+
+    @cached_property
+    def _integrals_of_waves(self) -> dict[int, list[ExponentialSum]]:
+        """The integral of each wave from its first piece on, piece by piece, by the identity of the wave."""
+        return {id(wave): _integrals(wave) for wave in (*self.up, *self.down)}
+
+    def _integral(self, wave: Wave, time: arb) -> arb:
+        """Integral of a wave from the start of its first piece [m]."""
+        piece = bisect_right(wave.pieces, time.mid(), key=_start) - 1
+        piece = max(piece, 0)
+        function = self._integrals_of_waves[id(wave)][piece]
+        return function(time - wave.pieces[piece].start)
+
+    def _mean_velocity(self, bar: int, time: arb) -> float:
+        data = self.problem.bars[bar]
+        T = data.travel
+        mean = arb(0)
+        for wave in (self.up[bar], self.down[bar]):
+            mean += (self._integral(wave, time) - self._integral(wave, time - T)) / T
+        return float(mean - self.problem.fall * time)
+
+    def _joint_row(self, joint: Joint | None, time: arb) -> tuple[float, float, float]:
+        if joint is None:
+            return 0.0, 0.0, 0.0
+        piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=_start) - 1]
+        force = float(piece.force(time - piece.start))
+        opening = float(piece.opening(time - piece.start))
+        return (force, opening, 0.0) if joint.law.law == "unilateral" else (force, 0.0, opening)
+
+    def _point(self, bar: int, height: float, time: arb) -> tuple[float, float, float]:
+        data = self.problem.bars[bar]
+        gravity = self.problem.fall
+        T = data.travel
+        x = T * arb(height) / arb(data.length)
+        displacement, stress = self.problem.static_point(bar, arb(height))
+        displacement -= gravity * time * time / 2
+        velocities = []
+        for wave, delay in ((self.up[bar], x), (self.down[bar], T - x)):
+            displacement += self._integral(wave, time - delay) - self._integral(wave, -delay)
+            velocities.append(_value(wave, time - delay))
+        up, down = velocities
+        stress += (up - down) * data.impedance
+        return float(displacement), float(up + down - gravity * time), float(stress)
+
+
+def _start(piece: JointPiece | WavePiece) -> arb:
+    return piece.start.mid()
+
+
+def _value(wave: Wave, time: arb) -> arb:
+    piece = wave.pieces[max(bisect_right(wave.pieces, time.mid(), key=_start) - 1, 0)]
+    return piece.velocity(time - piece.start)
+
+
+def _integrals(wave: Wave) -> list[ExponentialSum]:
+    integrals = []
+    value = arb(0)
+    for number, piece in enumerate(wave.pieces):
+        function = piece.velocity.integral(value)
+        integrals.append(function)
+        if number + 1 < len(wave.pieces):
+            value = function(wave.pieces[number + 1].start - piece.start)
+    return integrals
+
+
+def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000) -> BarsMotion:
+    """The exact motion of bars from t = 0 to `end` [s].
+
+    Parameters
+    ----------
+    problem
+        The bars, their joints, base and loads.
+    end
+        Last instant [s].
+    digits
+        Decimal digits of the first computation, at least 30. Twice as many are taken, up to `MOST_DIGITS`, until two
+        computations agree on all switches to `PROMISED`; the last one is returned.
+    limit
+        Greatest number of switches.
+
+    Raises
+    ------
+    ValueError
+        If `end` is not positive and finite or `digits` is below 30.
+    TooManySwitchesError
+        If there are more switches than `limit`.
+    LostDigitsError
+        If waves and switches amplify the rounding until computations differ in every number of digits.
+    TooMuchWorkError
+        If joints and ends go on more often than `ADVANCES`.
+
+    Examples
+    --------
+    >>> bars = (Bar(1.0, 1.0, 1.0, velocity=1.0), Bar(1.0, 1.0, 1.0))
+    >>> motion = solve(BarsProblem(bars, (None, BarJoint("unilateral"))), 3.0)
+    >>> motion.at([3.0]).mean_velocity
+    array([[0.],
+           [1.]])
+    """
+    if not (math.isfinite(end) and end > 0):
+        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    if digits < 30:
+        raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    motion = _solved(problem, float(end), digits, limit)
+    while motion.digits < MOST_DIGITS:
+        finer = _solved(problem, float(end), 2 * motion.digits, limit)
+        until = _agree_until(motion, finer)
+        if until is None:
+            return finer
+        motion = finer
+    raise LostDigitsError(until, f"{len(motion.switches)} switches have cost the digits")
+
+
+def _agree_until(motion: BarsMotion, finer: BarsMotion) -> float | None:
+    """None, or the instant of the first switch in which two motions differ by more than is promised [s]."""
+    for switch, other in zip(motion.switches, finer.switches, strict=False):
+        alike = (switch.corner, switch.kind) == (other.corner, other.kind)
+        with precision(bits_of(finer.digits)):
+            difference = abs(arb(switch.midpoint) - arb(other.midpoint))
+        if not alike or difference > PROMISED * finer.end:
+            return min(switch.time, other.time)
+    counts = len(motion.switches), len(finer.switches)
+    if counts[0] != counts[1]:
+        return max(motion.switches, finer.switches, key=len)[min(counts)].time
+    return None
+
+
+def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMotion:
+    """The motion in so many digits."""
+    with precision(bits_of(digits)):
+        nodes, up, down = nodes_of(problem, end)
+        joints = [node for node in nodes if isinstance(node, Joint)]
+        last = arb(end)
+        advances = 0
+        while True:
+            node = min(nodes, key=lambda node: node.time.mid())
+            if node.time.mid() >= last:
+                break
+            node.advance(last)
+            advances += 1
+            if advances > ADVANCES:
+                raise TooMuchWorkError(float(node.time), f"the joints go on more than {ADVANCES} times")
+            if advances % 100 == 0 and sum(len(joint.switches) for joint in joints) > limit:
+                raise TooManySwitchesError(float(node.time), f"more than {limit} switches")
+        by_number = {joint.number: joint for joint in joints}
+        numbers = range(len(problem.bars))
+        return BarsMotion(
+            problem=problem,
+            end=end,
+            digits=digits,
+            switches=_switches(joints),
+            closed_at_start=tuple(i in by_number and by_number[i].pieces[0].state != OPEN for i in numbers),
+            joints=tuple(by_number.get(i) for i in numbers),
+            up=tuple(up),
+            down=tuple(down),
+            advances=advances,
+        )
+
+
+def _switches(joints: Sequence[Joint]) -> tuple[Switch, ...]:
+    switches = []
+    for joint in joints:
+        for time, state in joint.switches:
+            midpoint = time.mid().str(40, radius=False)
+            kind = KINDS.get(state, state)
+            switches.append(Switch(float(time), str(joint.number), kind, midpoint))
+    return tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner))))

@@ -1,0 +1,361 @@
+"""Elastic bars by characteristics: numbers of another program, a grid of characteristics, balances and symmetries."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.bars_by_grid import bars_on_grid
+
+from fem_reference.events import bars_events
+from fem_reference.events.bars_events import BarsMotion, solve
+from fem_reference.events.bars_model import (
+    BONDED,
+    Bar,
+    BarJoint,
+    BarsProblem,
+    cosine,
+    half_sine,
+    recorded,
+    sine,
+    triangle,
+)
+from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError
+
+LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
+
+
+def bar(velocity: float = 0.0, length: float = 1.0, density: float = 1.0, modulus: float = 1.0) -> Bar:
+    return Bar(length, density, modulus, velocity)
+
+
+def opens(stiffness: float = math.inf, gap: float = 0.0) -> BarJoint:
+    return BarJoint("unilateral", stiffness, gap)
+
+
+def slips(stiffness: float, strength: float) -> BarJoint:
+    return BarJoint("frictional", stiffness, strength=strength)
+
+
+def names(motion: BarsMotion) -> list[str]:
+    return [f"{switch.corner}{LETTERS[switch.kind]}" for switch in motion.switches]
+
+
+def times(motion: BarsMotion) -> list[float]:
+    return [switch.time for switch in motion.switches]
+
+
+UNIT, HALF_SINE = bar(), half_sine(1.0, 1.0)
+B1 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(), opens(gap=0.3), opens(gap=0.3)))
+B2 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(5), opens(5), opens(5)))
+B3 = BarsProblem((bar(1.0), bar(length=2.0)), (None, opens()))
+B4 = BarsProblem((bar(1.0), bar(density=2.0, modulus=8.0)), (None, opens()))
+B5 = replace(B4, joints=(None, opens(10)))
+B6 = BarsProblem((bar(-1.0), bar(-1.0)), (opens(10), opens(10, 0.05)), gravity=0.05)
+B8 = BarsProblem((UNIT,) * 4, (None, opens(50), opens(50), opens(50)), top=HALF_SINE)
+B8_RIGID = replace(B8, joints=(None, opens(), opens(), opens()))
+B9 = BarsProblem((bar(length=0.25), bar(length=2.75)), (None, opens()), top=triangle(1.0, 1.0))
+B10 = BarsProblem((bar(length=2.75), bar(length=0.25)), (opens(), opens()), top=HALF_SINE)
+B11 = BarsProblem((Bar(1.0, 2500.0, 1e9),) * 6, (opens(1e10),) * 6, top=half_sine(2e6, 0.004))
+LAYER = bar(length=0.25)
+D2 = BarsProblem(
+    (LAYER, bar(length=6.0)), (slips(math.inf, 0.5), slips(math.inf, 0.4)), base_impedance=1, top=HALF_SINE
+)
+D3 = BarsProblem(
+    (LAYER, LAYER, bar(length=6.0)), (slips(10, 0.3), slips(10, 0.4), slips(10, 0.5)), base_impedance=1, top=HALF_SINE
+)
+D4 = BarsProblem(
+    (bar(length=0.5, density=2.0, modulus=8.0), bar(length=6.0)),
+    (slips(math.inf, 0.6), slips(20, 0.7)),
+    base_impedance=1,
+    top=HALF_SINE,
+)
+
+# problem and end; switches; the first of their times; mean velocities at the end: waves and impulses in 30 digits,
+# compared by another program with a grid of characteristics
+NUMBERS = {
+    "B1": (B1, 6.0, "2C 1O 3C 2O 3O", [1.3, 2, 2.6, 3.3, 4.6], [0, 0, 0, 1]),
+    "B2": (
+        B2,
+        6.0,
+        "2C 3C 1O 2O 3O",
+        [1, 2, 2.2732050806379, 3.431192768404, 4.375314148121],
+        [-0.0088908684872307, -0.006232130608299, 0.022724961596268, 0.99239803749926],
+    ),
+    "B3": (B3, 3.0, "", [], [0, 0.5]),
+    "B4": (B4, 5.0, "1O", [2], [-7 / 25, 16 / 25]),
+    "B5": (B5, 5.0, "1O", [2.0896018911888], [-0.29289614683987, 0.64644807341994]),
+    "B6": (
+        B6,
+        8.0,
+        "1C 1O 1C 0O 1O 1C 1O",
+        [
+            *(1.0800575458759, 3.3395337131999, 3.3993096058823, 4.3355176541904),
+            *(5.0872117073551, 5.2090786062119, 5.5030561927467),
+        ],
+        [0.71769874840517, 0.90027438673777],
+    ),
+    "B8": (
+        B8,
+        8.0,
+        "3C 2C 1C 3O 2O 1O",
+        [1, 2, 3, 3.088262111453, 4.1068282488408, 5.0439908230171],
+        [-0.63687650365105, -0.00035357954434613, 0.00030410471899135, 0.00030620610882573],
+    ),
+    "B8 rigid": (B8_RIGID, 8.0, "3C 2C 1C 1O", [1, 2, 3, 5], [-2 / math.pi, 0, 0, 0]),
+    "B9": (B9, 5.0, "1C 1O", [2.75, 3.25], [-1.5, -1 / 22]),
+    "B10": (
+        B10,
+        10.0,
+        "1C 0C 1O 0O",
+        [0.25, 3, 6.5, 9],
+        [0.067804223377828, 8 / math.pi * math.sin(math.pi / 4)],
+    ),
+    "B11": (
+        B11,
+        0.04,
+        "5C 4C 3C 5O 2C 4O 1C 3O 0C 2O 2C 0O 3C 1O 4C 2O 5C 3O 4O 5O",
+        # the wave is at joint 2 after 4 h / c; the other program sees it there 3e-10 s later, its rise being so flat
+        [0.00158113883008, 0.00316227766017, 0.00474341649025, 0.00583845924665, 0.00632455532034, 0.00753320807033],
+        [0.000920591085702, 0.00151467684352, 0.00216542188847, 0.00292596405491, 0.116243920874, 1.95596132875],
+    ),
+    "D2": (D2, 9.0, "1- 1K", [6.1309898804345, 6.8690101195655], [-0.57652712700713]),
+    "D3": (
+        D3,
+        9.0,
+        "2- 1- 0- 2K 1K 0K",
+        [6.2177849959401, 6.4817944599343, 6.7401543797826, 6.7951672353009, 7.1218831478621, 7.4938504547135],
+        [-0.21325709881936, -0.13408109261095, -0.37257488314931],
+    ),
+    "D4": (D4, 9.0, "1- 1K", [6.1847100499456, 6.8174778478526], [-0.46904229283911]),
+}
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_the_bars_move_as_another_program_computed(name: str) -> None:
+    problem, end, order, instants, values = NUMBERS[name]
+    motion = solve(problem, end)
+    assert " ".join(names(motion)) == order
+    assert times(motion)[: len(instants)] == pytest.approx(instants, rel=3e-12 if name == "B11" else 5e-14)
+    state = motion.at([end])
+    if name.startswith("D"):
+        moved = [slip for slip in state.slip[:, 0] if slip]
+        assert moved == pytest.approx(values, rel=5e-14)
+    else:
+        assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
+    assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
+
+
+def test_velocities_and_displacements_on_the_way() -> None:
+    expected = [-0.0088908684872307, 0.10889086621996, 0.54983429252364, 0.35016570974363]
+    assert solve(B2, 6.0).at([3.0]).mean_velocity[:, 0] == pytest.approx(expected, rel=5e-14)
+    motion = solve(B6, 8.0)
+    points, weights = np.polynomial.legendre.leggauss(
+        40
+    )  # fronts stand at t = 8 s where the integrand is smooth enough
+    means = [
+        sum(w / 2 * motion.point(i, (1 + x) / 2, [8.0]).displacement[0] for x, w in zip(points, weights, strict=True))
+        for i in range(2)
+    ]
+    assert means == pytest.approx([2.9325529968093, 3.3327264197589], rel=2e-4)
+
+
+def test_a_stop_is_the_limit_of_springs() -> None:
+    closed_form = 1.9279387145
+    rigid = replace(B11, joints=(opens(),) * 6)
+    assert solve(rigid, 0.04).at([0.04]).mean_velocity[5, 0] == pytest.approx(closed_form, rel=1e-9)
+
+
+RANDOM = range(6)
+
+
+def random_problem(seed: int) -> tuple[BarsProblem, float]:
+    """Three bars whose travel times are multiples of a sixteenth, under all that may act; and the end."""
+    random = np.random.default_rng(seed)
+    bars = []
+    for _ in range(3):
+        impedance, travel = random.uniform(0.5, 2.0), random.integers(4, 24) / 16
+        speed = random.uniform(0.5, 2.0)
+        bars.append(Bar(travel * speed, impedance / speed, impedance * speed, float(random.normal())))
+    if seed % 2:
+        joints = tuple(slips(random.uniform(2, 20), random.uniform(0.1, 0.6)) for _ in range(3))
+        return BarsProblem(tuple(bars), joints, base_impedance=1.5, base=sine(1.0, 0.7), top=half_sine(0.5, 0.8)), 5.0
+    joints = tuple(opens(random.uniform(2, 20), random.choice([0.0, 0.05])) for _ in range(3))
+    return BarsProblem(
+        tuple(bars), joints, 0.3, base=cosine(0.4, 0.5), top=recorded([0.25, 1.0, 3.0], [0, 1, 0.5])
+    ), 5.0
+
+
+def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    dt = end / steps
+    travels = [round(float(one.travel) / dt) for one in problem.bars]
+
+    def value(drive: tuple, t: float) -> float:
+        current = [piece for piece in drive if piece.start <= t + 1e-12]
+        if not current:
+            return 0.0
+        piece, s = current[-1], t - current[-1].start
+        w = 2 * math.pi * piece.turns / piece.duration
+        return np.polyval(piece.coefficients[::-1], s) + piece.sine * math.sin(w * s) + piece.cosine * math.cos(w * s)
+
+    laws = [(j.law, j.stiffness, j.gap if j.law == "unilateral" else j.strength) for j in problem.joints if j]
+    return bars_on_grid(
+        [float(one.impedance) for one in problem.bars],
+        travels,
+        [one.velocity for one in problem.bars],
+        [*laws],
+        steps,
+        dt,
+        problem.gravity,
+        lambda t: value(problem.base, t),
+        problem.base_impedance,
+        lambda t: value(problem.top, t),
+    )
+
+
+@pytest.mark.parametrize("seed", RANDOM)
+def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
+    problem, end = random_problem(seed)
+    motion = solve(problem, end)
+    assert motion.switches
+    errors = []
+    for steps in (800, 1600, 3200):
+        _, openings, means = on_grid(problem, end, steps)
+        state = motion.at([end])
+        opening = state.gap if problem.joints[0].law == "unilateral" else state.slip  # type: ignore[union-attr]
+        errors.append(
+            max(
+                np.max(np.abs(openings[:, -1] - opening[:, 0])),
+                np.max(np.abs(means - state.mean_velocity[:, 0])),
+            )
+        )
+    assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
+
+
+@pytest.mark.parametrize("seed", RANDOM[:4])
+def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
+    problem, end = random_problem(seed)
+    motion = solve(problem, end)
+    arrivals = {float(piece.start) for joint in motion.joints if joint for piece in joint.pieces}
+    edges = np.unique([*arrivals, end])
+    points, weights = np.polynomial.legendre.leggauss(12)
+    impulses = np.zeros(4)
+    for low, high in itertools.pairwise(edges):
+        inside = low + (high - low) * (1 + points) / 2
+        state = motion.at(inside.clip(0, end))
+        for number in range(3):
+            impulses[number] += (high - low) / 2 * weights @ state.force[number]
+    top = problem.top[0]
+    impulses[3] = 2 * 0.5 * 0.8 / math.pi if top.turns else 0.75 * 0.5 + 2.0 * 0.75
+    velocity = motion.at([end]).mean_velocity[:, 0]
+    for i, one in enumerate(problem.bars):
+        change = one.mass * (velocity[i] - one.velocity + problem.gravity * end)
+        assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
+
+
+def test_scaled_loads_scale_the_motion_and_keep_the_instants() -> None:
+    problem, end = random_problem(0)
+    motion = solve(problem, end)
+    larger = replace(
+        problem,
+        bars=tuple(replace(one, velocity=3 * one.velocity) for one in problem.bars),
+        joints=tuple(replace(one, gap=3 * one.gap) for one in problem.joints if one),
+        gravity=3 * problem.gravity,
+        base=cosine(1.2000000000000002, 0.5),
+        top=recorded([0.25, 1.0, 3.0], [0, 3, 1.5]),
+    )
+    scaled = solve(larger, end)
+    assert times(scaled) == pytest.approx(times(motion), rel=1e-14)
+    assert scaled.at([end]).mean_velocity == pytest.approx(3 * motion.at([end]).mean_velocity, rel=1e-13)
+
+
+def test_cut_bars_that_stay_bonded_move_as_one() -> None:
+    whole = BarsProblem((bar(-1.0, 2.0),), (opens(10),), gravity=0.05)
+    cut = BarsProblem((bar(-1.0, 0.75), bar(-1.0, 1.25)), (opens(10), BONDED), gravity=0.05)
+    one, two = solve(whole, 8.0), solve(cut, 8.0)
+    assert times(one) == pytest.approx(times(two), rel=1e-15) and one.switches
+    assert two.at([8.0]).mean_velocity[:, 0] @ [0.375, 0.625] == pytest.approx(
+        one.at([8.0]).mean_velocity[0, 0], rel=1e-14
+    )
+    above = two.point(1, 0.5, [1.0, 6.5]), one.point(0, 1.25, [1.0, 6.5])
+    for field in ("displacement", "velocity", "stress"):
+        assert getattr(above[0], field) == pytest.approx(getattr(above[1], field), rel=1e-14, abs=1e-15)
+
+
+def test_a_column_turned_over_moves_alike() -> None:
+    back = replace(B2, bars=(UNIT, UNIT, UNIT, bar(-1.0)))
+    turned = solve(back, 6.0)
+    mirrored = {(4 - int(s.corner), s.kind, round(s.time, 12)) for s in solve(B2, 6.0).switches}
+    assert {(int(s.corner), s.kind, round(s.time, 12)) for s in turned.switches} == mirrored
+
+
+def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None:
+    weighed = replace(B11, gravity=9.81, settled=True)
+    motion = solve(weighed, 0.012)
+    state = motion.at([0.0, 0.009])
+    weight = 2500 * 9.81 * np.arange(6, 0, -1)
+    assert state.force[:, 0] == pytest.approx(weight, rel=1e-14)
+    assert state.force[0, 1] == pytest.approx(weight[0], rel=1e-14)  # the pulse is there after 9.49 ms
+    foot, top = motion.point(0, 0.0, [0.0]), motion.point(5, 1.0, [0.0])
+    assert foot.displacement[0] == pytest.approx(-weight[0] / 1e10, rel=1e-14)
+    strains = (weight - 2500 * 9.81 / 2).sum() / 1e9
+    assert top.displacement[0] == pytest.approx(-weight.sum() / 1e10 - strains, rel=1e-14)
+    assert top.stress[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_bars_settle_where_a_weight_put_on_slowly_would_leave_them() -> None:
+    """A bar dropped from no height swings about the state at rest, in which another one begins."""
+    column = BarsProblem((bar(),), (opens(3.0),), gravity=0.2)
+    period = np.linspace(0.0, 40.0, 4001)
+    swing = solve(column, 40.0).point(0, 0.5, period).displacement
+    rest = solve(replace(column, settled=True), 1.0).point(0, 0.5, [0.0, 1.0]).displacement
+    assert rest[0] == pytest.approx(rest[1], rel=1e-15)
+    assert swing.mean() == pytest.approx(rest[0], rel=0.05)
+
+
+def test_a_layer_without_joints_reflects_at_its_faces() -> None:
+    layered = BarsProblem((bar(length=3.0, density=4.0), bar(length=3.0)), (None, BONDED), top=half_sine(1.0, 0.5))
+    force = solve(layered, 4.0).at([3.25]).force[1, 0]
+    assert force == pytest.approx(2 * 2 / 3, rel=1e-14)  # 2 z2 / (z1 + z2)
+
+
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [
+        (lambda: bar(length=0.0), "length"),
+        (lambda: bar(modulus=math.inf), "modulus"),
+        (lambda: bar(velocity=math.nan), "velocity"),
+        (lambda: opens(-1.0), "stiffness"),
+        (lambda: opens(gap=-0.1), "gap"),
+        (lambda: BarJoint("frictional", gap=0.1), "gap"),
+        (lambda: slips(1.0, 0.0), "strength"),
+        (lambda: BarsProblem((), ()), "bars"),
+        (lambda: BarsProblem((UNIT,), ()), "joints"),
+        (lambda: replace(B2, settled=True), "settled"),
+        (lambda: replace(B2, top=(*HALF_SINE[::-1],)), "top"),
+        (lambda: solve(B2, 0.0), "end"),
+        (lambda: solve(B2, 1.0, digits=10), "digits"),
+        (lambda: solve(B2, 1.0).at([2.0]), "times"),
+        (lambda: solve(B2, 1.0).point(0, 2.0, [0.5]), "height"),
+    ],
+)
+def test_what_is_out_of_range_is_named(make: object, field: str) -> None:
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        make()  # type: ignore[operator]
+
+
+def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(TooManySwitchesError):
+        solve(B11, 0.04, limit=3)
+    with monkeypatch.context() as context:  # two computations that never agree
+        context.setattr(bars_events, "PROMISED", -1.0)
+        with pytest.raises(LostDigitsError) as lost:
+            solve(B5, 4.0)
+        assert lost.value.time == pytest.approx(2.0896018911888, rel=1e-13)
+    monkeypatch.setattr(bars_events, "ADVANCES", 40)
+    with pytest.raises(TooMuchWorkError) as error:
+        solve(B11, 0.04)
+    assert 0.001 < error.value.time < 0.04
