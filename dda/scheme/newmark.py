@@ -21,17 +21,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from decimal import Decimal
 from itertools import islice, repeat
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.scheme.exact import Exact
-
 Array = NDArray[np.float64]
 Start = Literal["zero", "consistent"]
-Real = TypeVar("Real", float, Array, Exact)  # one mode, all unknowns at once, one mode with all digits
+Real = TypeVar("Real", float, Array, Decimal)  # one mode, all unknowns at once, one mode with all digits
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ def initial_acceleration(scheme: Scheme, F: Real) -> Real:
 
 def predictor(scheme: Scheme | StepScheme, P: Real, f: Real) -> Real:
     """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9)."""
-    return scheme.gg * P + (0.5 - scheme.alpha) * f
+    return scheme.gg * P + (1 - 2 * scheme.alpha) / 2 * f  # whole numbers: decimal ones go with no doubles
 
 
 def acceleration_corrector(F: Real, k: Real, D: Real) -> Real:
