@@ -43,10 +43,7 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
 
 
 def solve_textbook(
-    model: TwoBlockModel,
-    scheme: Scheme,
-    steps: int,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    model: TwoBlockModel, scheme: Scheme, steps: int, columns: Sequence[str] = ("displacement", "contact_pressure")
 ) -> Result:
     """Step the printed recursion from rest and return the asked columns.
 

@@ -45,16 +45,8 @@ from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_s
 from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import BaseRecord, base_displacement, base_record, driver, history_of, reached_history
-from dda.stepping.energy import (
-    ALGORITHMIC,
-    DAMPING,
-    ENERGIES,
-    GIVEN,
-    add_contact_losses,
-    bulk_loss,
-    spring_energies,
-)
+from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
+from dda.stepping.energy import ALGORITHMIC, DAMPING, ENERGIES, GIVEN, add_contact_losses, bulk_loss, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
@@ -220,30 +212,21 @@ class OpeningBody:
         contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
-    def moved_base(self, base: BaseRecord | None, begun: float, ratio: float) -> Array:
-        """Return how far the base moves in a part of a step, along and away from itself [m]."""
-        if base is not None:
-            base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
-        return self.carried
-
 
 def advance(
-    body: OpeningBody,
-    shear_law: Shear,
-    state: SystemState,
-    after: SystemState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, base: BaseRecord | None, part: Part
 ) -> tuple[int, int]:
-    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves."""
+    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
+    ratio = part.ratio
     length = body.length(ratio)
     scheme, stepper = length.scheme, length.stepper
     P, f, mu = ratio * state.P, ratio * ratio * state.f, ratio * ratio * state.mu
     internal = stepper.k @ state.D + stepper.Bt @ mu
     dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - internal), length.still)
     moved = length.rows @ dD
-    carried = body.moved_base(base, begun, ratio)
+    carried = body.carried
+    if base is not None:
+        base_displacement(base, body.scheme.step, part, np.zeros(2), carried)
     n = body.points
     free = Free(np.array(state.contacts.gap) + moved[:n] - carried[1], np.zeros(n), np.zeros(n))
     if len(moved) > n:
@@ -268,24 +251,16 @@ def advance(
 
 
 def account(
-    body: OpeningBody,
-    shear_law: Shear,
-    state: SystemState,
-    after: SystemState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
-    sums: Array,
+    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, part: Part, sums: Array
 ) -> None:
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
     energy = body.energy
     if energy is None:
         return
     opening = body.opening
-    length = body.length(ratio)
-    scheme = length.scheme
+    scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
-    carried = body.moved_base(base, begun, ratio)
+    carried = body.carried
     moved = after.D - state.D
     slide = opening.tangents @ moved - carried[0]
     add_contact_losses(
