@@ -26,7 +26,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.conserving import conserving
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
@@ -46,6 +45,7 @@ from dda.contact.kernel import (
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
+from dda.model.arrays import Array
 from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
@@ -59,7 +59,6 @@ from dda.scheme.newmark import (
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
-Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
 RULES = (NEWMARK, IMPLICIT, CONSERVING)
 

@@ -28,13 +28,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
+from dda.model.arrays import Array
 from dda.model.block import Block
-
-Array = NDArray[np.float64]
 
 EXACT, FIRST_ORDER = "exact", "first-order"
 

@@ -11,13 +11,13 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.kernel import at_rest, shear_law_of
 from dda.contact.unilateral import Unilateral
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion, at_once, pressed_part
 from dda.model.loaded import LoadedBlock
-from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
+from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.gap_form import COLUMNS
 from dda.one_block.solution import check_damping, check_request
 from dda.one_block.unilateral import check_iteration, check_scheme
@@ -37,8 +37,6 @@ from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
 from dda.stepping.energy import ENERGIES, FRICTION, GIVEN, IMPULSE, SWITCHING, spring_energies
-
-Array = NDArray[np.float64]
 
 COMPILE_TIME = 4.0  # of the loop, over that of contacts which slide freely
 PLAIN_STEP = 4e-4  # seconds of plain Python for each step
@@ -148,7 +146,6 @@ class RollingResult(ContactResult):
 
     body: Body
     motion: RollingMotion  # from t = 0 on
-    history: History  # from t = 0 on
 
     @property
     def angle(self) -> Array:
@@ -164,6 +161,11 @@ class RollingResult(ContactResult):
     def impulse(self) -> Array:
         """Integral of the sum of N from t = 0 on, as the scheme takes it, (steps,) [N s]."""
         return self.history.sums[1:, IMPULSE]
+
+    @cached_property
+    def slipped(self) -> Array:  # type: ignore[override]
+        """Distance that the shear reference moved by slip in each step, (contacts, steps) [m]."""
+        return np.asarray(np.abs(self.history.slipped[1:].T))
 
     @cached_property
     def slip(self) -> Array:
@@ -236,14 +238,6 @@ def solve_rolling(
             placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
         return placed[:, 1:] - placed[:, :1]
 
-    parts = contact_parts(
-        history,
-        setting.law.softness,
-        slide=slide,
-        slipped=lambda: np.abs(history.slipped[1:].T),
-        horizontal_velocity=lambda: velocity[:, 0],
-        velocity=lambda: velocity[:, 1],
-    )
     note = f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation"
     return RollingResult(
         **run_fields(history, ended, scheme, [note], (began, ready)),
@@ -252,11 +246,11 @@ def solve_rolling(
         nonzeros=int(np.count_nonzero(setting.body.M)),
         factorisations=int(left[0].made[0]),
         base_contacts=setting.body.base,
-        parts=parts,
+        softness=setting.law.softness,
+        parts={"slide": slide, "horizontal_velocity": lambda: velocity[:, 0], "velocity": lambda: velocity[:, 1]},
         balance=lambda: energies(setting, motion, history),
         body=setting.body,
         motion=motion,
-        history=history,
     )
 
 

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
@@ -44,12 +43,12 @@ from dda.contact.kernel import (
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
+from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
 from dda.stepping.driver import BaseRecord, Part, base_at, driver
 from dda.stepping.energy import DAMPING, add_contact_losses
 
-Array = NDArray[np.float64]
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block

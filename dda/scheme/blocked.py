@@ -18,12 +18,10 @@ from decimal import Context, Decimal, localcontext
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
-
-Array = NDArray[np.float64]
 
 BLOCK = 1024  # most steps in a row: its products stay in the cache
 PLACES = 192  # binary places of a map's entries: one from 1e-30 on keeps far more digits than a double

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
 from dda.contact.kernel import FAILURES, FOUND, Contacts, Shear
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SHORTEST = 0.01  # shortest step that a cut may leave, over the scheme's step

@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.kernel import (
     FOUND,
@@ -37,8 +36,9 @@ from dda.contact.kernel import (
 )
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
-from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
+from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
@@ -51,8 +51,6 @@ from dda.system.joints import FIXED
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations, inverses
-
-Array = NDArray[np.float64]
 
 LENGTHS = 16  # step lengths whose factors are kept
 COMPILE_TIME = 2.0  # of the search for contacts, over that of the smallest loop
@@ -129,7 +127,6 @@ class Length:
     """Everything of a step that depends on its length alone, factorised once."""
 
     def __init__(self, opening: OpeningSystem, scheme: Scheme, ratio: float) -> None:
-        self.ratio = ratio
         self.scheme = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
         self.stepper = Stepper(opening.equations, self.scheme)
         h2 = self.scheme.step**2
@@ -343,7 +340,6 @@ def solve_opening_system(
         stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
         return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
 
-    own_parts = {"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]}
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),
         columns=dict(zip(columns, motion[:, :requested].T + 0.0, strict=True)),
@@ -351,6 +347,7 @@ def solve_opening_system(
         nonzeros=nonzeros,
         factorisations=body.made,
         base_contacts=(0, -1),
-        parts=contact_parts(history, law.softness, **own_parts),
+        softness=law.softness,
+        parts={"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]},
         balance=balance if options.energies else None,
     )
