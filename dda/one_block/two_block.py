@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from dda.contact.springs import Contact, contact_stiffness
 from dda.model.arrays import Array
-from dda.model.load import BaseMotion, pressed_part
-from dda.model.loaded import LoadedBlock
+from dda.model.load import BaseMotion, LoadedBlock, pressed_part
 from dda.one_block.gap_form import GapForm, gap_form
 
 

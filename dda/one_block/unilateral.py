@@ -17,8 +17,7 @@ import numpy as np
 
 from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
-from dda.model.load import at_once
-from dda.model.loaded import LoadedBlock
+from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried

@@ -24,7 +24,7 @@ from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.model.loaded import LoadedBlock
+from dda.model.load import LoadedBlock
 from dda.one_block.gap_form import UNKNOWNS as GAP_UNKNOWNS
 from dda.one_block.gap_form import gap_form
 

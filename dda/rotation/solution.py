@@ -15,8 +15,7 @@ import numpy as np
 from dda.contact.kernel import at_rest, shear_law_of
 from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
-from dda.model.load import BaseMotion, at_once, pressed_part
-from dda.model.loaded import LoadedBlock
+from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.gap_form import COLUMNS
 from dda.one_block.solution import check_damping, check_request

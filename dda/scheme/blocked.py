@@ -114,13 +114,7 @@ def with_all_digits(scheme: Scheme) -> Scheme:
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
-    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled."""
-    entries, unit, (u, p) = mode_maps(exact, w, levels)
-    return entries, (u / _ONE, p / _ONE / unit)
-
-
-def mode_maps(exact: Scheme, w: float, levels: int) -> tuple[Array, float, tuple[int, int]]:
-    """Return the entries of the maps of one mode, (levels, 6), the unit of its p, and (u, p) 2^PLACES at step 1.
+    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
     The momentum is measured in the power of two that makes the off-diagonal entries about equal.
 
@@ -129,12 +123,12 @@ def mode_maps(exact: Scheme, w: float, levels: int) -> tuple[Array, float, tuple
     exact
         The scheme of `with_all_digits`.
     """
-    step, first = _one_step(exact, w)
+    step, (u, p) = _one_step(exact, w)
     b, c = step[1].bit_length(), step[2].bit_length()
     unit = math.ldexp(1.0, (c - b) // 2) if b and c else 1.0
     scales = np.array([1.0, unit, 1 / unit, 1.0, 1.0, 1 / unit]) / _ONE
     entries = [list(map(float, power)) for power in _squared(step, levels)]
-    return np.array(entries).reshape(-1, 6) * scales, unit, first
+    return np.array(entries).reshape(-1, 6) * scales, (u / _ONE, p / _ONE / unit)
 
 
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:

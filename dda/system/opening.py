@@ -143,30 +143,6 @@ class Length:
             change_slides(C, TO_PAIR, self.flexible.C_paired)
 
 
-class SystemEnergy:
-    """Energy of sub-blocks, of which strain counts the sub-blocks and their glue: D' Ke D + lambda' kappa^-1 lambda."""
-
-    def __init__(self, opening: OpeningSystem, dt: float) -> None:
-        """Keep the matrices; `dt` is the step of the units of `SystemState` [s]."""
-        self.opening, self.dt = opening, dt
-        e = opening.equations
-        self.inverse, self.elastic = e.blockwise(inverses(e.mass)), e.blockwise(e.elastic)
-        self.F = e.F * opening.system.load_size
-
-    def stored(self, state: SystemState) -> tuple[float, ...]:
-        """Return kinetic and strain energy, and that of the load without what the base gave."""
-        strain = self.stiff(state.D, state.mu / self.dt**2) / 2
-        return self.kinetic(state.P / self.dt), strain, -float(self.F @ state.D)
-
-    def kinetic(self, momentum: Array) -> float:
-        """Return momentum' M^-1 momentum / 2."""
-        return float(momentum @ (self.inverse @ momentum)) / 2
-
-    def stiff(self, D: Array, force: Array) -> float:
-        """Return D' Ke D + lambda' kappa^-1 lambda."""
-        return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
-
-
 class OpeningBody:
     """The sub-blocks as the loop over steps takes them: `advance`, `account` and `keep` are for `driver`."""
 
@@ -185,7 +161,11 @@ class OpeningBody:
         self.law = self.find.room(law_of(opening.law, limit))
         self.shear_law = self.find.room(shear_law_of(opening.law))
         self.work = self.find.room(work_for(points))
-        self.energy = SystemEnergy(opening, scheme.step) if energies else None
+        e = opening.equations
+        self.inverse_mass = e.blockwise(inverses(e.mass))
+        self.elastic = e.blockwise(e.elastic)
+        self.F = e.F * opening.system.load_size
+        self.energies = energies
         self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
 
     def length(self, ratio: float) -> Length:
@@ -208,6 +188,20 @@ class OpeningBody:
         f = F if self.scheme.start == "consistent" else np.zeros_like(F)
         contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
+
+    def stored(self, state: SystemState) -> tuple[float, ...]:
+        """Return kinetic and strain energy, and that of the load without what the base gave [J]."""
+        dt = self.scheme.step
+        strain = self.stiff(state.D, state.mu / dt**2) / 2
+        return self.kinetic(state.P / dt), strain, -float(self.F @ state.D)
+
+    def kinetic(self, momentum: Array) -> float:
+        """Return momentum' M^-1 momentum / 2."""
+        return float(momentum @ (self.inverse_mass @ momentum)) / 2
+
+    def stiff(self, D: Array, force: Array) -> float:
+        """Return D' Ke D + lambda' kappa^-1 lambda, twice the strain energy of the sub-blocks and their glue."""
+        return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
 
 
 def advance(
@@ -251,9 +245,6 @@ def account(
     body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, part: Part, sums: Array
 ) -> None:
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
-    energy = body.energy
-    if energy is None:
-        return
     opening = body.opening
     scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
@@ -263,14 +254,14 @@ def account(
     add_contact_losses(
         body.law, shear_law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums
     )
-    sums[DAMPING] += (1 - scheme.gg**2) * energy.kinetic(state.P / body.scheme.step)
+    sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
     R0, R1 = state.f / dt2, after.f / dt2
-    internal = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
+    internal = body.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
     pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
-    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (energy.F - internal + pressed - R0))
-    stiff = energy.stiff(moved, (after.mu - state.mu) / dt2)
-    kinetic = energy.kinetic(R1) - energy.kinetic(R0)
-    change = energy.kinetic(R1 - R0)
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (body.F - internal + pressed - R0))
+    stiff = body.stiff(moved, (after.mu - state.mu) / dt2)
+    kinetic = body.kinetic(R1) - body.kinetic(R0)
+    change = body.kinetic(R1 - R0)
     sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, scheme.step**2, stiff, kinetic, change)
 
 
@@ -278,7 +269,7 @@ def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> boo
     """Write columns, momentum and energy at the end of a step; tell whether it is finite."""
     columns = body.observers @ state.D + body.pressure * np.sum(state.contacts.normal)
     momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
-    stored = body.energy.stored(state) if body.energy else ()
+    stored = body.stored(state) if body.energies else ()
     rows[number] = np.concatenate([columns, momentum, body.opening.tangents @ state.D, stored])
     return bool(np.isfinite(state.D).all())
 

@@ -87,8 +87,8 @@ class BlockSystem:
         B, G, kappa, C = _springs(blocks, joints)
         size = self.load_size or 1.0
         return Equations(
-            mass=_block_matrices([_without_rounding(block.mass()) for block in blocks]),
-            elastic=_block_matrices([block.elastic() for block in blocks]),
+            mass=np.array([_without_rounding(block.mass()) for block in blocks]).reshape(-1, 6, 6),
+            elastic=np.array([block.elastic() for block in blocks]).reshape(-1, 6, 6),
             B=B,
             G=G if self.motion is not None else 0 * G,
             kappa=kappa,
@@ -285,10 +285,6 @@ def inverses(matrices: Array) -> Array:
     scale = root[:, :, None] * root[:, None, :]
     inverse: Array = np.linalg.inv(matrices / scale) / scale
     return inverse
-
-
-def _block_matrices(matrices: list[Array]) -> Array:
-    return np.array(matrices).reshape(-1, 6, 6)
 
 
 def _sparse_blocks(matrices: Array) -> csr_array:
