@@ -136,13 +136,14 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
 
     Under the load F = k the static displacement is 1, so that D is u and P is p.
     """
-    zero = Decimal(0)
-    one = Decimal(1)
+    frequency: Any = Decimal(w)
+    zero: Any = Decimal(0)
+    one: Any = Decimal(1)
     with localcontext(_DIGITS):
-        k = (Decimal(w) * exact.step) ** 2
+        k = (frequency * exact.step) ** 2
         S = newmark.effective_matrix(exact, one, k)
 
-        def step(D: Decimal, P: Decimal, f: Decimal) -> tuple[int, int]:
+        def step(D: Any, P: Any, f: Any) -> tuple[int, int]:
             D, P, _ = newmark.modal_step(exact, S, k, k, (D, P, f))
             return int(D * _ONE), int(P * _ONE)
 

@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from decimal import Decimal
 from itertools import islice, repeat
 from typing import Literal, NamedTuple, TypeVar
 
@@ -30,7 +29,7 @@ import numpy as np
 from dda.model.arrays import Array
 
 Start = Literal["zero", "consistent"]
-Real = TypeVar("Real", float, Array, Decimal)  # one mode, all unknowns at once, one mode with all digits
+Real = TypeVar("Real", float, Array)  # one mode, all unknowns at once; `dda.scheme.blocked` puts in decimal numbers
 
 
 @dataclass(frozen=True)
