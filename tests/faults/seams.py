@@ -22,7 +22,6 @@ from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution, unilateral_step
 from dda.one_block import response as dda_vibration
-from dda.rotation import model as rolling_model
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
 from dda.scheme import blocked, newmark
@@ -120,8 +119,8 @@ SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
 
 # Blocks that turn
-ROLLING_SETTING = Seam(rolling_model.RollingModel, rolling_model.RollingModel.setting)
-ROLLING_START = Seam(rolling_model.RollingModel, rolling_model.RollingModel.start)
+ROLLING_SETTING = Seam(rolling.RollingModel, rolling.RollingModel.setting)
+ROLLING_START = Seam(rolling.RollingModel, rolling.RollingModel.start)
 ROLLING_STEPS = Seam(rolling, rolling.make_steps)
 ROLLING_BASE = Seam(rolling, rolling.base_motion)
 ROLLING_OBSERVED = Seam(rolling, rolling.observed)
