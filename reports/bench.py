@@ -26,10 +26,13 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import numpy as np  # noqa: E402  (after the number of threads is set)
-from rivals import block_numpy, elements_skfem, engines  # noqa: E402
+from rivals import block_numpy, column_numpy, elements_skfem, engines  # noqa: E402
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
+from dda.column.column import Column, Layer, Spring  # noqa: E402
+from dda.column.contacts import ColumnContactResult, solve_contact_column  # noqa: E402
+from dda.column.stepping import Drive  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
 from validation.engine.run import run_study  # noqa: E402
@@ -307,6 +310,30 @@ def fall_error(rotation: np.ndarray, dt: float, box: dict[str, float | tuple[flo
     return float(np.abs(rotation[:count] - exact).max() / tilt)
 
 
+def shaken_column(steps: int, blocks: int = 80) -> ColumnContactResult:
+    """Return the history of rigid blocks with gaps between them on a shaken base, as `column_numpy` has it."""
+    dt, amplitude, w = 4e-4, 1.86e-3, 125.66
+    time = dt * np.arange(steps + 1)
+    column = Column(
+        [Layer(float(blocks), 2500.0, np.inf, blocks=blocks, velocity=amplitude * w)],
+        law="unilateral",
+        joints=[Spring(float(height), 1e9, 1e-3) for height in range(blocks)],
+        gravity=9.81,
+    )
+    motion = amplitude * np.sin(w * time), amplitude * w * np.cos(w * time), -amplitude * w * w * np.sin(w * time)
+    return solve_contact_column(column, dda.Scheme(0.25, 0.5, 1.0, dt), Drive(*motion, 0 * time))
+
+
+def column_steps(steps: int = 10**5, checked: int = 300) -> str:
+    """Return the line of a column of blocks whose contacts open, its first steps against a numpy loop."""
+    seconds, answer = least(lambda: shaken_column(steps), 3)
+    rival, theirs = least(lambda: column_numpy.history(checked), 1)
+    off = difference(tuple(values[:checked] for values in answer.columns.values()), theirs)
+    switches = int(answer.step_switches.sum())
+    compared = f"numpy loop, {1e6 * rival / checked:.0f} us: {off:.0e} over {checked} steps"
+    return step_line("dda, column of 80 rigid blocks", steps, switches, seconds, 20.0, ["-", "-"], compared)
+
+
 def fem_steps(steps: int = 10**5, checked: int = 2000) -> str:
     """Return the line of bonded elements on a base that opens, its first steps against those of the mesh itself."""
     problem, scheme = opening_elements(16, 1e-4, 1e9)
@@ -501,7 +528,7 @@ def main() -> None:
         python=platform.python_version(),
         numpy=np.__version__,
         contests="\n".join([*map(compete, contests(quick)), fenicsx_line()]),
-        steps="\n".join([opening_steps(), slipping_steps(), turning_steps(), fem_steps()]),
+        steps="\n".join([opening_steps(), slipping_steps(), turning_steps(), column_steps(), fem_steps()]),
         accuracy="\n".join(accuracy_lines()),
         growth="\n".join(growth(quick)),
         sweep=two_workers(),

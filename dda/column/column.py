@@ -3,6 +3,8 @@
 All points of a level move alike, along the column (pressure) or across it (shear), and nothing moves sideways: a block
 has a displacement and one strain, and everything is per unit of area. With strain-free sides the modulus of a pressure
 wave is E (1 - mu) / ((1 + mu)(1 - 2 mu)), that of a shear wave E / (2 (1 + mu)).
+
+The springs are bonded, or contacts: unilateral ones open under pressure, frictional ones slip in shear.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Motion = Literal["pressure", "shear"]
+SpringLaw = Literal["bonded", "unilateral", "frictional"]
 _NEAR = 1e-9  # of the column's height: how near a joint must be to a face between blocks
 
 
@@ -33,16 +36,21 @@ class Layer:
 
     thickness: float  # [m]
     density: float  # [kg/m^3]
-    young: float  # [Pa]
+    young: float  # [Pa]; inf: rigid blocks, where the springs are contacts
     poisson: float = 0.0  # [-]
     blocks: int = 1
+    velocity: float = 0.0  # of all its blocks at t = 0, where the springs are contacts [m/s]
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("thickness", "density", "young"):
+        for field in ("thickness", "density"):
             value = getattr(self, field)
             if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        if not self.young > 0:
+            raise ValueError(f"young: must be positive, got {self.young!r}")
+        if not math.isfinite(self.velocity):
+            raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
         if not -1 < self.poisson < 0.5:
             raise ValueError(f"poisson: must be above -1 and below 0.5, got {self.poisson!r}")
         if self.blocks < 1:
@@ -59,12 +67,18 @@ class Spring:
     """A joint across the column: a spring between the two faces at some height, or between the base and the column."""
 
     height: float  # above the base [m]
-    stiffness: float  # [Pa/m]
+    stiffness: float  # [Pa/m]; inf: a rigid contact
+    gap: float = 0.0  # of a unilateral one at t = 0 [m]
+    strength: float = math.inf  # greatest shear stress of a frictional one [Pa]; inf: it never slips
 
     def __post_init__(self) -> None:
-        """Check the stiffness."""
-        if not (math.isfinite(self.stiffness) and self.stiffness > 0):
-            raise ValueError(f"stiffness: must be finite and positive, got {self.stiffness!r}")
+        """Check the numbers."""
+        for field in ("stiffness", "strength"):
+            value = getattr(self, field)
+            if not value > 0:
+                raise ValueError(f"{field}: must be positive, got {value!r}")
+        if not (math.isfinite(self.gap) and self.gap >= 0):
+            raise ValueError(f"gap: must be finite and not negative, got {self.gap!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +88,8 @@ class Column:
     Raises
     ------
     ValueError
-        If there is no layer, or a joint is not where two blocks, or block and base, meet.
+        If there is no layer, a joint is not where two blocks, or block and base, meet, or a number does not go with the
+        law of the springs.
     """
 
     layers: Sequence[Layer]  # from the base upwards
@@ -82,6 +97,9 @@ class Column:
     glue: float | None = None  # stiffness where no joint is given [Pa/m]; None: the faces move alike
     joints: Sequence[Spring] = ()
     impedance: float | None = None  # rho c of a half-space below [Pa s/m]; None: the base moves as it is told
+    law: SpringLaw = "bonded"  # of the springs; faces without one move alike under each law
+    gravity: float = 0.0  # g, against the heights, where the springs are unilateral [m/s^2]
+    unsupported: bool = False  # whether nothing is below the column, where the springs are contacts
 
     def __post_init__(self) -> None:
         """Check what the tables cannot."""
@@ -93,6 +111,53 @@ class Column:
                 raise ValueError(f"{field}: must be finite and positive, got {value!r}")
         if len({self.face_of(joint) for joint in self.joints}) < len(self.joints):
             raise ValueError("joints: must not share a height, got two at one")
+        if not (math.isfinite(self.gravity) and self.gravity >= 0):
+            raise ValueError(f"gravity: must be finite and not negative, got {self.gravity!r}")
+        if self.law == "bonded":
+            self._check_bonded()
+        else:
+            self._check_contacts()
+
+    def _check_bonded(self) -> None:
+        """Refuse what only contacts know."""
+        for field, values in (
+            ("young", [layer.young for layer in self.layers]),
+            ("stiffness", [joint.stiffness for joint in self.joints]),
+        ):
+            if any(math.isinf(value) for value in values):
+                raise ValueError(f"{field}: must be finite where the springs are bonded, got inf")
+        if self.unsupported:
+            raise ValueError("unsupported: does not go with bonded springs, got True")
+        moving = [layer.velocity for layer in self.layers if layer.velocity]
+        if moving:
+            raise ValueError(f"velocity: must be zero where the springs are bonded, got {moving[0]!r}")
+        self._check_springs()
+
+    def _check_contacts(self) -> None:
+        """Refuse what goes with another motion, and a contact where nothing carries it."""
+        motion = "pressure" if self.law == "unilateral" else "shear"
+        if self.motion != motion:
+            raise ValueError(f"law: {self.law} springs need motion = {motion}, got {self.motion!r}")
+        if self.glue is not None:
+            raise ValueError(f"glue: goes with bonded springs only, got {self.glue!r}")
+        if self.unsupported and self.impedance is not None:
+            raise ValueError(f"impedance: does not go with unsupported = True, got {self.impedance!r}")
+        if not self.rests_on_base and any(self.face_of(joint) == 0 for joint in self.joints):
+            raise ValueError("joints: must lie above a base that is a half-space or absent, got one at the base")
+        self._check_springs()
+
+    def _check_springs(self) -> None:
+        for field, law, none in (("gap", "unilateral", 0.0), ("strength", "frictional", math.inf)):
+            stated = [getattr(joint, field) for joint in self.joints if getattr(joint, field) != none]
+            if stated and self.law != law:
+                raise ValueError(f"{field}: goes with {law} springs only, got {stated[0]!r}")
+        if self.gravity and self.law != "unilateral":
+            raise ValueError(f"gravity: goes with unilateral springs only, got {self.gravity!r}")
+
+    @property
+    def rests_on_base(self) -> bool:
+        """Whether the base moves as it is prescribed and carries the lowest block, by a spring or welded to it."""
+        return self.impedance is None and not self.unsupported
 
     @cached_property
     def heights(self) -> Array:
@@ -119,6 +184,19 @@ class Column:
         """Modulus of every block for the motion [Pa]."""
         return np.repeat([layer.modulus(self.motion) for layer in self.layers], [x.blocks for x in self.layers])
 
+    @cached_property
+    def velocities(self) -> Array:
+        """Velocity of every block at t = 0 [m/s]."""
+        return np.repeat([layer.velocity for layer in self.layers], [layer.blocks for layer in self.layers])
+
+    @cached_property
+    def contacts(self) -> list[Spring | None]:
+        """The joint below every block, None where faces move alike."""
+        contacts: list[Spring | None] = [None] * len(self.heights)
+        for joint in self.joints:
+            contacts[self.face_of(joint)] = joint
+        return contacts
+
     def face_of(self, joint: Spring) -> int:
         """Return the number of the face that a joint lies on, 0 for the base."""
         number = int(np.argmin(np.abs(self.faces - joint.height)))
@@ -129,10 +207,7 @@ class Column:
     @cached_property
     def springs(self) -> list[float | None]:
         """Stiffness of the spring below every block [Pa/m], None where faces move alike."""
-        stiffnesses = [self.glue] * len(self.heights)
-        for joint in self.joints:
-            stiffnesses[self.face_of(joint)] = joint.stiffness
-        return stiffnesses
+        return [self.glue if contact is None else contact.stiffness for contact in self.contacts]
 
     def block_at(self, height: float) -> tuple[int, float]:
         """Return the block at a height and the share of its height below; of two that meet there, the lower one.

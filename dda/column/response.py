@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.column.column import Column
-from dda.column.equations import WIDTH, Bands, equations
+from dda.column.equations import WIDTH, equations
 from dda.column.stepping import DISPLACEMENT, PRESSURE, Stepper, observers
 from dda.scheme.harmonic import Complex, chosen, velocity_factor
 from dda.scheme.newmark import Scheme
@@ -82,18 +81,45 @@ def _solved(lower: Complex, right: Complex) -> Complex:
 
 
 def highest_frequency(column: Column) -> float:
-    """Return the highest natural frequency [rad/s], on a base that is held, which limits a conditionally stable scheme.
+    """Return the highest natural frequency [rad/s] with all springs closed, which limits an explicit scheme.
 
-    A half-space below is left out: it damps, and a spring to it joins what has no inertia.
+    Rigid contacts that may open or slip are left out: they only lower it. A half-space below is left out, too: it
+    damps; a bonded column counts as held there, since a spring to it joins what has no inertia.
     """
     from scipy.linalg import eigh
 
-    system = equations(replace(column, impedance=None))
-    M, K = (_dense(Bands(matrix.rows[:, 1:])) for matrix in (system.M, system.K))
+    feet, tops = _faces(column)
+    rigid = np.isinf(column.moduli)
+    mass = (column.densities * column.heights)[:, None] / 6
+    stiffness = np.where(rigid, 0.0, column.moduli)[:, None] / column.heights[:, None]
+    springs = [0.0 if spring is None or math.isinf(spring) else spring for spring in column.springs]
+    stretches = tops - feet
+    openings = feet.copy()
+    openings[1:] -= tops[:-1]
+    M = feet.T @ (mass * (2 * feet + tops)) + tops.T @ (mass * (feet + 2 * tops))
+    K = stretches.T @ (stiffness * stretches) + openings.T @ (np.array(springs)[:, None] * openings)
     last = len(M) - 1
-    return math.sqrt(float(eigh(K, M, eigvals_only=True, subset_by_index=[last, last])[0]))
+    if last < 0:  # nothing moves
+        return 0.0
+    return math.sqrt(max(float(eigh(K, M, eigvals_only=True, subset_by_index=[last, last])[0]), 0.0))
 
 
-def _dense(matrix: Bands) -> np.ndarray:
-    n = matrix.rows.shape[1]
-    return np.column_stack([matrix @ unit for unit in np.eye(n)])
+def _faces(column: Column) -> tuple[np.ndarray, np.ndarray]:
+    """Return the displacements of the feet and of the tops of all blocks by those that are free, (blocks, unknowns)."""
+    held = column.rests_on_base or column.law == "bonded"
+    count = 0
+    numbers: list[tuple[int, int]] = []  # of the unknowns of foot and top; -1 is held
+    for block, spring in enumerate(column.springs):
+        if spring is not None or (block == 0 and not held):
+            foot = count
+            count += 1
+        else:
+            foot = numbers[-1][1] if numbers else -1
+        top = foot
+        if math.isfinite(column.moduli[block]):
+            top = count
+            count += 1
+        numbers.append((foot, top))
+    unknowns = np.vstack([np.eye(count), np.zeros((1, count))])  # the last row is that of what is held
+    feet, tops = np.array(numbers).T
+    return unknowns[feet], unknowns[tops]

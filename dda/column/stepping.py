@@ -54,9 +54,9 @@ class Drive:
             raise ValueError("drive: must hold finite numbers only, got NaN or infinity")
 
 
-def column_names(heights: Sequence[float]) -> tuple[str, ...]:
-    """Return the names of the columns of a history: of top and base, then of every height that is asked for."""
-    names = [f"{name}_{number + 1}" for name in (DISPLACEMENT, "stress") for number in range(len(heights))]
+def column_names(heights: Sequence[float], parts: Sequence[str] = (DISPLACEMENT, "stress")) -> tuple[str, ...]:
+    """Return the names of the columns of a history: of top and base, then of parts at every height."""
+    names = [f"{part}_{number + 1}" for part in parts for number in range(len(heights))]
     return (DISPLACEMENT, PRESSURE, *names)
 
 

@@ -22,6 +22,7 @@ class ProvenMotion:
     """A motion whose switches are enclosed."""
 
     switches: tuple[Switch, ...]
+    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
 
     @property
     def radius(self) -> float:

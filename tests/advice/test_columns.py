@@ -62,3 +62,17 @@ def test_a_bonded_column_has_neither():
     data = {"column": {"motion": "shear", "layer": [RIGID | {"young": 1e9}]}, "time": {"step": 1e-3, "steps": 10}}
     scene = parse_scene(data | {"input": {"shape": "ricker", "velocity": 1.0, "frequency": 1.0}}, "bonded")
     assert columns.limits(scene) is None and kinds(scene) == []
+
+
+def test_advice_names_the_blocks_that_the_step_can_bear():
+    scene = stack(RIGID | {"young": 1e9, "blocks": 5}, step=1e-4, alpha=0.25, delta=0.5)
+    known = columns.limits(scene)
+    (blocks,) = known.blocks
+    for count, below in ((blocks, False), (blocks - 1, True)):
+        finer = stack(RIGID | {"young": 1e9, "blocks": count}, step=1e-4, alpha=0.25, delta=0.5)
+        assert (columns.limits(finer).far_face_step > 1e-4 * (1 + 1e-9)) == below
+    assert any(f"{blocks} blocks in the layers" in sentence for sentence in columns.advised(scene, known))
+
+
+def test_plain_data_hold_no_infinity():
+    assert columns.plain(columns.limits(stack(alpha=0.25, delta=0.5)))["settling"] is None

@@ -49,6 +49,16 @@ def test_the_rival_of_elements_on_a_base_that_opens_gives_our_answers(rivals):
         assert np.abs(ours[name] - values).max() <= 1e-9 * np.abs(values).max()
 
 
+def test_the_rival_of_columns_gives_our_answers(rivals):
+    import bench
+    from rivals import column_numpy
+
+    ours = bench.shaken_column(400, blocks=12)
+    assert ours.step_switches.sum() > 20
+    for name, values in zip(("displacement", "contact_pressure"), column_numpy.history(400, blocks=12), strict=True):
+        assert np.abs(ours.columns[name] - values).max() <= 1e-9 * np.abs(values).max()
+
+
 def test_the_committed_table_holds_what_was_asked_for():
     lines = re.findall(r"\*\*(\d+)\*\* \| (\d+) \|", (ROOT / "docs" / "speed.md").read_text())
     assert len(lines) >= 5

@@ -16,7 +16,16 @@ from oracles.submissions import right_answer
 
 PAGES = ("theory.md", "extending.md", "columns.md")
 # Pages that take seconds each.
-LONG = ("friction.md", "contact.md", "rotation.md", "waves.md", "judge-your-code.md", "ci.md", "fenicsx.md")
+LONG = (
+    "stacks.md",
+    "friction.md",
+    "contact.md",
+    "rotation.md",
+    "waves.md",
+    "judge-your-code.md",
+    "ci.md",
+    "fenicsx.md",
+)
 
 
 def run_line(line: str, directory: Path) -> None:

@@ -61,6 +61,7 @@ EXPECTED = {
     "contact.gap": 1.5,
     "contact.open_share": 0.75,
     "contact.mean_solves": 1.5,
+    "contact.p99_solves": 2.0,
     "contact.most_solves": 2.0,
     "contact.cuts": 1.0,
     "contact.restitution": 1 / 3,
@@ -94,7 +95,8 @@ FAULTS = {  # what a reader of an adapter would slip, and metrics that tell
                                       {"energy.rise", "energy.imbalance", "energy.kinetic"}),
     "velocity downwards": ({"velocity": -(MADE.velocity if MADE.velocity is not None else ONES)},
                            {"contact.restitution"}),
-    "a count from zero": ({"solves": np.array([0.0, 1.0, 1.0, 0.0])}, {"contact.mean_solves", "contact.most_solves"}),
+    "a count from zero": ({"solves": np.array([0.0, 1.0, 1.0, 0.0])},
+                          {"contact.mean_solves", "contact.p99_solves", "contact.most_solves"}),
 }  # fmt: skip
 
 
@@ -103,6 +105,16 @@ def test_a_slip_in_the_record_is_seen(name: str) -> None:
     changes, told = FAULTS[name]
     found = measured(replace(MADE, **changes))
     assert {key for key, value in EXPECTED.items() if found[key] != pytest.approx(value)} == told
+
+
+def test_one_step_in_a_hundred_may_take_more_solves() -> None:
+    solves = np.ones(1000)
+    solves[:20] = 2.0
+    solves[0] = 9.0
+    found = measured(replace(MADE, solves=solves))
+    assert (found["contact.p99_solves"], found["contact.most_solves"]) == (2.0, 9.0)
+    solves[10:] = 1.0
+    assert measured(replace(MADE, solves=solves))["contact.p99_solves"] == 1.0
 
 
 def test_slip_and_changes_of_state_are_counted() -> None:

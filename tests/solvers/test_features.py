@@ -11,7 +11,7 @@ import pytest
 from validation import response, solve
 from validation.errors import InputError
 from validation.scenes import features
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.registry import BUILT_IN, get_solver
 
 LOCKED = load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.steps": 3, "fem.elements": 2})
@@ -61,10 +61,22 @@ TAKES: dict[str, set[str]] = {
     features.SLOPE: {"dda", "fem", "fenicsx", "block-events"},
     features.ROTATION: {"dda"},
     features.COLUMN: {"dda", "fem", "layers"},
+    features.UNILATERAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
+    features.FRICTIONAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
+    features.RIGID_BLOCKS: {"dda", "column-events"},
+    features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
     features.CONSERVING: {"dda", "block-events", "bar-events"},
+}
+OF_CONTACTS: dict[str, dict[str, Any]] = {  # what a column of two blocks on contacts has beside them
+    features.UNILATERAL_COLUMN: {},
+    features.FRICTIONAL_COLUMN: {"motion": "shear", "law": "frictional", "strength": 1e5},
+    features.RIGID_BLOCKS: {
+        "layer": [{"thickness": 2.0, "density": 2e3, "young": "inf", "blocks": 2, "velocity": -1.0}]
+    },
+    features.RIGID_JOINTS: {"stiffness": "inf"},
 }
 APART = [  # what a solver takes each by itself: solver, values, the two that are named
     ("dda", SUB_BLOCKS | KINETIC, features.SUB_BLOCKS, features.ADAPTIVE),
@@ -94,6 +106,11 @@ def scene_with(values: dict[str, Any], directory: Path) -> Scene:
 def scene_of(feature: str, directory: Path) -> Scene:
     if feature == features.COLUMN:
         return load_scene("waves-base").expand()[0]
+    if feature in OF_CONTACTS:
+        layer = {"thickness": 2.0, "density": 2e3, "young": 1e9, "blocks": 2, "velocity": -1.0}
+        column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [layer]} | OF_CONTACTS[feature]
+        run = {"solvers": ["dda"], "columns": ["displacement"]}
+        return parse_scene({"column": column, "time": {"step": 1e-4, "steps": 5}, "run": run}, feature)
     return scene_with(SCENES[feature], directory)
 
 

@@ -32,6 +32,8 @@ LAYERS = [
     {"thickness": 1.0, "density": 1800.0, "young": 5e8, "blocks": 4},
 ]
 COLUMN = {"motion": "pressure", "layer": LAYERS, "base": "transmitting", "base_density": 2400.0, "base_speed": 900.0}
+THROWN = [layer | {"velocity": velocity} for layer, velocity in zip(LAYERS, (0.2, -0.5), strict=True)]
+HALF_SINE = {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}
 RICKER = {"shape": "ricker", "velocity": 0.1, "frequency": 120.0}
 SCENES: dict[str, dict[str, Any]] = {
     "locked": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL},
@@ -79,6 +81,24 @@ SCENES: dict[str, dict[str, Any]] = {
         "load": {"gravity": 9.81}, "columns": (*ASIDE, "rotation"), "geometry": "updated",
     },
     "column": {"column": COLUMN, "input": RICKER, "columns": USUAL},
+    "column that opens": {
+        "column": {"motion": "pressure", "law": "unilateral", "layer": THROWN, "stiffness": 4e8, "gap": 1e-3,
+                   "gravity": 9.81},
+        "input": RICKER, "columns": USUAL,
+    },
+    "column that slips": {
+        "column": {"motion": "shear", "law": "frictional", "layer": THROWN, "stiffness": 4e8, "strength": 1e5},
+        "input": RICKER, "columns": USUAL,
+    },
+    "bars that open": {
+        "column": {"motion": "pressure", "law": "unilateral", "layer": THROWN, "stiffness": 4e8, "gap": 1e-3,
+                   "gravity": 9.81},
+        "input": HALF_SINE, "columns": USUAL,
+    },
+    "bars that slip": {
+        "column": {"motion": "shear", "law": "frictional", "layer": THROWN, "stiffness": 4e8, "strength": 1e5},
+        "input": HALF_SINE, "columns": USUAL,
+    },
 }  # fmt: skip
 NOT_LINEAR = (
     "opening in a ramp",
@@ -89,23 +109,31 @@ NOT_LINEAR = (
     "sliding",
     "lagged",
     "turning",
+    "column that opens",
+    "column that slips",
+    "bars that open",
+    "bars that slip",
 )
+OF_CONTACTS = NOT_LINEAR[-4:]  # columns
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
-# what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time
+# what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time, of a
+# slice of unit thickness
 EXPONENTS = {
     "length": (1, 0, 0), "time": (0, 0, 1), "rate": (0, 0, -1), "velocity": (1, 0, -1), "acceleration": (1, 0, -2),
-    "density": (-2, 1, 0), "stress": (0, 1, -2), "number": (0, 0, 0),  # of a slice of unit thickness
+    "density": (-2, 1, 0), "bedding": (-1, 1, -2), "stress": (0, 1, -2), "number": (0, 0, 0),
 }  # fmt: skip
 KINDS = {
-    "ramp": "time",
+    "ramp": "time", "duration": "time",
     "side": "length", "width": "length", "height": "length", "vertices": "length", "eccentricity": "length",
     "gap": "length", "band": "length", "thickness": "length", "density": "density", "base_density": "density",
     "young": "stress", "pressure": "stress", "traction": "stress", "shear_stiffness": "stress",
     "velocity": "velocity", "base_speed": "velocity", "gravity": "acceleration", "step": "time", "mass": "rate",
-    "frequency": "rate", "contact_pressure": "stress", "displacement": "length", "horizontal_displacement": "length",
+    "frequency": "rate", "strength": "stress", "contact_pressure": "stress",
+    "displacement": "length", "horizontal_displacement": "length",
 }  # fmt: skip
-STIFFNESS = {"contact": "stress", "damping": "time"}  # N/m of a slice of unit thickness; a1 of the damping tables
+# N/m of a slice of unit thickness, a1 of the damping tables, Pa/m
+STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}
 UNITS = (2.0**-9, 2.0**-12, 2.0**-5)  # powers of two round nothing: an absolute tolerance shows, and nothing else does
 
 
@@ -200,6 +228,8 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
     "layers": ("column",),
     "block-events": ("locked", "shaken", "opening", "landing", "sliding"),
     "bar-events": ("opening", "landing"),
+    "column-events": OF_CONTACTS,
+    "bars-events": OF_CONTACTS[-2:],
     "dda-60": ("locked",),
     "fem-60": ("locked",),
     "bar-60": ("locked",),
@@ -221,7 +251,7 @@ WITHOUT_SAVINGS = [  # of sixty digits a whole mesh takes long
 ]
 LINEAR = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] not in NOT_LINEAR]
 
-OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] != "column"]
+OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if "column" not in SCENES[param.values[1]]]
 
 
 @pytest.mark.parametrize("solver", BUILT_IN)

@@ -26,6 +26,10 @@ COLUMN: dict[str, Any] = {
     "motion": "shear",
     "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
 }
+STACK: dict[str, Any] = {
+    "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
+    "stiffness": 1e9,
+}
 PULSE: dict[str, Any] = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
 LIMIT = 1.5192e-3  # s of the paper's block on p = 1e9 N/m, alpha = 0, delta = 1/2
 
@@ -58,6 +62,11 @@ SCENES = {
     "opening mesh": ("fem", {"contact": OPEN}),
     "sliding mesh": ("fem", {"contact": {**OPEN, "friction": 30.0}, "load": {**PRESSURE, "traction": 1e6}}),
     "column of blocks": ("dda", {"column": COLUMN, "input": PULSE}),
+    "column that opens": ("dda", {"column": {**STACK, "motion": "pressure", "law": "unilateral"}}),
+    "column that slips": (
+        "dda",
+        {"column": {**STACK, "motion": "shear", "law": "frictional", "strength": 1e5}},
+    ),
     "column of elements": ("fem", {"column": COLUMN, "input": PULSE}),
 }
 

@@ -16,7 +16,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from validation.advice.alarm import Alarm
 from validation.scenes.column import ColumnSection, LayerSection
@@ -27,6 +28,7 @@ FEW_SOLVES = "solve limit"
 FAR_FACE = "far face moves the wrong way"
 GAINS = "gain by switching"
 PATH = "residual slip by the step"
+ROUNDING = 1e-12  # of a quotient that may be a whole number
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,7 @@ class ColumnLimits:
     contacts: int
     solves: int | None  # that a step can need; None where no bound is proven
     far_face_step: float  # below which some block's far face moves the wrong way [s]
+    blocks: tuple[int, ...]  # of each layer with which it does not at the present step
     lowest: float | None  # lowest frequency of a stack of equal rigid blocks [rad/s]
     settling: float | None  # time in which such a stack comes to rest to a thousandth [s]
 
@@ -51,7 +54,8 @@ def limits(scene: Scene) -> ColumnLimits | None:
     count = len(column.contacts)
     lowest = _lowest(column)
     settling = None if lowest is None else columns.settling_time(lowest, t.step, t.delta, t.discount)
-    return ColumnLimits(count, columns.greatest_solves(count) if proven else None, turned, lowest, settling)
+    solves = columns.greatest_solves(count) if proven else None
+    return ColumnLimits(count, solves, turned, _blocks(column, t.step, t.alpha), lowest, settling)
 
 
 def far_face_step(column: ColumnSection, alpha: float) -> float:
@@ -59,6 +63,15 @@ def far_face_step(column: ColumnSection, alpha: float) -> float:
     return max(
         columns.far_face_step(_speed(column, layer), layer.thickness / layer.blocks, alpha) for layer in column.layer
     )
+
+
+def _blocks(column: ColumnSection, step: float, alpha: float) -> tuple[int, ...]:
+    """Return the blocks of each layer, the present ones at least, whose far faces move the right way at a step."""
+    counts = []
+    for layer in column.layer:
+        whole = columns.far_face_step(_speed(column, layer), layer.thickness, alpha)
+        counts.append(max(layer.blocks, math.ceil(whole / step * (1 - ROUNDING))) if math.isfinite(whole) else 0)
+    return tuple(counts)
 
 
 def _speed(column: ColumnSection, layer: LayerSection) -> float:
@@ -76,6 +89,47 @@ def _lowest(column: ColumnSection) -> float | None:
     (stiffness,) = stiffnesses
     (mass,) = masses
     return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
+
+
+def plain(known: ColumnLimits) -> dict[str, Any]:
+    """Return plain data, None where a number is not finite."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in asdict(known).items()
+    }
+
+
+def advised(scene: Scene, known: ColumnLimits) -> Iterator[str]:
+    """Yield in words what to allow and to choose for a column whose contacts open or slip."""
+    t = scene.time
+    if scene.column is not None and scene.column.law == "frictional":
+        yield (
+            "Cut no step: the joints have one solution at any step; where all states change at once no known column "
+            f"took more than {2 * known.contacts + 1} solves."
+        )
+    elif known.solves is not None:
+        yield (
+            f"Allow {known.solves} solves of the open-close iteration in a step, one more than there are contacts, and "
+            "cut no step: more are never needed, and a shorter step does not spare them where blocks touch."
+        )
+    else:
+        yield (
+            "Cut no step: the contacts have one solution at any step. How many solves it takes is proven only above "
+            f"dt = {known.far_face_step:.3g} s; no known column took more than {known.contacts + 1}."
+        )
+    if known.far_face_step > t.step and all(known.blocks):
+        yield (
+            f"At dt = {t.step:g} s a block of one strain answers a push with its far face moving the wrong way; "
+            f"{', '.join(map(str, known.blocks))} blocks in the layers, or dt >= {known.far_face_step:.3g} s, do not."
+        )
+    if known.settling is not None and math.isfinite(known.settling):
+        yield (
+            f"The stack comes to rest to a thousandth in about {known.settling:.3g} s: the scheme takes "
+            f"w1^2 (delta - 1/2) dt / 2 and the discount (1 - gg) / (2 dt) of the amplitude a second, w1 = "
+            f"{known.lowest or 0:.4g} rad/s."
+        )
+    elif known.settling is not None:
+        yield "The stack never comes to rest: delta = 1/2 and gg = 1 take no energy."
 
 
 def column_alarms(scene: Scene) -> Iterator[Alarm]:

@@ -27,6 +27,8 @@ MEAN_RATE = "contact.restitution_mean"
 APART = 0.01  # of the run-out of a rigid block, from which on that of the exact block is said beside it
 MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
+NONE = "-"  # in place of a number that a run has not
+
 Line = tuple[str, ...]
 LINES = (  # what a line is called, its metric, and how the value is scaled and written
     ("switches", "switches.count", 1.0, ""),
@@ -172,7 +174,7 @@ def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> It
         f"gg = {t.discount:.6g}: w_c dt = {data['omega']:.3g}"
     )
     yield ""
-    yield from _aligned(table(scene, data["runs"]))
+    yield from aligned(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
     if any(_number(run, MEAN_RATE) > 1 for run in data["runs"].values()):
@@ -199,13 +201,16 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     rubs = features.FRICTION in features.of(scene)
     for words, metric, factor, unit in (*LINES, *(SLIPS if rubs else ())):
-        lines.append((words, *(_value(run.get(metric), factor, unit) for run in runs.values())))
+        lines.append((words, *(written(run.get(metric), factor, unit) for run in runs.values())))
     for words, name in (*LOSSES, *((("friction", "friction"),) if rubs else ())):
         lines.append(
-            (f"energy lost by {words}", *(_value(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()))
+            (
+                f"energy lost by {words}",
+                *(written(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()),
+            )
         )
     lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
-    lines.append(("repeatable to 1e-6 up to", *(_value(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
+    lines.append(("repeatable to 1e-6 up to", *(written(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
     return lines
 
 
@@ -220,9 +225,10 @@ def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
     return f"{value:.7g} s" if isinstance(value, float) else "never"
 
 
-def _value(value: Value, factor: float, unit: str) -> str:
+def written(value: Value, factor: float, unit: str) -> str:
+    """Return a number of a run in its unit, `NONE` where it has none."""
     if not isinstance(value, float):
-        return "-"
+        return NONE
     scaled = factor * value
     return f"{0.0 if abs(scaled) < 1e-9 else scaled:.4g}{unit}"
 
@@ -315,7 +321,8 @@ def _depth(need: Mapping[str, Any], penetration: float) -> str:
     return f": the exact block then penetrates {need['depth']:.3g} m{reservation}"
 
 
-def _aligned(lines: list[Line]) -> Iterator[str]:
+def aligned(lines: list[Line]) -> Iterator[str]:
+    """Yield lines whose cells stand below each other."""
     widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
     for line in lines:
         yield "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()

@@ -20,9 +20,10 @@ from validation.cli.app import (
     refuse_bad_input,
 )
 from validation.cli.damping import JsonOption
-from validation.cli.printing.output import echo
+from validation.cli.printing.output import broken, echo
 
 if TYPE_CHECKING:
+    from validation.advice.columns import ColumnLimits
     from validation.runs.row import Row
     from validation.scenes.scene import Scene
 
@@ -51,11 +52,19 @@ def contact(
 
     Example: [bold]dda-validate contact unlocked-constant --set time.step=0.001 --set time.steps=50[/bold]
 
-    The contact must be unilateral; --set contact.law=unilateral unlocks a locked scene.
+    The contact must be unilateral; --set contact.law=unilateral unlocks a locked scene. Of a column whose contacts
+    open or slip it says the solves of the open-close iteration, and which to allow: contact columns-weight
     """
     from validation.advice import contact_page
+    from validation.advice.columns import limits
 
     case = one_case(scene, assignments)
+    if (known := limits(case)) is not None:
+        if error is not None or penetration is not None:
+            from validation.scenes import features
+
+            features.refuse_column(case, "contact with --restitution-error or --penetration")
+        return _of_column(case, known, as_json)
     scenes = contact_page.scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
@@ -65,6 +74,20 @@ def contact(
         echo(json.dumps(contact_page.plain(contact_answer | {"absent": absent}), indent=1, allow_nan=False))
     else:
         echo("\n".join(contact_page.page(case, contact_answer, absent)))
+    return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
+
+
+def _of_column(case: Scene, known: ColumnLimits, as_json: bool) -> int:
+    """Say what the contacts of a column did, and what its steps need."""
+    from validation.advice import column_page, contact_page
+
+    with _progress("contact", between_calls=True) as progress:
+        rows, absent = _rows(column_page.scenes(case), progress)
+    data = column_page.answer(case, rows, known)
+    if as_json:
+        echo(json.dumps(contact_page.plain(data | {"absent": absent}), indent=1, allow_nan=False))
+    else:
+        echo("\n".join(broken(line) for line in column_page.page(case, known, data, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

@@ -15,6 +15,7 @@ from validation.cli.printing.output import broken, echo, terminal_width
 
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
+    from validation.advice.columns import ColumnLimits
     from validation.advice.spectra import Damping
     from validation.scenes.scene import Scene
 
@@ -73,16 +74,38 @@ def advise(
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
 
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.01 --fmax 20 --loss 0.1 --wavelengths 10[/bold]
-    """
-    from validation.errors import InputError
 
-    if (damping is None) == (fmax is None):
+    Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
+    """
+    from validation.advice.columns import limits
+    from validation.errors import InputError
+    from validation.scenes.features import refuse_nonlinear
+
+    case = one_case(scene, assignments)
+    if (known := limits(case)) is not None:
+        if damping is not None or fmax is not None:
+            refuse_nonlinear(case, "--damping and --fmax are")
+        _advise_contacts(case, known, as_json)
+    elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError(f"--damping, --fmax: one of them must be given, got {number}")
-    if damping is None:
-        _advise_wave(one_case(scene, assignments), float(fmax or 0), (loss, wavelengths, phase_error), as_json)
+    elif damping is None:
+        _advise_wave(case, float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:
-        _advise_damping(one_case(scene, assignments), damping, solve_for, as_json)
+        _advise_damping(case, damping, solve_for, as_json)
+
+
+def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
+    """Say what a column whose contacts open or slip needs of its steps."""
+    from validation.advice.columns import advised, column_alarms, plain
+
+    if as_json:
+        echo(json.dumps(plain(known), indent=1, allow_nan=False))
+        return
+    for sentence in advised(case, known):
+        echo(broken(sentence))
+    for alarm in column_alarms(case):
+        echo(broken(f"ALARM {alarm.kind}: {alarm.sentence}"))
 
 
 def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, float], as_json: bool) -> None:

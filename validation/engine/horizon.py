@@ -1,13 +1,15 @@
 """The horizon of a unilateral contact: how long two correct codes agree before the switches amplify rounding.
 
-A run with p (1 + 1e-12) stands for the other code. Its distance from the run is at first that of rounding, some digits
-enlarged, and grows with every switch; where it exceeds `validation.metrics.contact.AGREED`, histories tell nothing any
-more, and only what holds for every history (momentum, energy, complementarity) is left to judge.
+A run with p (1 + 1e-12), of a column with its densities so, stands for the other code. Its distance from the run is at
+first that of rounding, some digits enlarged, and grows with every switch; where it exceeds
+`validation.metrics.contact.AGREED`, histories tell nothing any more, and only what holds for every history (momentum,
+energy, complementarity) is left to judge.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from validation.runs.history import History
 from validation.runs.run import Outcome
@@ -18,9 +20,19 @@ SHIFT = 1e-12  # relative change of the springs, well above the rounding of any 
 
 
 def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:
-    """Return the history of the same scene with p (1 + 1e-12), or density where p is infinite; None if it fails."""
+    """Return the history of the same scene with p (1 + 1e-12), or density; None if it fails.
+
+    The density is changed where p is infinite, and that of all layers of a column.
+    """
+    run = solver.prepare(scene.with_values(shifted(scene)), full).run()
+    return run.history if run.outcome is Outcome.COMPLETED else None
+
+
+def shifted(scene: Scene) -> dict[str, Any]:
+    """Return the key of a scene that is shifted, with its value."""
+    if scene.column is not None:
+        layers = scene.definition()["column"]["layer"]
+        return {"column.layer": [layer | {"density": layer["density"] * (1 + SHIFT)} for layer in layers]}
     field = "contact.stiffness" if math.isfinite(scene.contact.stiffness) else "block.density"
     section, _, key = field.partition(".")
-    value = getattr(getattr(scene, section), key) * (1 + SHIFT)
-    run = solver.prepare(scene.with_values({field: value}), full).run()
-    return run.history if run.outcome is Outcome.COMPLETED else None
+    return {field: getattr(getattr(scene, section), key) * (1 + SHIFT)}

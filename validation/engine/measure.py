@@ -208,7 +208,8 @@ def _measures(case: Case, run: Run) -> set[str]:
         measures -= {"history", "modes", "energy"}
     if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
         measures -= {"stability"}
-    if "history" in measures and features.UNILATERAL in features.of(case.scene):
+    contacts = {features.UNILATERAL, *features.OF_MOVING_COLUMN}
+    if "history" in measures and contacts & set(features.of(case.scene)):
         measures |= {"switches"}
         if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
             measures |= {"horizon"}

@@ -80,6 +80,13 @@ def mean_solves(record: ContactRecord) -> Value:
     return NOT_REPORTED if record.solves is None else float(record.solves.mean())
 
 
+def rare_solves(record: ContactRecord) -> Value:
+    """Solves of the open-close iteration that one step in a hundred exceeds."""
+    if record.solves is None:
+        return NOT_REPORTED
+    return float(np.percentile(record.solves, 99, method="inverted_cdf"))
+
+
 def most_solves(record: ContactRecord) -> Value:
     """Largest number of solves of the open-close iteration in a step."""
     return NOT_REPORTED if record.solves is None else float(record.solves.max())
@@ -210,6 +217,7 @@ PARTS: tuple[tuple[str, str, Part], ...] = (
     ("contact.gap", "m", gap),
     ("contact.open_share", "1", open_share),
     ("contact.mean_solves", "1", mean_solves),
+    ("contact.p99_solves", "1", rare_solves),
     ("contact.most_solves", "1", most_solves),
     ("contact.cuts", "1", cuts),
     ("contact.slip", "m", slip),

@@ -53,6 +53,10 @@ class Outcome(WordWithSentence):
         "several consistent contact states",
         "Several contact states are consistent, even over a hundredth of the step; use a smaller step.",
     )
+    SOLVE_LIMIT = (
+        "solve limit exceeded",
+        "The open-close iteration of a step needs more solves than its limit; allow one more than there are contacts.",
+    )
     HORIZON = (
         "exact up to a horizon",
         "The exact motion could be followed up to an instant only, its horizon; run no more steps than lead there.",

@@ -97,18 +97,12 @@ def cosine(size: float, frequency: float, time: Array) -> Parts:
 
 
 def read_signal(path: Path, at: str) -> Signal:
-    """Read a record; before its first and after its last row its column is zero.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, its header is another, or its instants do not increase.
-    """
+    """Read a record; before its first and after its last row its column is zero."""
     return partial(recorded, *read_record(path, at))
 
 
 def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
-    """Read the instants of a record, its values, and how often these were derived from a displacement.
+    """Return instants and values of a record, and which derivative of a displacement (of an impulse) the values are.
 
     Raises
     ------

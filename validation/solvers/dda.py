@@ -198,7 +198,8 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RAMP}
+        | {features.RAMP, features.RIGID_BLOCKS, features.RIGID_JOINTS}
+        | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.RULES
     )
@@ -235,9 +236,9 @@ class DDA(Solver):
         if reason := self.applicable(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
         if scene.column is not None:
-            from validation.solvers.columns.blocks import BlockColumn
+            from validation.solvers.columns.blocks import BlockColumn, ContactColumn
 
-            return BlockColumn(scene, scheme_of(scene))
+            return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme_of(scene))
         if features.ROTATION in features.of(scene):
             return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):

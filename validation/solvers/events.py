@@ -110,7 +110,7 @@ class Motion(Prepared):
     """A scene whose motion is found from switch to switch; nothing in it is a step, a mesh or a saving."""
 
     names: tuple[str, ...]  # of the columns
-    motion: block_events.BlockMotion | bar_events.BarMotion
+    motion: events.ProvenMotion
 
     def __init__(self, scene: Scene, name: str) -> None:
         self.scene = scene

@@ -29,6 +29,7 @@ BUILT_IN = {
     "layers": "validation.solvers.columns.layers:ExactLayers",
     "block-events": "validation.solvers.events:BlockEvents",
     "bar-events": "validation.solvers.events:BarEvents",
+    "column-events": "validation.solvers.columns.events:ColumnEvents",
     "bars-events": "validation.solvers.columns.bars:BarsEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
     "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",

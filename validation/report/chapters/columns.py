@@ -20,7 +20,7 @@ from validation.report.chapters.data import (
     verdicts_of,
 )
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, cell, plain
+from validation.report.chapters.text import DASH, cell
 from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.space_time import SpaceTime, space_time_figure
@@ -32,7 +32,6 @@ from validation.studies.columns import known, study
 from validation.theory import columns
 
 DDA = "dda"
-STIFF = 1264.911064  # 2 sqrt(k/m) of the stacks of rigid blocks [rad/s]
 DELTA_COLORS = {0.5: "#0072b2", 0.55: "#56b4e9", 0.6: "#009e73", 0.75: "#e69f00", 1.0: "#d55e00"}
 PIECE_COLORS = {1: "#d55e00", 4: "#e69f00", 16: "#009e73", 64: "#0072b2"}  # by blocks in a piece
 LEAD = (
@@ -139,7 +138,7 @@ def solves_figure(groups: Groups, directory: Path) -> FigureBlock:
     for name, title in (("columns-solves-rest", "Comes to rest"), ("columns-solves-shaken", "Shaken on")):
         lines = []
         for delta, stacks in by_delta(groups, name).items():
-            points = [(STIFF * case.scene.time.step, case.number(DDA, "contact.mean_solves")) for case in stacks]
+            points = [(study.STIFF * case.scene.time.step, case.number(DDA, "contact.mean_solves")) for case in stacks]
             steps, means = np.array([(x, y) for x, y in points if y is not None]).reshape(-1, 2).T
             lines.append(ChartLine(f"δ = {delta:g}", steps, means, DELTA_COLORS[delta], dots=DOTS))
         panels.append(ChartPanel(title, "ω dt", "mean solves a step", lines, names="upper left", **axes))
@@ -151,12 +150,13 @@ def solves_table(groups: Groups) -> Table:
     rows = []
     for name, words in (("columns-solves-rest", "comes to rest"), ("columns-solves-shaken", "shaken on")):
         for delta, stacks in by_delta(groups, name).items():
-            numbers = []
+            cells = dict.fromkeys(study.STEPS, DASH)
             for case in stacks:
                 mean, most = (case.number(DDA, f"contact.{part}_solves") for part in ("mean", "most"))
-                numbers.append(DASH if mean is None or most is None else f"{mean:.3f} / {most:.0f}")
-            rows.append((words, f"{delta:g}", *numbers))
-    heads = ("Stack", "δ", ("Mean / most solves by ω dt", "0.1", "0.5", "2", "10"))
+                if mean is not None and most is not None:
+                    cells[round(study.STIFF * case.scene.time.step, 3)] = f"{mean:.3f} / {most:.0f}"
+            rows.append((words, f"{delta:g}", *cells.values()))
+    heads = ("Stack", "δ", ("Mean / most solves by ω dt", *(f"{step:g}" for step in study.STEPS)))
     return table(heads, rows, "Twenty rigid blocks at α = 1/2; at most 21 solves are possible.")
 
 
@@ -218,7 +218,7 @@ def scheme_words(scene: Scene) -> Sequence[str]:
     """Return scheme, discount and step of a case."""
     t = scene.time
     scheme = "(1/2, 1)" if t.delta == 1 else "(1/4, 1/2)"
-    return scheme, f"{t.discount:g}", plain(1e3 * t.step)
+    return scheme, f"{t.discount:g}", f"{1e3 * t.step:g}"
 
 
 def slip_table(groups: Groups, rows: DerivedRows) -> Table:

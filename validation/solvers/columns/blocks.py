@@ -1,4 +1,4 @@
-"""Adapter of the columns of `dda`: blocks on each other, welded or glued."""
+"""Adapters of the columns of `dda`: blocks on each other, bonded, or on contacts that open or slip."""
 
 from __future__ import annotations
 
@@ -9,46 +9,71 @@ import numpy as np
 
 import dda
 from dda.column.column import Column, Layer, Spring
+from dda.column.contact_step import DEEPEST, FURTHEST, MOMENTUM, OPEN_SHARE, WIDEST
+from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.column.response import column_response, highest_frequency
 from dda.column.stepping import Drive, solve_column
+from dda.contact.unilateral import OPEN, SLIP
+from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.runs.modes import Switch
 from validation.runs.run import Run
+from validation.scenes.column import ColumnSection
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.blocks.closed import dda_limit
 from validation.solvers.columns.names import amplitude, column_of
-from validation.solvers.contract import Prepared
+from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import naming, no_fields, to_run
+from validation.solvers.translation import naming, no_fields, opened_run, to_run
+
+
+def dda_column(section: ColumnSection) -> Column:
+    """Return the column of blocks of a scene."""
+    layers = [
+        Layer(layer.thickness, layer.density, layer.young, layer.poisson, layer.blocks, layer.velocity)
+        for layer in section.layer
+    ]
+    if section.law == "bonded":
+        springs = [Spring(joint.height, joint.stiffness) for joint in section.springs]
+        return Column(layers, section.motion, section.glue, springs, section.impedance)
+    contacts = [Spring(one.height, one.stiffness, one.gap, one.strength) for one in section.contacts]
+    return Column(
+        layers,
+        section.motion,
+        joints=contacts,
+        impedance=section.impedance,
+        law=section.law,
+        gravity=section.gravity if section.law == "unilateral" else 0.0,
+        unsupported=section.base == "free",
+    )
 
 
 class BlockColumn(Prepared):
-    """A column of DDA blocks."""
+    """A column of DDA blocks whose springs are bonded."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme) -> None:
         self.scene = scene
         self.scheme = scheme
         self.section = column_of(scene)
-        section = self.section
         with naming(scene):
-            layers = [
-                Layer(layer.thickness, layer.density, layer.young, layer.poisson, layer.blocks)
-                for layer in section.layer
-            ]
-            springs = [Spring(joint.height, joint.stiffness) for joint in section.springs]
-            self.column = Column(layers, section.motion, section.glue, springs, section.impedance)
+            self.column = dda_column(self.section)
 
     def step_limit(self) -> StepLimit:
         """Return the limit of the scheme at the column's highest frequency: glue, joints and base springs included."""
         return dda_limit(lambda: highest_frequency(self.column))
 
+    def drive(self) -> Drive:
+        """Return what drives the column at t = 0 and at every step."""
+        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
+        return Drive(**vars(motion_at(self.scene, instants)))
+
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
         no_fields("dda with a column", self.scene, fields)
-        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
-        drive = Drive(**vars(motion_at(self.scene, instants)))
         with naming(self.scene):
-            result = solve_column(self.column, self.scheme, drive, self.scene.run.columns, self.section.heights)
+            result = solve_column(self.column, self.scheme, self.drive(), self.scene.run.columns, self.section.heights)
         return to_run(self.scene, result)
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
@@ -60,3 +85,77 @@ class BlockColumn(Prepared):
                 self.column, self.scheme, frequencies, excited_end, (DISPLACEMENT, PRESSURE), exact
             )
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
+
+
+class ContactColumn(BlockColumn):
+    """A column of DDA blocks whose contacts open or slip; forces and energies are per unit of area."""
+
+    result: ColumnContactResult | None = None
+
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme while all contacts are closed."""
+        return dda_limit(lambda: highest_frequency(self.column))
+
+    def history_run(self, fields: Path | None) -> Run:
+        """Run the scene."""
+        no_fields("dda with a column", self.scene, fields)
+        names = dict.fromkeys((*self.scene.run.columns, PRESSURE))
+        options = ColumnOptions(self.section.solve_limit, self.section.settled, states=True, energies=True)
+        with naming(self.scene):
+            result = solve_contact_column(
+                self.column, self.scheme, self.drive(), list(names), self.section.heights, options
+            )
+        self.result = result
+        return opened_run(self.scene, result, result.columns)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: what opens or slips has no frequency response."""
+        raise NotReported("dda: a column whose contacts open or slip has no frequency response")
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the changes of the contacts' states between the steps of the history that was run."""
+        result = self._result()
+        switches = []
+        for joint in self.column.joints:
+            name = f"{joint.height:g} m"
+            state = result.state_of(self.column.face_of(joint))
+            for n in np.flatnonzero(np.diff(state)) + 1:
+                time = float(result.time[n])
+                if OPEN in (state[n], state[n - 1]):
+                    switches.append(Switch(time, name, opens=bool(state[n] == OPEN)))
+                else:
+                    switches.append(Switch(time, name, opens=None, slips=bool(abs(state[n]) == SLIP)))
+        return tuple(sorted(switches, key=lambda switch: switch.time))
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contacts did in the history that was run."""
+        result = self._result()
+        record = result.record
+        if record is None:
+            raise NotReported("dda: no energies were kept")
+        mass = float(np.sum(self.column.densities * self.column.heights))
+        energies = result.energies or {}
+        start_energy = float(record[0, 0])
+        given = float(np.max(np.abs(energies["load"]), initial=0.0))
+        force = result.columns[PRESSURE]
+        return ContactRecord(
+            time=result.time,
+            force=force,
+            impulse=opened.impulse_of_force(force, self.scheme.step, self.scheme.delta),
+            penetration=record[DEEPEST, 1:],
+            gap=record[WIDEST, 1:],
+            open_share=record[OPEN_SHARE, 1:],
+            start_velocity=float(record[MOMENTUM, 0]) / mass,
+            start_energy=start_energy,
+            input_energy=start_energy + given,
+            velocity=record[MOMENTUM, 1:] / mass,
+            energies=energies,
+            solves=result.step_solves.astype(float),
+            cuts=np.zeros(len(result.time)),
+            slip=record[FURTHEST, 1:],
+        )
+
+    def _result(self) -> ColumnContactResult:
+        if self.result is None:
+            raise NotReported("dda: the scene was not run")
+        return self.result

@@ -103,6 +103,8 @@ PAPER = Study(
         "discount-map",
         "poisson-statics",
         "open-close",
+        "columns-solves-rest",
+        "columns-solves-shaken",
         "viscous",
         "creep-claim",
         "slope-sliding",

@@ -1,0 +1,652 @@
+r"""Time steps of a column whose contacts open or slip, in the force form.
+
+A block of mass m per area and stiffness K = E/h has a mean displacement u and a stretch e = top - foot, in which its
+inertia m, m/12 and its stiffness 0, K are diagonal; a rigid block has no e. With b = alpha dt^2 the step without
+contact forces gives every contact j, between the foot of block j and the top of the block below, the opening q_j, and
+forces N_j (up on the foot, down on the top below) change it by a matrix of three diagonals:
+
+    z = q + (C + diag(1/k)) N,      C_jj = b (A_j/D_j + A_{j-1}/D_{j-1}),      C_{j,j+1} = b B_j/D_j
+    A = m/3 + b K,      B = m/6 - b K,      D = (m/2)(m/6 + 2 b K)
+
+A unilateral contact has N >= 0, z >= 0 and z N = 0. A frictional one has -s <= N <= s and slips by z, positive at
+N = -s only and negative at N = s only. A bonded or welded one has z = 0. All are one problem: the least of a strictly
+convex function of N within bounds, which has exactly one solution. So no step is ever cut.
+
+The open-close iteration starts from the states of the last step, solves for the forces of all contacts that stick (a
+Thomas sweep over each run of them) and updates all states at once, until none changes. A contact whose slip has the
+wrong sign is set to what it would do alone (stick, or slip the other way): so the iteration contracts where every
+contact feels its neighbours less than half as much as itself. Where all B <= 0, unilateral contacts only close from the
+second solve on, and N contacts take N + 1 solves at most. If states changed `SWEEPS` times the number of contacts, one
+state is changed at a time (Murty 1974), which ends for every such matrix.
+
+What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments), so that
+neither stiff springs nor a long flight cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
+
+The kernel of a block, `dda.contact.kernel`, is dense and knows four states and two forces a contact; `dda.stepping`'s
+loop keeps forces, gaps and states of all contacts at every step, and cuts. A column of N blocks needs neither: its
+solve is O(N), and 80 contacts over 1e5 steps are kept only where they are observed. The names of the states are shared.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from dda.contact.dense import Vector
+from dda.contact.kernel import FOUND, NONE, ROUNDING
+from dda.contact.unilateral import OPEN, SLIP, STICK
+from dda.stepping.driver import OVERFLOW
+from dda.stepping.energy import ALGORITHMIC, DAMPING, FRICTION, GIVEN, IMPULSE, SUMS, SWITCHING, bulk_loss
+
+States = Any  # (n,) array, or a list of ints
+Rows = Any  # array of two dimensions
+
+LIMIT = 4  # outcome besides those of `dda.stepping.driver`: the limit of solves was exceeded
+SWEEPS = 4  # solves for each contact with all states updated at once; N + 1, in shear 2 N + 1, are the most known
+ONE_BY_ONE = 1000  # solves for each contact after that, beyond any known problem
+STORED_NOW = 3  # kinetic, strain and spring energy of a step, before its sums
+MOMENTUM, WIDEST, DEEPEST, OPEN_SHARE, FURTHEST = range(STORED_NOW + SUMS, STORED_NOW + SUMS + 5)  # after them
+RECORDED = FURTHEST + 1
+
+MOTION, SPEED, STRAIN, FORCES, GAP, SLIDE = range(6)  # what an observer reads
+
+
+class BlockColumn(NamedTuple):
+    """Blocks from the base upwards, (n,) each."""
+
+    mass: Vector  # m [kg/m^2]
+    stiffness: Vector  # K = E/h [Pa/m]; 0 where rigid
+    mobility: Vector  # dt^2/m, acceleration of the mean by a force
+    half_stretch: Vector  # that of the stretch by half the sum of the two forces; 0 where rigid
+    relaxation: Vector  # that of the stretch by the stretch itself [-]
+
+
+class JointLaws(NamedTuple):
+    """Contacts by the block above them, (n,) each; the first one is not used where the column does not rest on a base.
+
+    Where there is none at the base, the force N_0 there is none, or follows N_1 by a dashpot or the base's own motion.
+    """
+
+    diagonal: Vector  # C_jj + 1/k_j [m/Pa]
+    coupling: Vector  # (n + 1,) C_{j-1,j}, of the last block and the pressure on the top; 0 at first [m/Pa]
+    compliance: Vector  # 1/k_j [m/Pa]
+    lower: Vector  # bounds of the force [Pa]
+    upper: Vector
+    opens: States  # 1 of a unilateral contact
+
+
+class StepNumbers(NamedTuple):
+    """Numbers of the scheme and the base."""
+
+    alpha: float
+    delta: float
+    gg: float
+    step: float  # dt [s]
+    fall: float  # -g dt^2, acceleration by weight
+    first: int  # number of the lowest contact
+    welded: int  # 1 where the lowest block's foot moves as the base does
+    welded_mobility: float  # dt^2 / (m/3 + alpha dt^2 K) of its top; 0 where it is rigid
+    welded_coupling: float  # (m/6) / (m/3 + alpha dt^2 K), by which its top lags behind its foot; -1 where it is rigid
+    impedance: float  # z/dt of a half-space below
+    dashpot: float  # 1 / (1 + delta dt z A_0/D_0): what the dashpot leaves of its force before the step
+    dashpot_coupling: float  # by which N_1 changes the force N_0 of the dashpot
+    limit: int  # solves that end the run; 0: none
+
+
+class ColumnState(NamedTuple):
+    """Where the column is, in units of the step."""
+
+    u: Vector  # (n,) mean displacement [m]
+    w: Vector  # dt v
+    s: Vector  # dt^2 a
+    e: Vector  # (n,) stretch [m]
+    we: Vector
+    se: Vector
+    gap: Vector  # (n,) gap of a unilateral contact, negative when pressed; stretch of the spring of another [m]
+    slip: Vector  # (n,) sum of slips [m]
+    force: Vector  # (n + 1,) N at the foot of every block, and the pressure on the top [Pa]
+    state: States  # (n,) OPEN, STICK or SLIP in its direction
+
+
+class ColumnWork(NamedTuple):
+    """Room for a step."""
+
+    q: Vector  # (n,) openings without contact forces
+    opening: Vector  # (n,) z of the contacts that do not stick
+    pivot: Vector
+    right: Vector
+    tried: States
+
+
+class DriveSteps(NamedTuple):
+    """What drives the column at t = 0 and every step, (steps + 1,) each."""
+
+    displacement: Vector  # of the base [m]
+    velocity: Vector  # of the base, or of the incident wave above a half-space [m/s]
+    acceleration: Vector  # of the base [m/s^2]
+    pressure: Vector  # on the top [Pa]
+
+
+class Observed(NamedTuple):
+    """What is kept of every step."""
+
+    kind: States  # (columns,)
+    place: States  # block or contact
+    weight: Vector  # of the stretch beside the mean, or what is multiplied
+
+
+# ---- forces of the contacts ------------------------------------------------------------------------------------------
+
+
+def find_forces(
+    joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork, limit: int
+) -> tuple[int, int]:
+    """Find states and forces of contacts first..n-1 from the states `work.tried`; return outcome and solves.
+
+    Parameters
+    ----------
+    q
+        Openings without forces.
+    force
+        (n + 1,) forces: known ones outside of first..n-1 and those of contacts at a bound go in, all come out.
+    limit
+        Solves that end the search; 0: none.
+    """
+    together = SWEEPS * (n + 1)
+    solves = 0
+    while True:
+        solve_sticking(joints, first, n, q, force, work)
+        solves += 1
+        if solves <= together:
+            wrong = update_all(joints, first, n, q, force, work)
+        else:
+            wrong = update_first(joints, first, n, q, force, work)
+        if wrong == 0:
+            return FOUND, solves
+        if solves == limit:
+            return LIMIT, solves
+        if solves > together + ONE_BY_ONE * (n + 1):
+            return NONE, solves
+
+
+def solve_sticking(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork) -> None:
+    """Write the forces of the contacts that stick, given those of all others: Gauss, from the base upwards."""
+    coupling = joints.coupling
+    diagonal = joints.diagonal
+    pivot = work.pivot
+    right = work.right
+    tried = work.tried
+    sticks_below = False
+    for j in range(first, n):
+        if tried[j] != STICK:
+            sticks_below = False
+            continue
+        if sticks_below:
+            factor = coupling[j] / pivot[j - 1]
+            pivot[j] = diagonal[j] - factor * coupling[j]
+            right[j] = 0.0 - q[j] - factor * right[j - 1]
+        else:
+            pivot[j] = diagonal[j]
+            right[j] = 0.0 - q[j]
+            if j > 0:
+                right[j] -= coupling[j] * force[j - 1]
+        sticks_below = True
+    for j in range(n - 1, first - 1, -1):
+        if tried[j] == STICK:
+            force[j] = (right[j] - coupling[j + 1] * force[j + 1]) / pivot[j]
+
+
+def update_all(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork) -> int:
+    """Set all states that disagree with forces and openings, and the forces at bounds; return how many disagreed."""
+    coupling = joints.coupling
+    tried = work.tried
+    wrong = 0
+    below = 0.0
+    if first > 0:
+        below = force[0]
+    for j in range(first, n):
+        here = force[j]
+        state = tried[j]
+        if state == STICK:
+            if not joints.lower[j] < here < joints.upper[j]:
+                new = bound_state(joints, j, here)
+                if new != STICK:
+                    wrong += 1
+                    set_state(joints, j, new, force, tried)
+        else:
+            opening = q[j] + joints.diagonal[j] * here + coupling[j] * below + coupling[j + 1] * force[j + 1]
+            work.opening[j] = opening
+            if opening != 0 and (opening > 0) == (state == -SLIP):
+                wrong += 1
+                set_state(joints, j, alone(joints, j, here - opening / joints.diagonal[j]), force, tried)
+        below = here
+    return wrong
+
+
+def update_first(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork) -> int:
+    """Set the first state that disagrees by more than rounding; return whether there is one.
+
+    States that only rounding tells apart, as those of blocks which touch in common flight, agree with each other.
+    """
+    coupling = joints.coupling
+    largest = 0.0
+    for j in range(n + 1):
+        largest = max(largest, abs(force[j]))
+    slack = ROUNDING * largest
+    for j in range(first, n):
+        here = force[j]
+        state = work.tried[j]
+        if state == STICK:
+            if here < joints.lower[j] - slack or here > joints.upper[j] + slack:
+                set_state(joints, j, bound_state(joints, j, here), force, work.tried)
+                return 1
+        else:
+            opening = q[j] + joints.diagonal[j] * here + coupling[j + 1] * force[j + 1]
+            if j > 0:
+                opening += coupling[j] * force[j - 1]
+            work.opening[j] = opening
+            if abs(opening) > slack * joints.diagonal[j] and (opening > 0) == (state == -SLIP):
+                set_state(joints, j, alone(joints, j, here - opening / joints.diagonal[j]), force, work.tried)
+                return 1
+    return 0
+
+
+def bound_state(joints: JointLaws, j: int, force: float) -> int:
+    """Return the state of a contact that was taken to stick with some force; one of NaN keeps it."""
+    if force <= joints.lower[j]:
+        return OPEN if joints.opens[j] == 1 else SLIP
+    if force >= joints.upper[j]:
+        return -SLIP
+    return STICK
+
+
+def alone(joints: JointLaws, j: int, force: float) -> int:
+    """Return the state of a contact whose opening has the wrong sign, by the force that would close it alone."""
+    if force < joints.lower[j]:
+        return SLIP
+    if force > joints.upper[j]:
+        return -SLIP
+    return STICK
+
+
+def set_state(joints: JointLaws, j: int, state: int, force: Vector, tried: States) -> None:
+    """Write a state, and the force of a contact at a bound."""
+    tried[j] = state
+    if state == -SLIP:
+        force[j] = joints.upper[j]
+    elif state != STICK:
+        force[j] = joints.lower[j]
+
+
+# ---- the step --------------------------------------------------------------------------------------------------------
+
+
+def predict(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, drive: DriveSteps, step: int, q: Vector
+) -> None:
+    """Bring the state to that of gg and the old accelerations, and write the openings without contact forces."""
+    alpha = numbers.alpha
+    gg = numbers.gg
+    early = 0.5 - alpha
+    late = 1.0 - numbers.delta
+    fall = alpha * numbers.fall
+    u = state.u
+    w = state.w
+    s = state.s
+    e = state.e
+    we = state.we
+    se = state.se
+    gap = state.gap
+    relaxation = blocks.relaxation
+    if numbers.welded == 1:
+        below = predict_welded(numbers, blocks, state, drive, step)
+    else:
+        below = drive.displacement[step] - drive.displacement[step - 1]
+    for i in range(numbers.welded, len(u)):
+        moved = gg * w[i] + early * s[i]
+        u[i] += moved
+        w[i] = gg * w[i] + late * s[i]
+        moved += fall
+        half = gg * we[i] + early * se[i]
+        e[i] += half
+        we[i] = gg * we[i] + late * se[i]
+        half = 0.5 * (half - alpha * relaxation[i] * e[i])
+        q[i] = gap[i] + (moved - half - below)
+        below = moved + half
+
+
+def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> None:
+    """Write the state under the contact forces."""
+    alpha = numbers.alpha
+    delta = numbers.delta
+    fall = numbers.fall
+    u = state.u
+    w = state.w
+    s = state.s
+    e = state.e
+    we = state.we
+    se = state.se
+    force = state.force
+    mobility = blocks.mobility
+    half_stretch = blocks.half_stretch
+    relaxation = blocks.relaxation
+    below = force[numbers.welded]
+    for i in range(numbers.welded, len(u)):
+        above = force[i + 1]
+        a = fall + mobility[i] * (below - above)
+        ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
+        below = above
+        u[i] += alpha * a
+        w[i] += delta * a
+        s[i] = a
+        e[i] += alpha * ae
+        we[i] += delta * ae
+        se[i] = ae
+
+
+def predict_welded(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, drive: DriveSteps, step: int
+) -> float:
+    """Predict the lowest block, whose foot is the base; return how far its top moves without contact forces.
+
+    Displacement, velocity and acceleration of the foot are those of the base: from its displacement alone average
+    acceleration would make accelerations that alternate, ever more, around the right ones.
+    """
+    base = drive.displacement[step] - drive.displacement[step - 1]
+    base_speed = numbers.step * drive.velocity[step]
+    base_change = numbers.step * numbers.step * drive.acceleration[step]
+    top_speed = state.w[0] + state.we[0] / 2
+    top_change = state.s[0] + state.se[0] / 2
+    moved = numbers.gg * top_speed + (0.5 - numbers.alpha) * top_change
+    predicted_speed = numbers.gg * top_speed + (1.0 - numbers.delta) * top_change
+    if blocks.stiffness[0] == 0:
+        moved = base - numbers.alpha * base_change
+        predicted_speed = base_speed - numbers.delta * base_change
+    state.u[0] += (base + moved) / 2
+    state.e[0] += moved - base
+    state.w[0] = (base_speed + predicted_speed) / 2
+    state.we[0] = predicted_speed - base_speed
+    state.s[0] = base_change
+    return float(moved + numbers.alpha * top_acceleration(numbers, blocks, state, 0.0))
+
+
+def top_acceleration(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, above: float) -> float:
+    """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
+    weight = numbers.fall / blocks.mobility[0] / 2
+    force = weight - above - blocks.stiffness[0] * state.e[0]
+    return float(numbers.welded_mobility * force - numbers.welded_coupling * state.s[0])
+
+
+def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> None:
+    """Write the lowest block, whose foot is the base, and the force of the base on it."""
+    base_change = state.s[0]
+    a = top_acceleration(numbers, blocks, state, state.force[1])
+    state.u[0] += numbers.alpha * a / 2
+    state.e[0] += numbers.alpha * a
+    state.w[0] += numbers.delta * a / 2
+    state.we[0] += numbers.delta * a
+    if blocks.stiffness[0] == 0:
+        state.e[0] = 0.0
+        state.we[0] = 0.0
+    state.s[0] = (base_change + a) / 2
+    state.se[0] = a - base_change
+    state.force[0] = state.force[1] + (state.s[0] - numbers.fall) / blocks.mobility[0]
+
+
+def dashpot_force(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, velocity: float) -> float:
+    """Return the force of the half-space on a predicted column, z (2 v - velocity of the foot) [Pa]."""
+    foot = state.w[0] - state.we[0] / 2
+    foot += numbers.delta * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
+    force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
+    return force
+
+
+def accept_contacts(joints: JointLaws, first: int, state: ColumnState, work: ColumnWork) -> int:
+    """Write gaps, slips and states; return how many states changed."""
+    gap = state.gap
+    switches = 0
+    for j in range(first, len(gap)):
+        tried = work.tried[j]
+        if tried != state.state[j]:
+            switches += 1
+            state.state[j] = tried
+        if tried == OPEN:
+            gap[j] = work.opening[j]
+        else:
+            gap[j] = 0.0 - state.force[j] * joints.compliance[j]
+            if tried != STICK:
+                state.slip[j] += work.opening[j]
+    return switches
+
+
+def make_column_steps(
+    numbers: StepNumbers,
+    blocks: BlockColumn,
+    joints: JointLaws,
+    state: ColumnState,
+    before: ColumnState,
+    work: ColumnWork,
+    drive: DriveSteps,
+    observed: Observed,
+    values: Rows,
+    states: Rows,
+    solves: Any,
+    switches: Any,
+    energies: Rows,
+) -> tuple[int, int]:
+    """Make the steps; return how many were reached, and how it ended.
+
+    Parameters
+    ----------
+    before
+        Room for the state before a step, used with energies only.
+    values, states
+        (steps + 1, columns) what is observed, and (steps + 1, n) states of the contacts, or (0, n) if not asked for.
+    solves, switches
+        (steps + 1,) solves of the open-close iteration, the confirming one included, and states that changed.
+    energies
+        (steps + 1, RECORDED), or no rows if they are not asked for.
+    """
+    n = len(state.u)
+    first = numbers.first
+    force = state.force
+    write_step(numbers, blocks, joints, state, observed, 0, values, states, energies)
+    for step in range(1, len(values)):
+        if len(energies) > 0:
+            copy_state(state, before)
+        predict(numbers, blocks, state, drive, step, work.q)
+        force[n] = drive.pressure[step]
+        if first > 0 and numbers.impedance > 0:
+            force[0] = dashpot_force(numbers, blocks, state, drive.velocity[step])
+        for j in range(first, n):
+            work.tried[j] = state.state[j]
+        outcome, count = find_forces(joints, first, n, work.q, force, work, numbers.limit)
+        if outcome != FOUND:
+            solves[step] = count
+            return step - 1, outcome
+        if numbers.welded == 1:
+            correct_welded(numbers, blocks, state)
+        elif first > 0:
+            force[0] += numbers.dashpot_coupling * force[1]
+        correct(numbers, blocks, state)
+        solves[step] = count
+        switches[step] = accept_contacts(joints, first, state, work)
+        if len(energies) > 0:
+            for k in range(STORED_NOW, STORED_NOW + SUMS):
+                energies[step, k] = energies[step - 1, k]
+            account(numbers, blocks, joints, before, state, drive, step, energies)
+        if not write_step(numbers, blocks, joints, state, observed, step, values, states, energies):
+            return step - 1, OVERFLOW
+    return len(values) - 1, FOUND
+
+
+# ---- what is kept ----------------------------------------------------------------------------------------------------
+
+
+def write_step(
+    numbers: StepNumbers,
+    blocks: BlockColumn,
+    joints: JointLaws,
+    state: ColumnState,
+    observed: Observed,
+    step: int,
+    values: Rows,
+    states: Rows,
+    energies: Rows,
+) -> bool:
+    """Write what is kept of a state; tell whether it is finite."""
+    n = len(state.u)
+    for k in range(len(observed.kind)):
+        kind = observed.kind[k]
+        place = observed.place[k]
+        weight = observed.weight[k]
+        if kind == MOTION:
+            value = state.u[place] + weight * state.e[place]
+        elif kind == SPEED:
+            value = (state.w[place] + weight * state.we[place]) / numbers.step
+        elif kind == STRAIN:
+            value = weight * state.e[place]
+        elif kind == FORCES:  # that of one contact, or the mean of both of a rigid block
+            value = (1 - weight) * state.force[place] + weight * state.force[place + 1]
+        elif kind == GAP:
+            value = max(state.gap[place], 0.0) if joints.opens[place] == 1 else 0.0
+        else:
+            value = state.slip[place]
+        values[step, k] = value
+    if len(states) > 0:
+        for j in range(n):
+            states[step, j] = state.state[j]
+    if len(energies) > 0:
+        store(numbers, blocks, joints, state, energies, step)
+    total = 0.0
+    for i in range(n):
+        total += state.u[i]
+    return math.isfinite(total)
+
+
+def copy_state(source: ColumnState, target: ColumnState) -> None:
+    """Copy all but the states that a step does not lose."""
+    n = len(source.u)
+    for i in range(n):
+        target.u[i] = source.u[i]
+        target.w[i] = source.w[i]
+        target.s[i] = source.s[i]
+        target.e[i] = source.e[i]
+        target.we[i] = source.we[i]
+        target.se[i] = source.se[i]
+        target.gap[i] = source.gap[i]
+        target.slip[i] = source.slip[i]
+        target.force[i] = source.force[i]
+        target.state[i] = source.state[i]
+    target.force[n] = source.force[n]
+
+
+def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:
+    """Return half the squares of rates of all blocks by their inertia."""
+    total = 0.0
+    for i in range(len(mass)):
+        total += mass[i] * (mean[i] * mean[i] + stretch[i] * stretch[i] / 12)
+    return total / 2
+
+
+def store(
+    numbers: StepNumbers, blocks: BlockColumn, joints: JointLaws, state: ColumnState, energies: Rows, step: int
+) -> None:
+    """Write kinetic energy, strain energy and that of the springs [J/m^2], momentum, and the extremes of contacts."""
+    strain = 0.0
+    springs = 0.0
+    momentum = 0.0
+    widest = 0.0
+    deepest = 0.0
+    furthest = 0.0
+    open_contacts = 0
+    contacts = 0
+    for i in range(len(state.u)):
+        strain += blocks.stiffness[i] * state.e[i] * state.e[i] / 2
+        momentum += blocks.mass[i] * state.w[i]
+        if i >= numbers.first:
+            springs += joints.compliance[i] * state.force[i] * state.force[i] / 2
+        furthest = max(furthest, abs(state.slip[i]))
+        if joints.opens[i] == 1:
+            widest = max(widest, state.gap[i])
+            deepest = max(deepest, 0.0 - state.gap[i])
+            contacts += 1
+            if state.state[i] == OPEN:
+                open_contacts += 1
+    energies[step, 0] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
+    energies[step, 1] = strain
+    energies[step, 2] = springs
+    energies[step, MOMENTUM] = momentum / numbers.step
+    energies[step, WIDEST] = widest
+    energies[step, DEEPEST] = deepest
+    energies[step, OPEN_SHARE] = open_contacts / max(contacts, 1)
+    energies[step, FURTHEST] = furthest
+
+
+def account(
+    numbers: StepNumbers,
+    blocks: BlockColumn,
+    joints: JointLaws,
+    before: ColumnState,
+    after: ColumnState,
+    drive: DriveSteps,
+    step: int,
+    energies: Rows,
+) -> None:
+    """Add what a step loses, and what weight, pressure, base and half-space put in [J/m^2]; see `dda.stepping.energy`.
+
+    All forces act with the weights 1 - delta and delta at the two ends of the step. A base that moves with a block
+    welded to it does not move as Newmark's formulas do: its work is as accurate as the scheme.
+    """
+    n = len(after.u)
+    first = numbers.first
+    late = numbers.delta
+    dt2 = numbers.step * numbers.step
+    row = energies[step]
+    scale = STORED_NOW
+    row[scale + DAMPING] += (1 - numbers.gg * numbers.gg) * kinetic_of(blocks.mass, before.w, before.we) / dt2
+    stiff = 0.0
+    change = 0.0
+    work = 0.0
+    for i in range(n):
+        stretched = after.e[i] - before.e[i]
+        stiff += blocks.stiffness[i] * stretched * stretched
+        faster = after.s[i] - before.s[i]
+        wider = after.se[i] - before.se[i]
+        change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
+        work += numbers.fall / dt2 * blocks.mass[i] * (after.u[i] - before.u[i])
+    kinetic = kinetic_of(blocks.mass, after.s, after.se) - kinetic_of(blocks.mass, before.s, before.se)
+    row[scale + ALGORITHMIC] += bulk_loss(numbers.alpha, late, 1 / dt2, stiff, kinetic, change)
+    for j in range(first, n):
+        mean_force = (1 - late) * before.force[j] + late * after.force[j]
+        slipped = after.slip[j] - before.slip[j]
+        stored = before.force[j] * before.force[j] - after.force[j] * after.force[j]
+        friction = 0.0 - after.force[j] * slipped
+        lost = stored * joints.compliance[j] / 2 - mean_force * (after.gap[j] - before.gap[j] + slipped) - friction
+        place = ALGORITHMIC if before.state[j] == after.state[j] else SWITCHING
+        row[scale + place] += lost
+        row[scale + FRICTION] += friction
+    foot = after.u[0] - before.u[0] - (after.e[0] - before.e[0]) / 2
+    if first == 0:
+        foot = drive.displacement[step] - drive.displacement[step - 1]
+    top = after.u[n - 1] - before.u[n - 1] + (after.e[n - 1] - before.e[n - 1]) / 2
+    base_force = (1 - late) * before.force[0] + late * after.force[0]
+    top_force = (1 - late) * before.force[n] + late * after.force[n]
+    row[scale + GIVEN] += work + base_force * foot - top_force * top
+    row[scale + IMPULSE] += numbers.step * base_force
+    if step == 1:  # A0 may be any, later accelerations follow from the forces
+        row[scale + ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)
+
+
+def missing_work(numbers: StepNumbers, blocks: BlockColumn, before: ColumnState, after: ColumnState) -> float:
+    """Return the work in the first step of the forces at t = 0 that A0 leaves out [J/m^2]."""
+    dt2 = numbers.step * numbers.step
+    work = 0.0
+    for i in range(len(after.u)):
+        missing = before.force[i] - before.force[i + 1] + blocks.mass[i] * (numbers.fall - before.s[i]) / dt2
+        work += missing * (after.u[i] - before.u[i])
+        if blocks.stiffness[i] > 0:
+            missing = 0.0 - (before.force[i] + before.force[i + 1]) / 2 - blocks.stiffness[i] * before.e[i]
+            missing -= blocks.mass[i] / 12 * before.se[i] / dt2
+            work += missing * (after.e[i] - before.e[i])
+    return work

@@ -1,0 +1,219 @@
+"""What drives a column: pieces of entire functions, each with its Taylor coefficients and a bound on what follows them.
+
+A drive is a displacement of the base (or of the wave that comes up through the half-space) or a pressure on the top.
+On each piece it is a polynomial, a sine or a Ricker pulse, so that a step that ends where the piece does has a power
+series with a proven remainder.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from flint import arb, arb_poly, arb_series, ctx
+
+TAIL_SUM = 7.0
+"""Bounds sum of (1 + i)^3 q^i for q <= 1/4, what the terms of a tail and three of its derivatives come to."""
+RICKER_ANGLE = 0.5
+"""Greatest pi f times a step: the radius sqrt(m/2) of Cauchy's estimate is then beyond four steps from 8 terms on."""
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Sum of c_k (t - origin)^k."""
+
+    coefficients: tuple[float | arb, ...]
+    origin: float = 0.0  # [s]
+    frequency: float = 0.0  # no bound on the step
+
+    def series(self, start: arb, length: float, count: int) -> list[arb]:
+        """Coefficients of the first powers of (t - start) / length."""
+        about = arb_poly([start - arb(self.origin), arb(length)])
+        shifted = arb_poly([arb(c) for c in self.coefficients])(about).coeffs()
+        return [*shifted, *[arb(0)] * count][:count]
+
+    def tail(self, start: arb, length: float, count: int) -> arb:
+        """Bound of the terms from `count` on times the cube of their number."""
+        return arb(0) if len(self.coefficients) <= count else arb("inf")
+
+
+@dataclass(frozen=True)
+class Sine:
+    """offset + amplitude sin(w (t - origin) + quarters pi / 2)."""
+
+    amplitude: arb
+    rate: arb  # w [rad/s]
+    offset: arb
+    quarters: int = 0
+    origin: float = 0.0  # [s]
+
+    @property
+    def frequency(self) -> float:
+        """Greatest rate [rad/s]."""
+        return float(self.rate.upper())
+
+    def series(self, start: arb, length: float, count: int) -> list[arb]:
+        """Coefficients of the first powers of (t - start) / length."""
+        angle = self.rate * (start - arb(self.origin))
+        sine, cosine = angle.sin(), angle.cos()
+        turns = [sine, cosine, -sine, -cosine]
+        step = self.rate * arb(length)
+        power = self.amplitude
+        coefficients = []
+        for k in range(count):
+            coefficients.append(power * turns[(k + self.quarters) % 4])
+            power = power * step / (k + 1)
+        coefficients[0] += self.offset
+        return coefficients
+
+    def tail(self, start: arb, length: float, count: int) -> arb:
+        """Bound of the terms from `count` on times the cube of their number."""
+        step = self.rate * arb(length)
+        return TAIL_SUM * arb(count) ** 3 * abs(self.amplitude) * step**count / arb(count).fac()
+
+
+@dataclass(frozen=True)
+class Ricker:
+    """size (1 - 2 b^2) e^(-b^2) with b = pi f (t - 2/f), or its integral size (t - 2/f) e^(-b^2)."""
+
+    size: float
+    pulse_frequency: float  # f [Hz]
+    integral: bool
+
+    @property
+    def frequency(self) -> float:
+        """Rate that stands for the step allowed, in the measure of `Sine` [rad/s]."""
+        return 3.1416 * self.pulse_frequency / RICKER_ANGLE
+
+    def series(self, start: arb, length: float, count: int) -> list[arb]:
+        """Coefficients of the first powers of (t - start) / length."""
+        f = arb(self.pulse_frequency)
+        late = start - 2 / f
+        before, ctx.cap = ctx.cap, count
+        try:
+            delay = arb_series([late, arb(length)], prec=count)
+            b = delay * (arb.pi() * f)
+            bell = (b * b * -1).exp() * arb(self.size)
+            pulse = bell * delay if self.integral else bell - bell * b * b * 2
+            coefficients = [pulse[k] for k in range(count)]
+        finally:
+            ctx.cap = before
+        return coefficients
+
+    def tail(self, start: arb, length: float, count: int) -> arb:
+        """Bound of the terms from `count` on times the cube of their number, by Cauchy's estimate on a disc."""
+        f = arb(self.pulse_frequency)
+        w = arb.pi() * f
+        # e^(-b^2) is at most e^(y^2) where |Im b| <= y; y^2 = count / 2 makes the estimate least
+        y = (arb(count) / 2).sqrt()
+        radius = y / (w * arb(length))
+        largest = abs(w * (start - 2 / f)) + y
+        factor = largest / w if self.integral else 1 + 2 * largest**2
+        return TAIL_SUM * arb(count) ** 3 * abs(arb(self.size)) * factor * (y * y).exp() / radius**count
+
+
+Piece = Polynomial | Sine | Ricker
+NOTHING = Polynomial((0.0,))
+
+
+@dataclass(frozen=True)
+class Course:
+    """A function of time in pieces; the first one reaches back to t = 0."""
+
+    breaks: tuple[float, ...]  # where the second and each further piece begins, increasing [s]
+    pieces: tuple[Piece, ...]
+
+    def piece_at(self, time: float) -> tuple[Piece, float | None]:
+        """Return the piece from an instant on, and where it ends; None: it does not."""
+        index = bisect_right(self.breaks, time)
+        end = self.breaks[index] if index < len(self.breaks) else None
+        return self.pieces[index], end
+
+
+Drive = Callable[[], Course]
+"""Makes its course in the precision of the current context."""
+
+
+def still() -> Course:
+    """Nothing."""
+    return Course((), (NOTHING,))
+
+
+def half_sine(size: float, duration: float, integral: bool = False) -> Drive:
+    """Size sin(pi t / T) until T and nothing after it, or its integral."""
+
+    def course() -> Course:
+        rate = arb.pi() / arb(duration)
+        amplitude = arb(size)
+        if not integral:
+            return Course((duration,), (Sine(amplitude, rate, arb(0)), NOTHING))
+        reach = amplitude / rate
+        return Course((duration,), (Sine(-reach, rate, reach, quarters=1), Polynomial((2 * reach,))))
+
+    return course
+
+
+def sine(size: float, frequency: float, integral: bool = False, quarters: int = 0) -> Drive:
+    """Size sin(2 pi f t + quarters pi / 2) from t = 0 on, or its integral from t = 0."""
+
+    def course() -> Course:
+        rate = 2 * arb.pi() * arb(frequency)
+        if not integral:
+            return Course((), (Sine(arb(size), rate, arb(0), quarters),))
+        reach = arb(size) / rate
+        before = (quarters - 1) % 4
+        at_start = reach * (0, 1, 0, -1)[before]
+        return Course((), (Sine(reach, rate, -at_start, before),))
+
+    return course
+
+
+def triangle(size: float, duration: float, integral: bool = False) -> Drive:
+    """Size (1 - t/T) until T and nothing after it, or its integral."""
+
+    def course() -> Course:
+        p = arb(size)
+        T = arb(duration)
+        if not integral:
+            return Course((duration,), (Polynomial((p, -p / T)), NOTHING))
+        return Course((duration,), (Polynomial((arb(0), p, -p / (2 * T))), Polynomial((p * T / 2,))))
+
+    return course
+
+
+def ricker(size: float, frequency: float, integral: bool = False) -> Drive:
+    """Return a Ricker pulse about 2/f, or its integral."""
+    return lambda: Course((), (Ricker(size, frequency, integral),))
+
+
+def recorded(times: Sequence[float], values: Sequence[float], integrals: int = 0) -> Drive:
+    """A record that is linear between its rows and zero outside of them, integrated 0, 1 or 2 times.
+
+    Parameters
+    ----------
+    times
+        Instants of the rows, increasing [s].
+    values
+        What is recorded.
+    integrals
+        How often it is integrated; its integrals are zero before the first row.
+    """
+
+    def course() -> Course:
+        pieces: list[Piece] = [NOTHING]
+        at_row = [arb(0)] * integrals  # the first integral and the second
+        for i, start in enumerate(times):
+            polynomial = [arb(0)]
+            span = arb(0)
+            if i + 1 < len(times):
+                span = arb(times[i + 1]) - arb(start)
+                value = arb(values[i])
+                polynomial = [value, (arb(values[i + 1]) - value) / span]
+            for level in range(integrals):
+                polynomial = [at_row[level], *(c / (k + 1) for k, c in enumerate(polynomial))]
+                at_row[level] = arb_poly(polynomial)(span)
+            pieces.append(Polynomial(tuple(polynomial), start))
+        return Course(tuple(times), tuple(pieces))
+
+    return course

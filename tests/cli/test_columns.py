@@ -1,0 +1,80 @@
+"""`contact`, `advise` and `show` of columns whose contacts open or slip."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from conftest import refused, typed
+
+from validation.cli.app import NUMERICAL_FAILURE
+
+STACK = """
+[column]
+motion = "pressure"
+law = "unilateral"
+stiffness = 1.0e9
+gravity = 9.81
+{more}
+
+[[column.layer]]
+thickness = 7.0
+density = 2500.0
+young = inf
+blocks = 7
+velocity = -1.0
+
+[time]
+step = 1.0e-3
+steps = 30
+
+[run]
+solvers = ["dda"]
+"""
+
+
+@pytest.fixture
+def stack(tmp_path: Path) -> Path:
+    path = tmp_path / "stack.toml"
+    path.write_text(STACK.format(more=""))
+    return path
+
+
+def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack: Path) -> None:
+    data = json.loads(typed("contact", stack, "--json").stdout)
+    run = data["runs"]["dda"]
+    assert run["contact.most_solves"] == 8.0 == data["limits"]["solves"]  # the first impact closes one in each solve
+    assert run["contact.p99_solves"] == 8.0 and 1 < run["contact.mean_solves"] < 8
+    page = typed("contact", stack)
+    assert page.returncode == 0
+    lines = page.stdout.splitlines()
+    assert any(line.split()[-2:] == ["step", "8"] for line in lines if line.startswith("most solves"))
+    assert any(line.startswith("Allow 8 solves") for line in lines)
+
+
+def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "limited.toml"
+    path.write_text(STACK.format(more="solve_limit = 6"))
+    done = typed("contact", path)
+    assert done.returncode == NUMERICAL_FAILURE
+    assert "needs more solves than its limit" in done.stdout
+    assert "ALARM solve limit" in done.stdout
+
+
+def test_advise_needs_no_target_for_a_column_of_contacts(stack: Path) -> None:
+    assert json.loads(typed("advise", stack, "--json").stdout)["solves"] == 8
+    assert typed("advise", stack).stdout.startswith("Allow 8 solves")
+    assert "--damping and --fmax" in refused("advise", stack, "--fmax", "10")
+
+
+def test_show_draws_the_contacts(stack: Path) -> None:
+    page = typed("show", stack).stdout
+    assert "rigid, v = -1 m/s" in page
+    assert "contacts: law = unilateral, stiffness = 1e+09 Pa/m, gravity = 9.81 m/s2" in page
+    numbers = json.loads(typed("show", stack, "--json").stdout)["numbers"]
+    assert (numbers["contacts"]["low"], numbers["solves"]["low"]) == (7, 8)
+
+
+def test_what_is_of_a_block_is_refused_of_a_column(stack: Path) -> None:
+    assert "takes scenes of a block only" in refused("contact", stack, "--penetration", "1e-3")

@@ -1,0 +1,174 @@
+"""The adapter of the exact motion of columns whose contacts open or slip."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.drive import motion_at
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.columns.events import drive_of
+from validation.solvers.registry import get_solver, solve
+
+LAYERS = [
+    {"thickness": 2.0, "density": 2400.0, "young": 1e9, "poisson": 0.2, "blocks": 2, "velocity": -0.5},
+    {"thickness": 1.5, "density": 2000.0, "young": math.inf, "blocks": 1, "velocity": -0.5},
+]
+OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
+SLIPS = {"motion": "shear", "law": "frictional", "stiffness": 5e8, "strength": 2e4, "layer": LAYERS}
+HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
+
+
+def scene_of(column: dict[str, Any], columns: list[str], steps: int = 400, **tables: Any) -> Scene:
+    time = {"step": 5e-5, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"} | tables.pop("time", {})
+    run = {"solvers": ["dda", "column-events"], "columns": columns}
+    return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, **tables}, "made")
+
+
+def history(scene: Scene, solver: str = "column-events") -> dict[str, np.ndarray]:
+    run = solve(scene, solver)
+    assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
+    return dict(run.history.columns)
+
+
+def names(*parts: str, numbers: range = range(1, 6)) -> list[str]:
+    return [f"{part}_{number}" for part in parts for number in numbers]
+
+
+@pytest.mark.parametrize("column", [OPENS, SLIPS])
+@pytest.mark.parametrize("base", ["rigid", "transmitting", "free"])
+def test_dda_tends_to_it_with_order_two(column: dict[str, Any], base: str) -> None:
+    half_space = {"base_density": 2600.0, "base_speed": 900.0} if base == "transmitting" else {}
+    column = column | {"base": base} | half_space
+    columns = ["displacement", "contact_pressure", *names("displacement", "velocity", "stress")]
+    columns += [f"force_{number}" for number in ((1, 3, 4) if base == "rigid" else (3, 4))]
+    drive = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
+    exact = history(scene_of(column, columns, input=drive))
+    errors = []
+    for dt in (1e-5, 2.5e-6):
+        scene = scene_of(column, columns, round(0.02 / dt), input=drive, time={"step": dt})
+        stepped = history(scene, "dda")
+        stride = round(5e-5 / dt)
+        error = []
+        for name, values in exact.items():
+            scale = np.abs(values).max()
+            if scale:
+                error.append(np.abs(stepped[name][stride - 1 :: stride] - values).max() / scale)
+        errors.append(np.array(error))
+    # of forces and velocities order one at least, since switches lie between steps
+    assert errors[1].max() < 2e-3
+    assert (errors[1] < 0.3 * errors[0] + 1e-9).all()
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        {"at": "base", "shape": "ricker", "velocity": 0.3, "frequency": 60.0},
+        {"at": "base", "shape": "half-sine", "velocity": 0.3, "duration": 0.01},
+        {"at": "base", "shape": "triangle", "velocity": 0.3, "duration": 0.01},
+        {"at": "base", "shape": "sine", "velocity": 0.3, "frequency": 40.0},
+        {"at": "base", "shape": "cosine", "velocity": 0.3, "frequency": 40.0},
+        {"at": "top", "shape": "ricker", "pressure": 3e5, "frequency": 60.0},
+        {"at": "top", "shape": "triangle", "pressure": 3e5, "duration": 0.01},
+        {"at": "base", "record": "velocity"},
+        {"at": "base", "record": "acceleration"},
+        {"at": "top", "record": "pressure"},
+        {},
+    ],
+    ids=str,
+)
+def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -> None:
+    from flint import arb
+
+    if "record" in drive:
+        record = tmp_path / "record.csv"
+        record.write_text(f"time,{drive['record']}\n0.002,0.5\n0.005,-1\n0.012,3\n0.03,0\n")
+        drive = drive | {"record": str(record)}
+    scene = scene_of(OPENS, ["displacement"], **({"input": drive} if drive else {}))
+    times = np.array([0.0, 0.001, 0.0033, 0.009, 0.0151, 0.02])
+    motion = motion_at(scene, times)
+    for at, integral, expected in (("base", True, motion.displacement), ("top", False, motion.pressure)):
+        course = drive_of(scene, at, integral)()
+        values = [float(course.piece_at(t)[0].series(arb(t), 1.0, 1)[0]) for t in times.tolist()]
+        np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
+
+
+def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains() -> None:
+    columns = ["displacement", "contact_pressure", *names("displacement", "stress"), "force_1", "force_3", "force_4"]
+    columns += ["gap_1", "gap_3"]
+    values = history(scene_of(OPENS, columns))
+    middle = values["displacement_2"]  # of the lowest block, whose foot and top are the heights 1 and 3
+    np.testing.assert_allclose(middle, (values["displacement_1"] + values["displacement_3"]) / 2, rtol=1e-13)
+    np.testing.assert_allclose(values["force_1"], values["contact_pressure"])
+    np.testing.assert_allclose(values["stress_5"], values["force_4"] / 2, atol=1e-9)  # rigid, nothing on its top
+    modulus = 1e9 * 0.8 / (1.2 * 0.6)
+    strain = (values["displacement_1"] - values["displacement_3"]) / 1.0
+    np.testing.assert_allclose(values["stress_2"], modulus * strain, rtol=1e-9, atol=1e-3)
+    np.testing.assert_allclose(values["displacement"], values["displacement_5"], rtol=1e-15)
+    closed = values["force_1"] > 0
+    assert closed.any() and not closed.all()
+    assert (values["gap_1"][closed] == 0).all()
+    assert (values["gap_1"][~closed] > 0).all()
+
+
+def test_notes_name_switches_and_the_proven_radius() -> None:
+    run = solve(scene_of(OPENS, ["displacement"]), "column-events")
+    assert run.notes[0] == "exact in time"
+    assert run.notes[1].startswith("0 m closes at ")
+    assert sum(note.startswith("proven: ") for note in run.notes) == 2
+    assert any(note.startswith("at zero gap") for note in run.notes) is False
+    touching = OPENS | {"gap": 0.0, "joint": [{"height": 0.0, "stiffness": 1e9, "gap": 0.01}]}
+    run = solve(scene_of(touching, ["displacement"]), "column-events")
+    assert any(note.startswith("at zero gap") and "1, 2 m" in note for note in run.notes)
+
+
+BONDED = {"motion": "pressure", "layer": [LAYERS[0] | {"velocity": 0.0}], "heights": []}
+RICKER = {"input": {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 50.0}}
+
+
+@pytest.mark.parametrize(
+    ("column", "tables", "word"),
+    [
+        (OPENS | {"stiffness": math.inf}, {}, "rigid joints"),
+        (OPENS, {"time": {"gg": 0.99}}, "kinetic damping"),
+        (BONDED, RICKER, "unilateral"),
+    ],
+)
+def test_what_it_cannot_do_is_refused_by_name(column: dict[str, Any], tables: dict[str, Any], word: str) -> None:
+    scene = scene_of(column, ["displacement"], **tables)
+    assert word in str(get_solver("column-events").refusal(scene))
+    with pytest.raises(InputError, match=word):
+        solve(scene, "column-events")
+
+
+def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fem_reference.events import column_events
+
+    monkeypatch.setattr(column_events, "MOST_DIGITS", 30)
+    monkeypatch.setattr(column_events, "PROMISED", 1e-60)
+    run = solve(scene_of(OPENS, ["displacement"]), "column-events")
+    assert run.outcome is Outcome.HORIZON
+    assert "exact up to" in run.notes[0]
+
+
+def test_the_record_of_its_contacts_keeps_momentum_and_energy() -> None:
+    scene = scene_of(OPENS, ["contact_pressure"], steps=600)
+    prepared = get_solver("column-events").prepare(scene)
+    prepared.run()
+    record = prepared.contact_record()
+    assert [switch.corner for switch in prepared.switches()][:3] == ["0 m", "1 m", "2 m"]
+    energy = sum(record.energies.values())
+    np.testing.assert_allclose(energy, record.start_energy, rtol=1e-11)
+    steps = np.linspace(0, scene.time.step * 600, 60001)[1:]
+    force = prepared.motion.at(steps).base_force
+    impulse = np.cumsum(force) * (steps[1] - steps[0])
+    ends = np.interp(record.time, steps, impulse)
+    np.testing.assert_allclose(record.impulse, ends, atol=1e-4 * np.abs(ends).max())
+    assert 0 < record.penetration.max() < record.gap.max()
+    assert (record.open_share == 1).any()
+    assert record.velocity is not None
+    assert record.slip is not None and not record.slip.any()

@@ -1,0 +1,136 @@
+"""The adapter of `dda` for columns whose contacts open or slip: columns, switches, record and outcomes of a scene."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.column_cases import CASES
+
+from validation.engine.measure import attempt
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers.registry import get_solver
+
+LAYER = {"thickness": 5.0, "density": 2500.0, "young": math.inf, "blocks": 5, "velocity": -1.0}
+
+
+def scene_of(column: dict[str, Any], columns: list[str], step: float = 1e-4, steps: int = 400, **tables: Any) -> Scene:
+    whole = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [LAYER]} | column
+    time = {"step": step, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
+    data = {"column": whole, "time": time, "run": {"solvers": ["dda"], "columns": columns}}
+    return parse_scene(data | tables, "column.toml")
+
+
+def dropped(**column: Any) -> Scene:
+    """Return the five blocks of case A2, which land and leave their base."""
+    joint = {"height": 0.0, "stiffness": 1e9, "gap": 0.005}
+    heights = [0.5, 1.5, 2.5, 3.5, 4.5, 0.0, 3.0]
+    names = [f"{part}_{k}" for part in ("displacement", "velocity") for k in range(1, 6)]
+    names += ["force_6", "gap_6", "gap_7", "contact_pressure", "stress_1"]
+    whole = {"gap": 0.0005, "joint": [joint], "gravity": 9.81, "heights": heights} | column
+    return scene_of(whole, names, step=1.5e-5, steps=4000)
+
+
+def test_a_scene_of_dropped_blocks_ends_as_the_exact_motion_does() -> None:
+    prepared = get_solver("dda").prepare(dropped())
+    run = prepared.run()
+    assert run.outcome is Outcome.COMPLETED
+    for name, value in CASES["A2"].exact.items():
+        assert run.history.columns[name][-1] == pytest.approx(value, rel=2e-4), name
+    np.testing.assert_array_equal(run.history.columns["force_6"], run.history.columns["contact_pressure"])
+    force, gap = run.history.columns["force_6"], run.history.columns["gap_6"]
+    assert np.all((force == 0) | (gap == 0)) and gap.max() > 0 and force.max() > 0
+    switches = prepared.switches()
+    exact = [0.004883, 0.006858, 0.008876, 0.010846, 0.012783, 0.017403, 0.020670, 0.023681, 0.025085, 0.025338]
+    assert [(switch.corner, switch.opens) for switch in switches] == [
+        *((f"{j} m", False) for j in range(5)),
+        *((f"{j} m", True) for j in (4, 3, 2, 0, 1)),
+    ]
+    assert [switch.time for switch in switches] == pytest.approx(exact, abs=3e-5)
+
+
+def test_the_record_of_contacts_balances_and_counts() -> None:
+    prepared = get_solver("dda").prepare(dropped())
+    prepared.run()
+    record = prepared.contact_record()
+    assert record.solves is not None and record.cuts is not None and record.velocity is not None
+    assert (record.solves.min(), record.solves.max(), record.cuts.max()) == (1, 2, 0)
+    assert (record.start_velocity, record.start_energy) == pytest.approx((-1.0, 6250.0))
+    momentum = 12500 * (record.velocity[-1] + 1.0) + 12500 * 9.81 * record.time[-1]
+    assert record.impulse[-1] == pytest.approx(momentum, rel=1e-9)
+    total = sum(record.energies.values())
+    assert np.abs(total - record.start_energy).max() < 1e-11 * record.input_energy
+    assert record.open_share[0] == 1.0 and record.open_share.min() == 0.0 and record.open_share[-1] == 1.0
+    assert record.force.max() / 1e9 <= record.penetration.max() < 2 * record.force.max() / 1e9  # that of any contact
+    assert record.gap[-1] > 0.005 and record.slip is not None and not record.slip.any()
+
+
+def test_a_settled_column_stays_where_its_weight_has_put_it() -> None:
+    scene = scene_of(
+        {"gravity": 9.81, "settled": True, "layer": [LAYER | {"velocity": 0.0, "young": 1e9}]},
+        ["displacement", "contact_pressure"],
+    )
+    prepared = get_solver("dda").prepare(scene)
+    history = prepared.run().history
+    forces = 2500 * 9.81 * np.arange(5, 0, -1.0)
+    top = -(forces / 1e9 + (forces + np.append(forces[1:], 0.0)) / 2e9).sum()
+    np.testing.assert_allclose(history.columns["displacement"], top, rtol=1e-10)
+    np.testing.assert_allclose(history.columns["contact_pressure"], forces[0], rtol=1e-10)
+    record = prepared.contact_record()
+    assert np.abs(sum(record.energies.values())).max() < 1e-9
+    assert prepared.switches() == ()
+
+
+@pytest.mark.parametrize(
+    ("case", "lowest", "highest"),
+    [(0, -23.765, -1.320), (1, -22.386, 2.107), (2, -24.06, -1.71), pytest.param(3, -17.92, -0.013)],
+)
+def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int, lowest: float, highest: float) -> None:
+    scene = load_scene("columns-slips-steps").expand()[case]
+    prepared = get_solver("dda").prepare(scene)
+    history = prepared.run().history
+    digits = 6e-4 if case < 2 else 6e-3
+    assert 1e3 * history.columns["slip_1"][-1] == pytest.approx(lowest, abs=digits)
+    assert 1e3 * history.columns["slip_5"][-1] == pytest.approx(highest, abs=digits)
+    record = prepared.contact_record()
+    assert record.slip is not None
+    assert record.slip[-1] == np.abs([history.columns[f"slip_{k}"][-1] for k in range(1, 6)]).max()
+    assert record.energies["friction"][-1] > 0
+    assert not record.open_share.any() and not record.gap.any()
+    switches = prepared.switches()
+    assert {switch.opens for switch in switches} == {None}
+    assert {switch.slips for switch in switches} == {True, False}
+
+
+def test_six_solves_are_too_few_for_ten_touching_blocks() -> None:
+    scene = load_scene("columns-domino").expand()[0].with_values({"column.solve_limit": 6})
+    run = attempt(get_solver("dda"), scene, full=False)[1]
+    assert run.outcome is Outcome.SOLVE_LIMIT
+    assert "at step 1" in run.notes[-1]
+    enough = attempt(get_solver("dda"), scene.with_values({"column.solve_limit": 11}), full=False)[1]
+    assert enough.outcome is Outcome.COMPLETED
+
+
+@pytest.mark.parametrize(
+    ("column", "columns", "value"),
+    [
+        ({"heights": [0.5]}, ["gap_1"], "gap_1"),
+        ({"heights": [0.5]}, ["displacement_2"], "displacement_2"),
+    ],
+)
+def test_a_height_without_a_contact_has_no_gap(column: dict[str, Any], columns: list[str], value: str) -> None:
+    with pytest.raises(InputError) as refused:
+        get_solver("dda").prepare(scene_of(column, columns))
+    assert refused.value.field == "run.columns"
+    assert value in str(refused.value)
+
+
+def test_an_explicit_step_of_welded_faces_is_refused() -> None:
+    joint = {"height": 2.0, "stiffness": 1e9}
+    scene = scene_of({"stiffness": None, "joint": [joint]}, ["displacement"]).with_values({"time.alpha": 0.0})
+    with pytest.raises(InputError, match="stiffness: must be finite"):
+        get_solver("dda").prepare(scene).history_run(None)

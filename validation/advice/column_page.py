@@ -1,0 +1,73 @@
+"""What `dda-validate contact` says of a column whose contacts open or slip: its runs, and what its steps need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from validation.advice import columns, contact_page
+from validation.runs.row import Row, Value
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
+
+LINES = (  # what a line is called, its metric, and how the value is scaled and written
+    ("switches", "switches.count", 1.0, ""),
+    ("mean of the contacts' open shares", "contact.open_share", 100.0, " %"),
+    ("largest gap", "contact.gap", 1e3, " mm"),
+    ("largest penetration", "contact.penetration", 1e3, " mm"),
+    ("largest slip", "contact.slip", 1e3, " mm"),
+    ("greatest stress on the base", "contact.peak_force", 1e-6, " MPa"),
+    ("mean solves a step", "contact.mean_solves", 1.0, ""),
+    ("solves that one step in a hundred exceeds", "contact.p99_solves", 1.0, ""),
+    ("most solves in a step", "contact.most_solves", 1.0, ""),
+    ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
+    ("repeatable to 1e-6 up to", "horizon.time", 1.0, " s"),
+)
+
+
+def scenes(scene: Scene) -> dict[str, Scene]:
+    """Return the scene that each solver runs: the exact motion has no kinetic damping."""
+    handled = {name for name in features.OF_MOVING_COLUMN if name in features.of(scene)}
+    free = scene.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else scene
+    exact = [name for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles]
+    return {contact_page.own(): scene} | dict.fromkeys(exact, free)
+
+
+def answer(scene: Scene, rows: Mapping[str, Row], known: columns.ColumnLimits) -> dict[str, Any]:
+    """Return everything as plain data."""
+    return {
+        "scene": scene.name,
+        "limits": columns.plain(known),
+        "runs": {name: contact_page.measured(row) for name, row in rows.items()},
+        "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
+    }
+
+
+def page(
+    scene: Scene, known: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the lines of one page of text; `absent` says why a solver has no column."""
+    t = scene.time
+    yield f"{scene.name}: {scene.title or 'a column whose contacts open or slip'}"
+    yield (
+        f"{known.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
+    )
+    yield ""
+    yield from contact_page.aligned(table(scene, data["runs"]))
+    yield from (f"{name}: {why}" for name, why in absent.items())
+    yield ""
+    yield from columns.advised(scene, known)
+    for alarm in data["alarms"]:
+        yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
+
+
+def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[contact_page.Line]:
+    """Return the runs side by side; a line that no run has a number for is left out."""
+    lines: list[contact_page.Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    for words, metric, factor, unit in LINES:
+        values = [contact_page.written(run.get(metric), factor, unit) for run in runs.values()]
+        if any(value != contact_page.NONE for value in values):
+            lines.append((words, *values))
+    return lines
