@@ -23,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, solveh_banded
+from scipy.linalg import lapack
 from scipy.sparse import csr_array, hstack
 
 from fem_reference.column.mesh import LineMesh, line_mesh
@@ -37,6 +37,8 @@ AT_LOWER, INSIDE, AT_UPPER = -1, 0, 1
 """States of a force: open, or at one of its strengths; closed, or sticking."""
 COMPLETED, UNSOLVED = "completed", "no consistent contact state"
 States = NDArray[np.int8]
+TOGETHER = 2
+"""Solves for each contact, and three more, in which all states change at once."""
 
 
 @dataclass(frozen=True)
@@ -147,10 +149,14 @@ class ContactProblem:
         inside = states == INSIDE
         fixed = np.where(states == AT_UPPER, self.upper, np.where(states == AT_LOWER, self.lower, 0.0))
         right = np.where(inside, -q - self.times(fixed), 0.0)
-        band = np.zeros((2, len(q)))
-        band[1] = np.where(inside, self.diagonal, 1.0)
-        band[0, 1:] = np.where(inside[1:] & inside[:-1], self.beside, 0.0)
-        return np.asarray(np.where(inside, solveh_banded(band, right, check_finite=False), fixed))
+        diagonal = np.where(inside, self.diagonal, 1.0)
+        if len(q) == 1:
+            return np.asarray(np.where(inside, right / diagonal, fixed))
+        beside = np.where(inside[1:] & inside[:-1], self.beside, 0.0)
+        _, _, N, failed = lapack.dptsv(diagonal, beside, right)
+        if failed:
+            raise UnsolvedStepError("the forces of the contacts are no numbers")
+        return np.asarray(np.where(inside, N, fixed))
 
     def following(self, N: Array, z: Array) -> States:
         """States that forces and openings ask for, each as if its contact were alone."""
@@ -168,19 +174,18 @@ class ContactProblem:
         UnsolvedStepError
             If the limit of solves is reached, or the numbers are none.
         """
-        together = 2 * len(q) + 3
+        together = TOGETHER * len(q) + 3
         solves = 0
         while True:
-            try:
-                N = self.forces(q, states)
-            except (LinAlgError, ValueError) as error:
-                raise UnsolvedStepError("the forces of the contacts are no numbers") from error
+            N = self.forces(q, states)
             solves += 1
             z = np.where(states == INSIDE, 0.0, q + self.times(N))
             following = self.following(N, z)
+            if not math.isfinite(N.sum()):
+                raise UnsolvedStepError("the forces of the contacts are no numbers")
             if np.array_equal(following, states):
                 return N, z, states, solves
-            if solves == limit or not np.all(np.isfinite(N)):
+            if solves == limit:
                 raise UnsolvedStepError(f"the open-close iteration has not ended after {solves} solves")
             if solves > together:
                 wrong = int(np.argmax(following != states))
@@ -355,7 +360,8 @@ class ContactStepper:
         s = self.scheme
         predicted = state.D + s.gg * s.step * state.V + s.step**2 * (0.5 - s.alpha) * state.A
         slowed = s.gg * state.V + s.step * (1 - s.delta) * state.A
-        free = self.solve(F - self.C @ slowed - self.K @ predicted)
+        drag = self.C @ slowed if self.model.impedance is not None else 0.0
+        free = self.solve(F - drag - self.K @ predicted)
         slip = state.opening if self.column.law == "frictional" else -self.gaps
         q = self.B @ (predicted + self.b * free) - self.base_opening(base) - slip
         N, z, states, solves = self.problem.solve(q, state.states, self.column.solve_limit)
@@ -421,26 +427,36 @@ def solve_contacts(
     column.ground.check_heights(heights)
     began = perf_counter()
     stepper = ContactStepper(column, elements, degree, scheme)
-    rows = [_row(stepper, name, heights) for name in columns]
+    observed = _Observed(stepper, columns, heights)
     ready = perf_counter()
-    records: list[tuple[Array, ColumnState]] = []
-    outcome, notes = COMPLETED, ()
-    mass = stepper.model.M @ np.ones(stepper.mesh.size)
+    steps = len(excitation.pressure) - 1
+    histories = np.zeros((len(columns) + 1, steps))
+    states = np.zeros((len(column.contacts), steps), np.int8)
+    openings = np.zeros(states.shape)
+    solves = np.zeros(steps)
+    reached = 0
+    outcome = COMPLETED
+    notes: tuple[str, ...] = ()
     with np.errstate(all="ignore"):
         try:
             for step, state in enumerate(stepper.march(excitation)):
-                if step:
-                    records.append((_observed(stepper, state, excitation, step, rows), state))
+                if step == 0:
+                    continue
+                histories[:, step - 1] = observed.after(state)
+                states[:, step - 1] = state.states
+                openings[:, step - 1] = state.opening
+                solves[step - 1] = state.solves
+                reached = step
         except UnsolvedStepError as error:
             outcome = UNSOLVED
-            notes = (f"step {len(records) + 1}: {error}",)
+            notes = (f"step {reached + 1}: {error}",)
+    e = excitation
+    parts = np.array([e.displacement, e.velocity, e.acceleration, np.ones(steps + 1)])
+    histories += observed.of_base @ parts[:, 1:]
     ended = perf_counter()
-    values = np.array([observed for observed, _ in records]).reshape(len(records), len(columns)).T
-    states = [state for _, state in records]
-    base_velocity = excitation.velocity[1 : len(records) + 1]
     return ColumnContactResult(
-        time=scheme.step * np.arange(1.0, len(records) + 1),
-        columns=dict(zip(columns, values, strict=True)),
+        time=scheme.step * np.arange(1.0, reached + 1),
+        columns=dict(zip(columns, histories[:-1, :reached], strict=True)),
         unknowns=len(stepper.model.free),
         nonzeros=int(stepper.S.nnz),
         factorisations=stepper.work.factorisations,
@@ -449,85 +465,75 @@ def solve_contacts(
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
         outcome=outcome,
-        step_solves=np.array([state.solves for state in states], dtype=float),
-        states=np.array([state.states for state in states], dtype=np.int8).reshape(len(records), -1).T,
-        openings=np.array([state.opening for state in states]).reshape(len(records), -1).T,
-        mean_velocity=np.array([mass[stepper.model.free] @ state.V for state in states]) / mass.sum()
-        + (mass[stepper.model.base] / mass.sum() * base_velocity if stepper.prescribed else 0.0),
+        step_solves=solves[:reached],
+        states=states[:, :reached],
+        openings=openings[:, :reached],
+        mean_velocity=histories[-1, :reached],
     )
 
 
-@dataclass(frozen=True)
-class _Row:
-    """Which part of a state a column of the history is, and the weights of its numbers."""
+class _Observed:
+    """Columns of the history, and last the mean velocity, as rows on a state and on the motion of the base."""
 
-    part: str  # of `ColumnState`, or "base": the force of the base, "gap", "slip"
-    weights: Array  # of all unknowns, or of the contacts
+    def __init__(self, stepper: ContactStepper, columns: Sequence[str], heights: Sequence[float]) -> None:
+        model = stepper.model
+        count = len(columns) + 1
+        full = np.zeros((3, count, stepper.mesh.size))  # on displacement, velocity and acceleration
+        self.force = np.zeros((count, len(stepper.column.contacts)))
+        self.opening = np.zeros_like(self.force)
+        self.of_base = np.zeros((count, 4))  # on displacement, velocity and acceleration of the base, and one
+        self.opens = stepper.column.law == "unilateral"
+        for number, name in enumerate(columns):
+            if name == PRESSURE:
+                self._add_base_force(stepper, number, full)
+            else:
+                self._add(stepper, number, name, heights, full)
+        mass = stepper.model.M @ np.ones(stepper.mesh.size)
+        full[1, -1] = mass / mass.sum()
+        if stepper.prescribed:
+            self.of_base[:, :3] += full[:, :, model.base].T
+        self.full = full[:, :, model.free]
 
-
-def _row(stepper: ContactStepper, name: str, heights: Sequence[float]) -> _Row:
-    """How a column of the history is observed."""
-    mesh, contacts = stepper.mesh, stepper.column.contacts
-    if name == DISPLACEMENT:
-        return _Row("D", np.eye(1, mesh.size, mesh.top)[0])
-    if name == PRESSURE:
-        return _Row("base", np.eye(1, len(contacts), 0)[0])
-    part, _, number = name.rpartition("_")
-    parts = {"displacement": "D", "velocity": "V", "stress": "D", "force": "force", "gap": "gap", "slip": "slip"}
-    if part not in parts or not number.isdigit() or not 1 <= int(number) <= len(heights):
-        raise ValueError(f"columns: must be of the top, the base or one of {len(heights)} heights, got {name!r}")
-    height = heights[int(number) - 1]
-    if part in ("force", "gap", "slip"):
-        distances = [abs(contact.height - height) for contact in contacts]
+    def _add(self, stepper: ContactStepper, number: int, name: str, heights: Sequence[float], full: Array) -> None:
+        mesh = stepper.mesh
+        if name == DISPLACEMENT:
+            full[0, number, mesh.top] = 1.0
+            return
+        part, _, digits = name.rpartition("_")
+        known = part in ("displacement", "velocity", "stress", "force", "gap", "slip")
+        if not (known and digits.isdigit() and 1 <= int(digits) <= len(heights)):
+            raise ValueError(f"columns: must be of the top, the base or one of {len(heights)} heights, got {name!r}")
+        height = heights[int(digits) - 1]
+        if part not in ("force", "gap", "slip"):
+            full[int(part == "velocity"), number] = mesh.row(height, stress=part == "stress")
+            return
+        distances = [abs(contact.height - height) for contact in stepper.column.contacts]
         nearest = int(np.argmin(distances))
         if distances[nearest] > NEAR * stepper.column.ground.height:
             raise ValueError(f"columns: must be of a height where a contact is, got {name!r} at {height!r}")
-        return _Row(part, np.eye(1, len(contacts), nearest)[0])
-    return _Row(parts[part], mesh.row(height, stress=part == "stress"))
+        if part == "force":
+            self.force[number, nearest] = 1.0
+        elif (part == "gap") == self.opens:
+            self.opening[number, nearest] = 1.0
 
-
-def _observed(
-    stepper: ContactStepper, state: ColumnState, excitation: Excitation, step: int, rows: Sequence[_Row]
-) -> Array:
-    """Values of the rows after a step."""
-    model, e = stepper.model, excitation
-    full = {}
-    for part, values, base in (
-        ("D", state.D, e.displacement[step]),
-        ("V", state.V, e.velocity[step]),
-        ("A", state.A, e.acceleration[step]),
-    ):
-        full[part] = np.full(stepper.mesh.size, base)
-        full[part][model.free] = values
-    opens = stepper.column.law == "unilateral"
-    observed = []
-    for row in rows:
-        if row.part in full:
-            values = full[row.part]
-        elif row.part == "force":
-            values = state.force
-        elif row.part == "gap":
-            values = np.maximum(state.opening, 0.0) if opens else np.zeros_like(state.opening)
-        elif row.part == "slip":
-            values = np.zeros_like(state.opening) if opens else state.opening
+    def _add_base_force(self, stepper: ContactStepper, number: int, full: Array) -> None:
+        """Force of the base on the column: of a contact, of a half-space, or what the prescribed motion takes."""
+        model = stepper.model
+        if stepper.column.unsupported:
+            return
+        if stepper.column.foot_contact:
+            self.force[number, 0] = 1.0
+        elif model.impedance is not None:
+            full[1, number, model.base] = -model.impedance
+            self.of_base[number, 1] = 2 * model.impedance
         else:
-            observed.append(_base_force(stepper, state, full, e, step))
-            continue
-        observed.append(float(row.weights @ values))
-    return np.array(observed)
+            full[0, number] = model.K[[model.base]].toarray()[0]
+            full[2, number] = model.M[[model.base]].toarray()[0]
+            self.of_base[number, 3] = -stepper.weight[model.base]
 
-
-def _base_force(
-    stepper: ContactStepper, state: ColumnState, full: dict[str, Array], excitation: Excitation, step: int
-) -> float:
-    """Force of the base on the column [Pa]."""
-    model = stepper.model
-    if stepper.column.unsupported:
-        return 0.0
-    if stepper.column.foot_contact:
-        return float(state.force[0])
-    if model.impedance is not None:
-        return float(model.impedance * (2 * excitation.velocity[step] - full["V"][model.base]))
-    base = [model.base]
-    held = model.K[base] @ full["D"] + model.M[base] @ full["A"]
-    return float(held[0] - stepper.weight[model.base])
+    def after(self, state: ColumnState) -> Array:
+        """Values after a step, but for what the base adds."""
+        opening = np.maximum(state.opening, 0.0) if self.opens else state.opening
+        D, V, A = self.full
+        values: Array = D @ state.D + V @ state.V + A @ state.A + self.force @ state.force + self.opening @ opening
+        return values
