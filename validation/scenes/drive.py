@@ -109,17 +109,6 @@ def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
     InputError
         The file cannot be read, its header is another, or its instants do not increase.
     """
-    return partial(recorded, *read_record(path, at))
-
-
-def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
-    """Read the instants of a record, its values, and how often these were derived from a displacement.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, its header is another, or its instants do not increase.
-    """
     names, table = read_table(path)
     allowed = ("velocity", "acceleration") if at == "base" else ("pressure",)
     if len(names) != 2 or names[1] not in allowed:
