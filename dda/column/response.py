@@ -84,7 +84,7 @@ def highest_frequency(column: Column) -> float:
     """Return the highest natural frequency [rad/s] with all springs closed, which limits an explicit scheme.
 
     Rigid contacts that may open or slip are left out: they only lower it. So is the dashpot of a half-space, which
-    leaves the foot of a column of contacts free; a bonded column counts as held there.
+    leaves the foot of a column free.
     """
     from scipy.linalg import eigh
 
@@ -106,7 +106,7 @@ def highest_frequency(column: Column) -> float:
 
 def _faces(column: Column) -> tuple[np.ndarray, np.ndarray]:
     """Return the displacements of the feet and of the tops of all blocks by those that are free, (blocks, unknowns)."""
-    held = column.rests_on_base or column.law == "bonded"
+    held = column.rests_on_base
     count = 0
     numbers: list[tuple[int, int]] = []  # of the unknowns of foot and top; -1 is held
     for block, spring in enumerate(column.springs):

@@ -15,9 +15,12 @@ SMALL = 40  # unknowns up to which a dense solver finds it
 
 
 def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> float:
-    """Return the highest natural frequency on a base that is held [rad/s]."""
+    """Return the highest natural frequency [rad/s], the base held; on a half-space the foot of the column is free."""
     mesh = line_mesh(ground, elements, degree)
-    free = np.delete(np.arange(mesh.size), mesh.base_node)
+    free = np.arange(mesh.size)
+    massless = mesh.M.diagonal()[mesh.base_node] == 0  # a joint lies on it
+    if ground.impedance is None or massless:
+        free = np.delete(free, mesh.base_node)
     M, K = (matrix[free][:, free].tocsc() for matrix in (mesh.M, mesh.K))
     if len(free) <= SMALL:
         return math.sqrt(float(np.linalg.eigvals(np.linalg.solve(M.toarray(), K.toarray())).real.max()))

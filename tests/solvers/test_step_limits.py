@@ -26,11 +26,13 @@ COLUMN: dict[str, Any] = {
     "motion": "shear",
     "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
 }
+HALF_SPACE: dict[str, Any] = COLUMN | {"base": "transmitting", "base_density": 2000.0, "base_speed": 10.0}
 STACK: dict[str, Any] = {
     "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
     "stiffness": 1e9,
 }
 PULSE: dict[str, Any] = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
+KNOCK: dict[str, Any] = {"at": "top", "shape": "half-sine", "pressure": 1e5, "duration": 0.5}
 LIMIT = 1.5192e-3  # s of the paper's block on p = 1e9 N/m, alpha = 0, delta = 1/2
 
 
@@ -68,6 +70,8 @@ SCENES = {
         {"column": {**STACK, "motion": "shear", "law": "frictional", "strength": 1e5}},
     ),
     "column of elements": ("fem", {"column": COLUMN, "input": PULSE}),
+    "blocks on a half-space": ("dda", {"column": HALF_SPACE, "input": KNOCK}),
+    "elements on a half-space": ("fem", {"column": HALF_SPACE, "input": KNOCK, "fem": {"elements": 1, "degree": 1}}),
 }
 
 
