@@ -29,7 +29,7 @@ LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
 BOUND_BITS = 96  # of matrices that only bound
-SOFTEST = 32  # part of the highest rate that the metric of the error gives to an unknown without a spring
+SOFTEST = 8  # part of the highest rate that the metric of the error gives to an unknown without a spring
 
 
 @dataclass(frozen=True)
