@@ -102,7 +102,7 @@ class LineMesh:
         return self.parts[-1].end(top=True)
 
 
-def line_mesh(ground: Ground, elements: Sequence[int], degree: int) -> LineMesh:
+def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: bool = True) -> LineMesh:
     """Mesh a column.
 
     Parameters
@@ -111,6 +111,8 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int) -> LineMesh:
         Number of elements of each stratum.
     degree
         Of the elements, 1 or 2.
+    springs
+        Whether its joints have their springs; else they only cut the column.
 
     Raises
     ------
@@ -130,7 +132,7 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int) -> LineMesh:
         basis = Basis(MeshLine(layer_nodes), ELEMENTS[degree]())
         first = parts[-1].first + parts[-1].size if parts else 0
         parts.append(Part(basis, moduli[stratum], densities[stratum], first))
-    return _joined(ground, parts)
+    return _joined(ground, parts, springs)
 
 
 def _elements(ground: Ground, elements: Sequence[int]) -> tuple[Array, Array, Array]:
@@ -143,13 +145,15 @@ def _elements(ground: Ground, elements: Sequence[int]) -> tuple[Array, Array, Ar
     return nodes[apart], moduli, np.array([stratum.density for stratum in ground.strata])
 
 
-def _joined(ground: Ground, parts: list[Part]) -> LineMesh:
-    """Put the parts together with the springs between them."""
+def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
+    """Put the parts together, with the springs between them."""
     size, base = parts[-1].first + parts[-1].size, parts[0].end(top=False)
     ordered = [stiffness for _, stiffness in sorted(ground.joints)]
     inner = ordered[len(ordered) - len(parts) + 1 :]
     faces = [(below.end(top=True), above.end(top=False)) for below, above in itertools.pairwise(parts)]
-    if len(ordered) > len(inner):  # a joint below the column: a node of its own below the spring
+    if not springs:
+        inner, faces = [], []
+    elif len(ordered) > len(inner):  # a joint below the column: a node of its own below the spring
         inner, faces = ordered, [(size, base), *faces]
         base, size = size, size + 1
     M, K = (csr_array(block_diag([part.matrix(form) for part in parts])) for form in (inertia, elasticity))

@@ -61,10 +61,10 @@ TAKES: dict[str, set[str]] = {
     features.SLOPE: {"dda", "fem", "fenicsx", "block-events"},
     features.ROTATION: {"dda"},
     features.COLUMN: {"dda", "fem", "layers"},
-    features.UNILATERAL_COLUMN: {"dda", "column-events"},
-    features.FRICTIONAL_COLUMN: {"dda", "column-events"},
+    features.UNILATERAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
+    features.FRICTIONAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
     features.RIGID_BLOCKS: {"dda", "column-events"},
-    features.RIGID_JOINTS: {"dda"},
+    features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step

@@ -285,6 +285,9 @@ class FiniteElements(Solver):
             features.UNILATERAL,
             features.IMPLICIT,
             features.COLUMN,
+            features.UNILATERAL_COLUMN,
+            features.FRICTIONAL_COLUMN,
+            features.RIGID_JOINTS,
             features.DAMPING,
             features.ADAPTIVE,
             features.RAMP,
@@ -310,9 +313,10 @@ class FiniteElements(Solver):
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
         if scene.column is not None:
-            from validation.solvers.columns.elements import LineColumn
+            from validation.solvers.columns.elements import ContactLineColumn, LineColumn
 
-            return LineColumn(scene, scheme_of(scene))
+            kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
+            return kind(scene, scheme_of(scene))
         if features.ADAPTIVE in features.of(scene):
             return AdaptiveMesh(scene, full)
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

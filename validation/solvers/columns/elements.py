@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.problem.problem import Array, Scheme
+from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Complex
+from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
+from validation.solvers import opened
 from validation.solvers.columns.names import amplitude, column_of
-from validation.solvers.contract import Prepared
+from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import naming, no_fields, to_run
+from validation.solvers.translation import naming, no_fields, opened_run, to_run
+
+if TYPE_CHECKING:
+    from fem_reference.column.contacts import ColumnContactResult, ContactColumn
 
 
 def ground_of(scene: Scene) -> Ground:
@@ -26,6 +34,25 @@ def ground_of(scene: Scene) -> Ground:
     joints = tuple((joint.height, joint.stiffness) for joint in c.springs)
     with naming(scene):
         return Ground(strata, c.motion, joints, c.impedance)
+
+
+def contact_column_of(scene: Scene) -> ContactColumn:
+    """Return the column of a scene whose contacts open or slip."""
+    from fem_reference.column.contacts import ColumnContact, ContactColumn
+
+    c = column_of(scene)
+    strata = tuple(Stratum(x.thickness, x.density, x.young, x.poisson) for x in c.layer)
+    with naming(scene):
+        return ContactColumn(
+            ground=Ground(strata, c.motion, impedance=c.impedance),
+            law="unilateral" if c.law == "unilateral" else "frictional",
+            contacts=tuple(ColumnContact(one.height, one.stiffness, one.gap, one.strength) for one in c.contacts),
+            velocities=tuple(layer.velocity for layer in c.layer),
+            gravity=c.gravity if c.law == "unilateral" else 0.0,
+            unsupported=c.base == "free",
+            settled=c.settled,
+            solve_limit=c.solve_limit,
+        )
 
 
 def excitation(scene: Scene, instants: Array) -> Excitation:
@@ -79,3 +106,85 @@ class LineColumn(Prepared):
                 self.ground, self.elements, degree, self.scheme, frequencies, on_top, columns, exact
             )
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
+
+
+class ContactLineColumn(Prepared):
+    """A column of line elements whose contacts open or slip; forces are per unit of area."""
+
+    result: ColumnContactResult | None = None
+
+    def __init__(self, scene: Scene, scheme: Scheme) -> None:
+        self.scene = scene
+        self.scheme = scheme
+        self.column = contact_column_of(scene)
+        c = column_of(scene)
+        self.elements = [layer.blocks * scene.fem.per_side for layer in c.layer]
+        self.heights = c.heights
+
+    def step_limit(self) -> StepLimit:
+        """Return the limit of the scheme at the largest frequency of the elements, all contacts closed."""
+        from fem_reference.column.frequency import highest_frequency
+        from fem_reference.scheme.limits import critical_omega
+
+        ground = self.column.ground
+        springs = [(one.height, one.stiffness) for one in self.column.contacts if np.isfinite(one.stiffness)]
+        closed = replace(ground, joints=tuple(springs))
+        degree = self.scene.fem.degree
+        return StepLimit(critical_omega, lambda: highest_frequency(closed, self.elements, degree))
+
+    def history_run(self, fields: Path | None) -> Run:
+        """Run the scene."""
+        from fem_reference.column.contacts import solve_contacts
+
+        no_fields("fem with a column", self.scene, fields)
+        names = list(dict.fromkeys((*self.scene.run.columns, PRESSURE)))
+        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
+        drive = excitation(self.scene, instants)
+        degree = self.scene.fem.degree
+        with naming(self.scene):
+            self.result = solve_contacts(self.column, self.elements, degree, self.scheme, drive, names, self.heights)
+        return opened_run(self.scene, self.result, self.result.columns)
+
+    def switches(self) -> tuple[Switch, ...]:
+        """Return the changes of the contacts' states between the steps of the history that was run."""
+        result = self._result()
+        switches = []
+        opens = self.column.law == "unilateral"
+        for contact, states in zip(self.column.contacts, result.states, strict=True):
+            for n in np.flatnonzero(np.diff(states)) + 1:
+                inside = bool(states[n] == 0)
+                time = float(result.time[n])
+                name = f"{contact.height:g} m"
+                switches.append(Switch(time, name, not inside) if opens else Switch(time, name, None, not inside))
+        return tuple(sorted(switches, key=lambda switch: switch.time))
+
+    def contact_record(self) -> ContactRecord:
+        """Return what the contacts did in the history that was run; the elements report no energies."""
+        result = self._result()
+        column = self.column
+        masses = np.array([stratum.density * stratum.thickness for stratum in column.ground.strata])
+        velocities = np.array(column.velocities)
+        start_energy = float(masses @ velocities**2) / 2
+        force = result.columns[PRESSURE]
+        opens = column.law == "unilateral"
+        openings = result.openings if opens else np.zeros_like(result.openings)
+        return ContactRecord(
+            time=result.time,
+            force=force,
+            impulse=opened.impulse_of_force(force, self.scheme.step, self.scheme.delta),
+            penetration=np.maximum(0.0, -openings).max(axis=0),
+            gap=np.maximum(0.0, openings).max(axis=0),
+            open_share=np.asarray((result.states < 0).mean(axis=0) if opens else np.zeros(len(result.time))),
+            start_velocity=float(masses @ velocities / masses.sum()),
+            start_energy=start_energy,
+            input_energy=start_energy,
+            velocity=result.mean_velocity,
+            solves=result.step_solves,
+            cuts=np.zeros(len(result.time)),
+            slip=None if opens else np.abs(result.openings).max(axis=0),
+        )
+
+    def _result(self) -> ColumnContactResult:
+        if self.result is None:
+            raise NotReported("fem: the scene was not run")
+        return self.result

@@ -1,0 +1,388 @@
+"""Line elements on contacts that open or slip: exact motions of blocks and bars, balances, the contact problem."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem_reference.column import contacts
+from fem_reference.column.contacts import (
+    AT_LOWER,
+    AT_UPPER,
+    INSIDE,
+    ColumnContact,
+    ColumnState,
+    ContactColumn,
+    ContactProblem,
+    ContactStepper,
+    UnsolvedStepError,
+    solve_contacts,
+)
+from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.column.stepping import solve_line
+from fem_reference.events import bars_events, bars_model
+from fem_reference.problem.problem import Scheme
+
+AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
+
+
+def scheme(numbers: tuple[float, float], dt: float, gg: float = 1.0, start: str = "consistent") -> Scheme:
+    return Scheme(numbers[0], numbers[1], gg, dt, start)
+
+
+def ground(*strata: tuple[float, float, float], motion: str = "pressure", impedance: float | None = None) -> Ground:
+    """Strata by thickness, density and modulus of pressure, or twice that of shear."""
+    return Ground(tuple(Stratum(*numbers, 0.0) for numbers in strata), motion, impedance=impedance)  # type: ignore[arg-type]
+
+
+def still(steps: int, **parts: np.ndarray) -> Excitation:
+    rest = dict.fromkeys(("displacement", "velocity", "acceleration", "pressure"), np.zeros(steps + 1))
+    return Excitation(**(rest | parts))
+
+
+def half_sine(size: float, duration: float, t: np.ndarray) -> np.ndarray:
+    return np.where(t < duration, size * np.sin(np.pi * t / duration), 0.0)
+
+
+DROPPED = ContactColumn(
+    ground((1.0, 2500.0, 1e9), (1.0, 2500.0, 1e9)),
+    "unilateral",
+    (ColumnContact(0.0, 2e9, 0.01), ColumnContact(1.0, 1e9, 0.001)),
+    (-1.0, -1.0),
+    gravity=9.81,
+)
+SIX = ground(*[(1.0, 2500.0, 1e9)] * 6)
+SPALL = ContactColumn(SIX, "unilateral", tuple(ColumnContact(float(j), 1e10) for j in range(6)), (0.0,) * 6)
+SETTLED = replace(SPALL, gravity=9.81, settled=True)
+SHEARED = ContactColumn(
+    ground(*[(2.0, 2000.0, 4e8)] * 6, motion="shear", impedance=2000 * math.sqrt(1e5)),
+    "frictional",
+    tuple(ColumnContact(2.0 * j, *((1e9, 0.0, 1e5) if j == 3 else (1e10,))) for j in range(1, 6)),
+    (0.0,) * 6,
+)
+CRADLE = ContactColumn(
+    ground(*[(1.0, 1.0, 1.0)] * 4),
+    "unilateral",
+    tuple(ColumnContact(float(j), 5.0) for j in (1, 2, 3)),
+    (1.0, 0.0, 0.0, 0.0),
+    unsupported=True,
+)
+TWO_BARS = ContactColumn(
+    ground((1.0, 1.0, 1.0), (1.0, 1.0, 1.0)),
+    "unilateral",
+    (ColumnContact(0.0, 10.0), ColumnContact(1.0, 10.0, 0.05)),
+    (-1.0, -1.0),
+    gravity=0.05,
+)
+
+
+def errors_of_blocks(column: ContactColumn, numbers: tuple[float, float], count: int) -> float:
+    """Error of the blocks' means, or of the slip, at an instant at which the motion of one strain a block is known."""
+    if column is DROPPED:
+        until, exact = 0.04, [0.008074626541482, 0.01092205296678]
+        names, heights = ["displacement_1", "displacement_2"], [0.5, 1.5]
+    elif column is SETTLED:
+        until = 0.01
+        exact = [-0.0009942924468433, -0.002645196854866, -0.003649613067974, -0.00387598727646, -0.003721306803229]
+        names, heights = [f"displacement_{k}" for k in range(1, 6)], [0.5, 1.5, 2.5, 3.5, 4.5]
+    else:
+        until, exact, names, heights = 0.2, [-0.0150593288608], ["slip_1"], [6.0]
+    dt = until / count
+    t = dt * np.arange(count + 1)
+    drive = still(count)
+    if column is SETTLED:
+        drive = still(count, pressure=half_sine(2e6, 0.004, t))
+    elif column is SHEARED:
+        drive = still(count, velocity=half_sine(0.5, 0.05, t))
+    strata = len(column.ground.strata)
+    result = solve_contacts(column, [1] * strata, 1, scheme(numbers, dt), drive, names, heights)
+    assert result.outcome == "completed" and len(result.time) == count and result.step_solves.max() <= 3
+    final = np.array([result.columns[name][-1] for name in names])
+    return float(np.abs(final - exact).max() / np.abs(exact).max())
+
+
+@pytest.mark.parametrize("column", [DROPPED, SETTLED, SHEARED], ids=["dropped", "settled", "sheared"])
+def test_one_element_a_block_tends_to_the_blocks_of_one_strain(column: ContactColumn) -> None:
+    coarse, fine = (errors_of_blocks(column, AVERAGE, count) for count in (1000, 4000))
+    assert fine < 3e-4 and math.log(coarse / fine, 4) > 1.7  # of the second order
+    coarse, fine = (errors_of_blocks(column, CONSTANT, count) for count in (2000, 8000))
+    assert fine < 4e-2 and 0.7 < math.log(coarse / fine, 4) < 1.2
+
+
+def run_means(stepper: ContactStepper, state: ColumnState) -> np.ndarray:
+    """Mean velocity of each run of elements."""
+    momentum = stepper.M @ state.V
+    mass = stepper.M @ np.ones_like(state.V)
+    runs = [slice(run.first, run.first + run.size) for run in stepper.mesh.parts]
+    return np.array([momentum[run].sum() / mass[run].sum() for run in runs])
+
+
+def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: int) -> float:
+    """Error of the bars' velocities on a mesh of so many elements a bar and half their travel time as the step."""
+    strata = column.ground.strata
+    z = math.sqrt(strata[0].density * strata[0].young)
+    travel = strata[0].density / z
+    end = {CRADLE: 6.0, TWO_BARS: 8.0, SPALL: 0.04}[column]
+    dt = travel / count / 2
+    steps = round(end / dt)
+    drive, top = still(steps), ()
+    if column is SPALL:
+        drive = still(steps, pressure=half_sine(2e6, 0.004, dt * np.arange(steps + 1)))
+        top = bars_model.half_sine(2e6, 0.004)
+    bars = tuple(
+        bars_model.Bar(one.thickness, one.density, one.young, velocity)
+        for one, velocity in zip(strata, column.velocities, strict=True)
+    )
+    joints = [bars_model.BarJoint("unilateral", one.stiffness, one.gap) for one in column.contacts]
+    foot = [None] if column.unsupported else []
+    problem = bars_model.BarsProblem(bars, (*foot, *joints), column.gravity, top=top)
+    exact = bars_events.solve(problem, steps * dt).at([steps * dt]).mean_velocity[:, 0]
+    stepper = ContactStepper(column, [count] * len(strata), 1, scheme(numbers, dt))
+    *_, state = stepper.march(drive)
+    return float(np.abs(run_means(stepper, state) - exact).max() / np.abs(exact).max())
+
+
+@pytest.mark.parametrize(
+    ("column", "numbers", "counts", "order", "band"),
+    [
+        (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
+        (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
+        (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
+        (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
+        (SPALL, AVERAGE, (4, 16), 1.2, 4e-3),
+        (SPALL, CONSTANT, (4, 16), 0.5, 0.2),
+    ],
+    ids=lambda value: "",
+)
+def test_finer_elements_tend_to_the_exact_bars(
+    column: ContactColumn, numbers: tuple[float, float], counts: tuple[int, int], order: float, band: float
+) -> None:
+    coarse, fine = (error_of_bars(column, numbers, count) for count in counts)
+    assert fine < band and math.log(coarse / fine, counts[1] / counts[0]) > order
+
+
+def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
+    """A column of four strata with contacts between them, its drive, and a step."""
+    random = np.random.default_rng(seed)
+    strata = [(*random.uniform((0.5, 1500.0), (2.0, 3000.0)), 10 ** random.uniform(8, 9.5)) for _ in range(4)]
+    tops = np.cumsum([0.0, *(one[0] for one in strata)])
+    sheared = bool(seed % 2)
+    impedance = 2e6 if seed % 3 == 2 else None
+    heights = tops[1 if impedance else 0 : 4]
+    stiff = [math.inf if random.random() < 0.2 else 10 ** random.uniform(8.5, 10) for _ in heights]
+    numbers = [(0.0, 10 ** random.uniform(4, 5.5)) if sheared else (random.choice([0.0, 1e-3]),) for _ in heights]
+    law = [ColumnContact(float(x), k, *more) for x, k, more in zip(heights, stiff, numbers, strict=True)]
+    motion = "shear" if sheared else "pressure"
+    velocities = tuple(random.normal(size=4))
+    kind = "frictional" if sheared else "unilateral"
+    weight = 0.0 if sheared else 9.81
+    column = ContactColumn(ground(*strata, motion=motion, impedance=impedance), kind, tuple(law), velocities, weight)  # type: ignore[arg-type]
+    dt = 10 ** random.uniform(-4.5, -3)
+    t = dt * np.arange(101)
+    w = 0.2 / dt
+    shaking = {"displacement": 1e-3 * np.sin(w * t), "velocity": 1e-3 * w * np.cos(w * t)}
+    shaking["acceleration"] = -w * w * shaking["displacement"]
+    return column, still(100, **shaking, pressure=1e5 * np.cos(3 * w * t)), dt
+
+
+RANDOM = range(24)
+
+
+@pytest.mark.parametrize("seed", RANDOM)
+def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
+    column, drive, dt = random_column(seed)
+    stepper = ContactStepper(column, [2] * 4, 1 + seed % 2, scheme(AVERAGE if seed % 4 < 2 else CONSTANT, dt, 0.99))
+    ones = np.ones(stepper.M.shape[0])
+    before = None
+    for step, state in enumerate(stepper.march(drive)):
+        if before is not None:
+            # of the sum over all runs the contacts between them drop out
+            force = stepper.load(drive, step) + stepper.B.T @ state.force - stepper.C @ state.V - stepper.K @ state.D
+            size = (
+                np.abs(state.force).max() + np.abs(stepper.load(drive, step)).max() + np.abs(stepper.C @ state.V).max()
+            )
+            assert ones @ (stepper.M @ state.A) == pytest.approx(ones @ force, abs=1e-9 * size)
+            size = np.abs(state.force).max() + 1.0
+            assert np.all(state.force >= stepper.lower - 1e-9 * size)
+            assert np.all(state.force <= stepper.upper + 1e-9 * size)
+            slip = state.opening - before.opening if column.law == "frictional" else state.opening
+            assert np.all(slip[(state.states == AT_LOWER)] >= 0) and np.all(slip[state.states == AT_UPPER] <= 0)
+            if column.law == "frictional":
+                assert np.all(slip[state.states == INSIDE] == 0)
+        before = state
+
+
+@pytest.mark.parametrize("delta", [0.5, 0.75, 1.0])
+@pytest.mark.parametrize("seed", [0, 4, 6, 10])  # unilateral, on a base
+def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: float) -> None:
+    """DE = sum [U1 - U0 - (y1 - y0)((1 - delta) U0' + delta U1')] - (delta - 1/2) (change of D)' K (change of D)."""
+    column, _, dt = random_column(seed)
+    soft = tuple(replace(one, stiffness=min(one.stiffness, 1e10)) for one in column.contacts)
+    stepper = ContactStepper(replace(column, contacts=soft), [2] * 4, 1, scheme((delta / 2, delta), dt))
+    stiffness = np.array([one.stiffness for one in soft])
+
+    def energy(state: ColumnState) -> float:
+        parts = state.V @ (stepper.M @ state.V), state.D @ (stepper.K @ state.D)
+        springs = stiffness * np.minimum(state.opening, 0) ** 2
+        return float(sum(parts) + springs.sum()) / 2 - float(stepper.weight[stepper.model.free] @ state.D)
+
+    before = None
+    largest = 0.0
+    for state in stepper.march(still(100)):
+        largest = max(largest, energy(state))
+        if before is not None:
+            stored = stiffness * (np.minimum(state.opening, 0) ** 2 - np.minimum(before.opening, 0) ** 2) / 2
+            work = -(1 - delta) * before.force - delta * state.force
+            switching = float((stored - (state.opening - before.opening) * work).sum())
+            change = state.D - before.D
+            scheme_loss = (delta - 0.5) * float(change @ (stepper.K @ change))
+            expected = switching - scheme_loss
+            assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
+        before = state
+
+
+def test_doubled_loads_double_the_motion_bit_by_bit() -> None:
+    column, drive, dt = random_column(6)
+    larger = replace(
+        column,
+        contacts=tuple(replace(one, gap=2 * one.gap) for one in column.contacts),
+        velocities=tuple(2 * velocity for velocity in column.velocities),
+        gravity=2 * column.gravity,
+    )
+    doubled = Excitation(*(2 * part for part in vars(drive).values()))
+    names = ["displacement", "contact_pressure"]
+    one = solve_contacts(column, [3] * 4, 2, scheme(AVERAGE, dt), drive, names)
+    two = solve_contacts(larger, [3] * 4, 2, scheme(AVERAGE, dt), doubled, names)
+    assert np.array_equal(one.states, two.states)
+    assert all(np.array_equal(two.columns[name], 2 * one.columns[name]) for name in names)
+
+
+def test_contacts_that_never_slip_are_bonded_springs() -> None:
+    strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
+    springs = [(0.0, 3e9), (1.0, 1e9)]
+    bonded = ContactColumn(strata, "frictional", tuple(ColumnContact(*one) for one in springs), (0.0, 0.0))
+    t = 1e-4 * np.arange(301)
+    drive = still(300, displacement=1e-3 * np.sin(80 * t) ** 2, pressure=1e5 * np.sin(300 * t))
+    drive = replace(drive, velocity=0.08 * np.sin(160 * t), acceleration=12.8 * np.cos(160 * t))
+    names, heights = ["displacement", "contact_pressure", "displacement_1", "stress_1"], [1.0]
+    one = solve_contacts(bonded, [4, 4], 2, scheme(AVERAGE, 1e-4, 0.999, "zero"), drive, names, heights)
+    linear = replace(strata, joints=tuple(springs))
+    other = solve_line(linear, [4, 4], 2, scheme(AVERAGE, 1e-4, 0.999, "zero"), drive, names, heights)
+    for name in names:
+        size = np.abs(other.columns[name]).max()
+        assert one.columns[name] == pytest.approx(other.columns[name], abs=1e-8 * size)
+    assert one.factorisations == 1 and np.all(one.step_solves == 1)
+
+
+def test_a_welded_foot_is_held_by_the_base_motion() -> None:
+    """Without a contact at the base the foot moves as the base does, and the reaction is that of the column."""
+    strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8))
+    column = ContactColumn(strata, "unilateral", (ColumnContact(1.0, 1e9),), (0.0, 0.0), 9.81, settled=True)
+    resting = solve_contacts(
+        column, [3, 3], 2, scheme(AVERAGE, 1e-4), still(50), ["contact_pressure", "force_1", "gap_1"], [1.0]
+    )
+    weight = 9.81 * (2000 + 4800)
+    assert resting.columns["contact_pressure"] == pytest.approx(np.full(50, weight), rel=1e-9)
+    assert resting.columns["force_1"] == pytest.approx(np.full(50, 9.81 * 4800), rel=1e-9)
+    assert resting.mean_velocity == pytest.approx(np.zeros(50), abs=1e-12) and not resting.columns["gap_1"].any()
+
+
+@pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])
+def test_touching_blocks_thrown_on_their_base_close_one_in_a_solve(courant: float, solves: int) -> None:
+    thrown = replace(SPALL, velocities=(-1.0,) * 6)
+    dt = courant / math.sqrt(1e9 / 2500)
+    result = solve_contacts(thrown, [1] * 6, 1, scheme(CONSTANT, dt), still(1))
+    assert result.step_solves[0] == solves
+    limited = solve_contacts(replace(thrown, solve_limit=solves - 1), [1] * 6, 1, scheme(CONSTANT, dt), still(3))
+    assert limited.outcome == "no consistent contact state" and len(limited.time) == 0
+    assert limited.notes == (f"step 1: the open-close iteration has not ended after {solves - 1} solves",)
+
+
+def random_problem(random: np.random.Generator, boxed: bool) -> tuple[ContactProblem, np.ndarray]:
+    n = 5
+    beside = random.normal(size=n - 1)
+    diagonal = np.abs(np.append(beside, 0)) + np.abs(np.append(0, beside)) + random.uniform(0.01, 1.0, n)
+    upper = random.uniform(0.1, 1.0, n) if boxed else np.full(n, np.inf)
+    lower = -upper if boxed else np.zeros(n)
+    problem = ContactProblem(np.array([diagonal, [*beside, 0.0]]), np.zeros(n), lower, upper)
+    return problem, random.normal(size=n)
+
+
+def solutions(problem: ContactProblem, q: np.ndarray, boxed: bool) -> list[np.ndarray]:
+    """All forces that some choice of states agrees with, of all choices."""
+    found = []
+    for states in itertools.product((AT_LOWER, INSIDE, AT_UPPER) if boxed else (AT_LOWER, INSIDE), repeat=len(q)):
+        chosen = np.array(states, np.int8)
+        N = problem.forces(q, chosen)
+        z = q + problem.times(N)
+        bounds = np.all((problem.lower - 1e-12 <= N) & (problem.upper + 1e-12 >= N))
+        if bounds and np.all(z[chosen == AT_LOWER] >= 0) and np.all(z[chosen == AT_UPPER] <= 0):
+            found.append(N)
+    return found
+
+
+@pytest.mark.parametrize("together", [2, -100])  # all states at once, and from the start the first wrong one alone
+@pytest.mark.parametrize("boxed", [False, True], ids=["opens", "slips"])
+def test_the_contact_problem_has_one_solution_and_it_is_the_one(
+    boxed: bool, together: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contacts, "TOGETHER", together)
+    random = np.random.default_rng(3)
+    for _ in range(20):
+        problem, q = random_problem(random, boxed)
+        (exact,) = solutions(problem, q, boxed)
+        start = random.integers(-1, 2 if boxed else 1, 5).astype(np.int8)
+        N, z, states, _ = problem.solve(q, start, None)
+        assert exact == pytest.approx(N, abs=1e-12)
+        assert z[states != INSIDE] == pytest.approx((q + problem.times(N))[states != INSIDE], abs=1e-12)
+
+
+def test_no_numbers_are_no_forces() -> None:
+    problem, q = random_problem(np.random.default_rng(1), boxed=False)
+    with pytest.raises(UnsolvedStepError):
+        problem.solve(q * math.nan, np.zeros(5, np.int8), None)
+
+
+def test_the_step_of_another_delta_has_the_same_states_and_forces() -> None:
+    column, drive, dt = random_column(6)
+    drive = Excitation(*(part[:2] for part in vars(drive).values()))
+    first = [
+        list(ContactStepper(column, [2] * 4, 1, scheme((0.5, delta), dt)).march(drive))[1] for delta in (0.5, 1.0, 2.0)
+    ]
+    for state in first[1:]:
+        assert np.array_equal(state.states, first[0].states) and np.array_equal(state.force, first[0].force)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"contacts": ()}, "contacts"),
+        ({"contacts": (ColumnContact(1.0, 1e9), ColumnContact(0.0, 1e9))}, "contacts"),
+        ({"contacts": (ColumnContact(2.0, 1e9),)}, "contacts"),
+        ({"unsupported": True}, "contacts"),
+        ({"velocities": (1.0,)}, "velocities"),
+        ({"ground": replace(DROPPED.ground, joints=((1.0, 1e9),))}, "joints"),
+        ({"law": "frictional", "settled": True}, "settled"),
+    ],
+)
+def test_a_column_that_cannot_be_is_refused(change: dict, field: str) -> None:
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        replace(DROPPED, **change)
+
+
+@pytest.mark.parametrize("name", ["force_1", "turn_1", "velocity_2", "velocity"])
+def test_a_column_of_the_history_that_is_not_there_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=r"^columns: "):
+        solve_contacts(DROPPED, [1, 1], 1, scheme(AVERAGE, 1e-4), still(1), [name], [0.5])
+
+
+def test_a_contact_with_numbers_out_of_range_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^contacts: "):
+        ColumnContact(0.0, -1.0)
+    rigid = replace(DROPPED, contacts=(ColumnContact(0.0, math.inf),))
+    with pytest.raises(ValueError, match=r"^alpha: "):
+        ContactStepper(rigid, [1, 1], 1, Scheme(0.0, 0.5, 1.0, 1e-5, "consistent"))
