@@ -42,8 +42,10 @@ PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 REPORT_DIGITS = 28
 """Decimal digits in which the series are summed where the motion is reported."""
-REPORT_ANGLE = 0.75
+REPORT_ANGLE = 1.5
 """Angle over which floats sum a series [rad]."""
+REPORT_TERMS = 32
+"""Terms that they sum: 1.5^32 / 32! is 2e-30."""
 ROUNDING = 4 * np.finfo(float).eps
 """Part of a displacement by which floats round it."""
 
@@ -265,7 +267,7 @@ def _evaluated(series: Sequence[arb_poly], shares: Array, length: float, angle: 
     for part in np.unique(numbers).tolist():
         rows = np.flatnonzero(numbers == part)
         moved = arb_poly([arb(part) / parts, arb(1) / parts])
-        terms = [[float(c) for c in polynomial(moved).coeffs()] for polynomial in series]
+        terms = [[float(c) for c in polynomial(moved).coeffs()[:REPORT_TERMS]] for polynomial in series]
         coefficients = np.zeros((len(series), max(3, *map(len, terms))))
         for row, line in zip(coefficients, terms, strict=True):
             row[: len(line)] = line
