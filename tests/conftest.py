@@ -86,6 +86,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_user_solvers",
     "test_walls",
     "test_work_precision",
+    "test_columns_chapter",
 )
 
 

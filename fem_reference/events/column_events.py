@@ -26,7 +26,7 @@ from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_le
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import bits_of, precision
-from fem_reference.events.switches import ProvenMotion, with_enough_digits
+from fem_reference.events.switches import LostDigitsError, ProvenMotion
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -34,12 +34,18 @@ DIGITS = 60
 """Decimal digits of the first computation."""
 MOST_DIGITS = 960
 """Decimal digits of the last one, where switches cost those of the ones before."""
+MARGIN = 1.25
+"""Times the digits that are expected to do which are taken next."""
+MOST_FOLD = 4
+"""Times the digits that are taken next at most, but for the margin."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 REPORT_DIGITS = 28
 """Decimal digits in which the series are summed where the motion is reported."""
-REPORT_ANGLE = 0.75
+REPORT_ANGLE = 1.5
 """Angle over which floats sum a series [rad]."""
+REPORT_TERMS = 32
+"""Terms that they sum: 1.5^32 / 32! is 2e-30."""
 ROUNDING = 4 * np.finfo(float).eps
 """Part of a displacement by which floats round it."""
 
@@ -261,7 +267,7 @@ def _evaluated(series: Sequence[arb_poly], shares: Array, length: float, angle: 
     for part in np.unique(numbers).tolist():
         rows = np.flatnonzero(numbers == part)
         moved = arb_poly([arb(part) / parts, arb(1) / parts])
-        terms = [[float(c) for c in polynomial(moved).coeffs()] for polynomial in series]
+        terms = [[float(c) for c in polynomial(moved).coeffs()[:REPORT_TERMS]] for polynomial in series]
         coefficients = np.zeros((len(series), max(3, *map(len, terms))))
         for row, line in zip(coefficients, terms, strict=True):
             row[: len(line)] = line
@@ -282,8 +288,8 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
     end
         Last instant [s].
     digits
-        Decimal digits of the computation, at least 30; twice as many are taken, up to `MOST_DIGITS`, where the instants
-        of the switches are not enclosed to `PROMISED`.
+        Decimal digits of the first computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
+        the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
 
@@ -322,4 +328,17 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
             model,
         )
 
-    return with_enough_digits(motion_in, digits, MOST_DIGITS, PROMISED * end)
+    while True:
+        try:
+            motion = motion_in(digits)
+            if motion.radius <= PROMISED * end:
+                return motion
+            times = [switch.time for switch in motion.switches if switch.radius <= PROMISED * end]
+            lost = LostDigitsError(times[-1] if times else 0.0, f"{len(motion.switches)} switches have cost the digits")
+        except LostDigitsError as error:
+            lost = error
+        if digits >= MOST_DIGITS:
+            raise lost
+        # Digits are lost evenly, so that the time they lasted for tells how many are needed.
+        needed = MARGIN * digits * end / max(lost.time, end / MOST_FOLD)
+        digits = min(MOST_DIGITS, math.ceil(needed))

@@ -29,7 +29,9 @@ LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
 BOUND_BITS = 96  # of matrices that only bound
-SOFTEST = 32  # part of the highest rate that the metric of the error gives to an unknown without a spring
+# Part of the highest rate that the metric of the error gives to an unknown without a spring: the error grows with it,
+# and the less by each contact that closes the higher it is, while contacts that slip make no error grow.
+SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
 
 
 @dataclass(frozen=True)
@@ -317,7 +319,7 @@ class Bounds:
         highest = self.squared_rate(np.ones(len(k), dtype=bool))
         self.rate = math.sqrt(highest) + self.damping  # of the motion and of its error, greatest [rad/s]
         # the metric e' M e' + e (K + soft^2 M) e gives each unknown a spring, also where its contacts are open
-        self.soft = self.rate / SOFTEST or 1.0
+        self.soft = self.rate * SOFT_PART[model.problem.law] or 1.0
         K = np.abs(elastic) + np.abs(B.T) @ (k[:, None] * np.abs(B))
         mass = np.zeros(model.size)
         for i in range(model.size):
