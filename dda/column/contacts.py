@@ -63,7 +63,7 @@ class ColumnOptions:
     """
 
     solve_limit: int | None = None  # solves of the open-close iteration that end the run; None: as many as it takes
-    settled: bool = False  # start at rest under weight and the first pressure, not unstrained with all gaps
+    settled: bool = False  # start at rest under the weight alone, not unstrained with all gaps
     states: bool = False  # keep the states of all contacts at every step
     energies: bool = False  # keep energies, momentum and extremes of the contacts at every step
 
@@ -359,17 +359,16 @@ def _move_foot(drive: Drive, state: ColumnState, numbers: StepNumbers, blocks: B
 
 
 def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints: JointLaws, base: float) -> None:
-    """Write the state at rest: every contact carries the weight above it and the pressure on the top."""
+    """Write the state at rest: every contact carries the weight above it; a pressure on the top acts from t = 0 on."""
     weights = column.gravity * blocks.mass
     n = len(weights)
-    state.force[:n] = state.force[n] + np.cumsum(weights[::-1])[::-1]
-    mean = (state.force[:n] + state.force[1:]) / 2
+    carried = np.append(np.cumsum(weights[::-1])[::-1], 0.0)
+    state.force[:n] = carried[:n]
+    mean = (carried[:n] + carried[1:]) / 2
     state.e[:] = np.where(blocks.stiffness > 0, -mean / np.where(blocks.stiffness > 0, blocks.stiffness, 1.0), 0.0)
     state.gap[:] = -state.force[:n] * joints.compliance
     tops = base + np.cumsum(state.gap - joints.gap + state.e)
     state.u[:] = tops - state.e / 2
-    if np.any((state.force[:n] < 0) & (joints.opens == 1)):
-        raise ValueError("settled: needs a pressure that holds the column down, got tension in a contact")
 
 
 def rigid_forces(

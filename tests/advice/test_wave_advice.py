@@ -138,7 +138,7 @@ def test_stiff_glue_takes_the_step_of_a_conditionally_stable_scheme() -> None:
 
 
 def test_perfectly_bonded_blocks_keep_the_limit_of_linear_elements() -> None:
-    """The solver's limit is sqrt(12) c/h of a free element: of equal ones, all ends free, the highest mode is theirs."""
+    """The solver's limit is sqrt(12) c/h of a free element, whose highest mode equal ones with free ends share."""
     layer = load_scene("waves-blocks").expand()[0].with_values(EXPLICIT | FREE)
     found = advise_wave(layer, 200.0, 0.5)
     (part,) = wave_advice.layers_of(layer)
