@@ -73,10 +73,10 @@ class Spring:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        for field in ("stiffness", "strength"):
-            value = getattr(self, field)
-            if not value > 0:
-                raise ValueError(f"{field}: must be positive, got {value!r}")
+        if not self.stiffness > 0:
+            raise ValueError(f"stiffness: must be positive, got {self.stiffness!r}")
+        if not self.strength >= 0:
+            raise ValueError(f"strength: must not be negative, got {self.strength!r}")
         if not (math.isfinite(self.gap) and self.gap >= 0):
             raise ValueError(f"gap: must be finite and not negative, got {self.gap!r}")
 

@@ -19,8 +19,9 @@ contact feels its neighbours less than half as much as itself. Where all B <= 0,
 second solve on, and N contacts take N + 1 solves at most. If states changed `SWEEPS` times the number of contacts, one
 state is changed at a time (Murty 1974), which ends for every such matrix.
 
-What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments), so that
-neither stiff springs nor a long flight cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
+What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments); the
+displacements follow from these, from the base upwards. So neither stiff springs nor long steps, in which weight alone
+would move a block by g dt^2, cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
 
 The kernel of a block, `dda.contact.kernel`, is dense and knows four states and two forces a contact; `dda.stepping`'s
 loop keeps forces, gaps and states of all contacts at every step, and cuts. A column of N blocks needs neither: its
@@ -73,6 +74,7 @@ class JointLaws(NamedTuple):
     lower: Vector  # bounds of the force [Pa]
     upper: Vector
     opens: States  # 1 of a unilateral contact
+    gap: Vector  # at t = 0 [m]
 
 
 class StepNumbers(NamedTuple):
@@ -290,21 +292,20 @@ def predict(
     early = 0.5 - alpha
     late = 1.0 - numbers.delta
     fall = alpha * numbers.fall
-    u = state.u
     w = state.w
     s = state.s
     e = state.e
     we = state.we
     se = state.se
     gap = state.gap
+    state.u[0] += gg * w[0] + early * s[0]
     relaxation = blocks.relaxation
     if numbers.welded == 1:
         below = predict_welded(numbers, blocks, state, drive, step)
     else:
         below = drive.displacement[step] - drive.displacement[step - 1]
-    for i in range(numbers.welded, len(u)):
+    for i in range(numbers.welded, len(w)):
         moved = gg * w[i] + early * s[i]
-        u[i] += moved
         w[i] = gg * w[i] + late * s[i]
         moved += fall
         half = gg * we[i] + early * se[i]
@@ -320,7 +321,6 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
     alpha = numbers.alpha
     delta = numbers.delta
     fall = numbers.fall
-    u = state.u
     w = state.w
     s = state.s
     e = state.e
@@ -331,12 +331,11 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
     half_stretch = blocks.half_stretch
     relaxation = blocks.relaxation
     below = force[numbers.welded]
-    for i in range(numbers.welded, len(u)):
+    for i in range(numbers.welded, len(w)):
         above = force[i + 1]
         a = fall + mobility[i] * (below - above)
         ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
         below = above
-        u[i] += alpha * a
         w[i] += delta * a
         s[i] = a
         e[i] += alpha * ae
@@ -362,7 +361,6 @@ def predict_welded(
     if blocks.stiffness[0] == 0:
         moved = base - numbers.alpha * base_change
         predicted_speed = base_speed - numbers.delta * base_change
-    state.u[0] += (base + moved) / 2
     state.e[0] += moved - base
     state.w[0] = (base_speed + predicted_speed) / 2
     state.we[0] = predicted_speed - base_speed
@@ -381,7 +379,6 @@ def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState
     """Write the lowest block, whose foot is the base, and the force of the base on it."""
     base_change = state.s[0]
     a = top_acceleration(numbers, blocks, state, state.force[1])
-    state.u[0] += numbers.alpha * a / 2
     state.e[0] += numbers.alpha * a
     state.w[0] += numbers.delta * a / 2
     state.we[0] += numbers.delta * a
@@ -399,6 +396,23 @@ def dashpot_force(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState,
     foot += numbers.delta * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
     force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
     return force
+
+
+def place_blocks(numbers: StepNumbers, joints: JointLaws, state: ColumnState, base: float) -> None:
+    """Write the mean displacements from stretches, gaps and slips, above the base or above the lowest block."""
+    u = state.u
+    e = state.e
+    if numbers.first == 0 or numbers.welded == 1:
+        lowest = 0
+        below = base
+    else:
+        lowest = 1
+        u[0] += numbers.alpha * state.s[0]
+        below = u[0] + e[0] / 2
+    for i in range(lowest, len(u)):
+        foot = below + (state.gap[i] - joints.gap[i]) + state.slip[i]
+        u[i] = foot + e[i] / 2
+        below = foot + e[i]
 
 
 def accept_contacts(joints: JointLaws, first: int, state: ColumnState, work: ColumnWork) -> int:
@@ -453,7 +467,7 @@ def make_column_steps(
     write_step(numbers, blocks, joints, state, observed, 0, values, states, energies)
     for step in range(1, len(values)):
         if len(energies) > 0:
-            copy_state(state, before)
+            copy_state(numbers, state, before, step)
         predict(numbers, blocks, state, drive, step, work.q)
         force[n] = drive.pressure[step]
         if first > 0 and numbers.impedance > 0:
@@ -471,6 +485,7 @@ def make_column_steps(
         correct(numbers, blocks, state)
         solves[step] = count
         switches[step] = accept_contacts(joints, first, state, work)
+        place_blocks(numbers, joints, state, drive.displacement[step])
         if len(energies) > 0:
             for k in range(STORED_NOW, STORED_NOW + SUMS):
                 energies[step, k] = energies[step - 1, k]
@@ -524,21 +539,23 @@ def write_step(
     return math.isfinite(total)
 
 
-def copy_state(source: ColumnState, target: ColumnState) -> None:
-    """Copy all but the states that a step does not lose."""
-    n = len(source.u)
-    for i in range(n):
-        target.u[i] = source.u[i]
-        target.w[i] = source.w[i]
-        target.s[i] = source.s[i]
-        target.e[i] = source.e[i]
-        target.we[i] = source.we[i]
-        target.se[i] = source.se[i]
-        target.gap[i] = source.gap[i]
-        target.slip[i] = source.slip[i]
-        target.force[i] = source.force[i]
-        target.state[i] = source.state[i]
-    target.force[n] = source.force[n]
+def copy_state(numbers: StepNumbers, source: ColumnState, target: ColumnState, step: int) -> None:
+    """Copy what the balance of energy needs of the state before a step."""
+    copy(source.u, target.u)
+    copy(source.e, target.e)
+    copy(source.gap, target.gap)
+    copy(source.slip, target.slip)
+    copy(source.force, target.force)
+    copy(source.state, target.state)
+    if step == 1 or numbers.alpha != numbers.delta / 2:
+        copy(source.s, target.s)
+        copy(source.se, target.se)
+
+
+def copy(source: Vector, target: Vector) -> None:
+    """Copy a vector."""
+    for i in range(len(source)):
+        target[i] = source[i]
 
 
 def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:
@@ -561,21 +578,32 @@ def store(
     furthest = 0.0
     open_contacts = 0
     contacts = 0
-    for i in range(len(state.u)):
-        strain += blocks.stiffness[i] * state.e[i] * state.e[i] / 2
-        momentum += blocks.mass[i] * state.w[i]
-        if i >= numbers.first:
-            springs += joints.compliance[i] * state.force[i] * state.force[i] / 2
-        furthest = max(furthest, abs(state.slip[i]))
-        if joints.opens[i] == 1:
-            widest = max(widest, state.gap[i])
-            deepest = max(deepest, 0.0 - state.gap[i])
+    mass = blocks.mass
+    stiffness = blocks.stiffness
+    compliance = joints.compliance
+    opens = joints.opens
+    w = state.w
+    e = state.e
+    for i in range(len(w)):
+        strain += stiffness[i] * e[i] * e[i]
+        momentum += mass[i] * w[i]
+    for j in range(numbers.first, len(w)):
+        force = state.force[j]
+        springs += compliance[j] * force * force
+        if opens[j] == 1:
+            gap = state.gap[j]
             contacts += 1
-            if state.state[i] == OPEN:
+            if gap > widest:
+                widest = gap
+            elif -gap > deepest:
+                deepest = -gap
+            if state.state[j] == OPEN:
                 open_contacts += 1
+        elif abs(state.slip[j]) > furthest:
+            furthest = abs(state.slip[j])
     energies[step, 0] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
-    energies[step, 1] = strain
-    energies[step, 2] = springs
+    energies[step, 1] = strain / 2
+    energies[step, 2] = springs / 2
     energies[step, MOMENTUM] = momentum / numbers.step
     energies[step, WIDEST] = widest
     energies[step, DEEPEST] = deepest
@@ -604,35 +632,53 @@ def account(
     dt2 = numbers.step * numbers.step
     row = energies[step]
     scale = STORED_NOW
-    row[scale + DAMPING] += (1 - numbers.gg * numbers.gg) * kinetic_of(blocks.mass, before.w, before.we) / dt2
+    row[scale + DAMPING] += (1 - numbers.gg * numbers.gg) * energies[step - 1, 0]
     stiff = 0.0
-    change = 0.0
     work = 0.0
+    stiffness = blocks.stiffness
+    mass = blocks.mass
+    e0 = before.e
+    e1 = after.e
+    u0 = before.u
+    u1 = after.u
     for i in range(n):
-        stretched = after.e[i] - before.e[i]
-        stiff += blocks.stiffness[i] * stretched * stretched
-        faster = after.s[i] - before.s[i]
-        wider = after.se[i] - before.se[i]
-        change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
-        work += numbers.fall / dt2 * blocks.mass[i] * (after.u[i] - before.u[i])
-    kinetic = kinetic_of(blocks.mass, after.s, after.se) - kinetic_of(blocks.mass, before.s, before.se)
+        stretched = e1[i] - e0[i]
+        stiff += stiffness[i] * stretched * stretched
+        work += mass[i] * (u1[i] - u0[i])
+    kinetic = 0.0
+    change = 0.0
+    if numbers.alpha != late / 2:
+        kinetic = kinetic_of(blocks.mass, after.s, after.se) - kinetic_of(blocks.mass, before.s, before.se)
+        for i in range(n):
+            faster = after.s[i] - before.s[i]
+            wider = after.se[i] - before.se[i]
+            change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
     row[scale + ALGORITHMIC] += bulk_loss(numbers.alpha, late, 1 / dt2, stiff, kinetic, change)
+    switching = 0.0
+    keeping = 0.0
+    dissipated = 0.0
     for j in range(first, n):
-        mean_force = (1 - late) * before.force[j] + late * after.force[j]
+        early_force = before.force[j]
+        late_force = after.force[j]
         slipped = after.slip[j] - before.slip[j]
-        stored = before.force[j] * before.force[j] - after.force[j] * after.force[j]
-        friction = 0.0 - after.force[j] * slipped
-        lost = stored * joints.compliance[j] / 2 - mean_force * (after.gap[j] - before.gap[j] + slipped) - friction
-        place = ALGORITHMIC if before.state[j] == after.state[j] else SWITCHING
-        row[scale + place] += lost
-        row[scale + FRICTION] += friction
+        friction = 0.0 - late_force * slipped
+        lost = joints.compliance[j] * (early_force * early_force - late_force * late_force) / 2 - friction
+        lost -= ((1 - late) * early_force + late * late_force) * (after.gap[j] - before.gap[j] + slipped)
+        if before.state[j] == after.state[j]:
+            keeping += lost
+        else:
+            switching += lost
+        dissipated += friction
+    row[scale + ALGORITHMIC] += keeping
+    row[scale + SWITCHING] += switching
+    row[scale + FRICTION] += dissipated
     foot = after.u[0] - before.u[0] - (after.e[0] - before.e[0]) / 2
     if first == 0:
         foot = drive.displacement[step] - drive.displacement[step - 1]
     top = after.u[n - 1] - before.u[n - 1] + (after.e[n - 1] - before.e[n - 1]) / 2
     base_force = (1 - late) * before.force[0] + late * after.force[0]
     top_force = (1 - late) * before.force[n] + late * after.force[n]
-    row[scale + GIVEN] += work + base_force * foot - top_force * top
+    row[scale + GIVEN] += numbers.fall / dt2 * work + base_force * foot - top_force * top
     row[scale + IMPULSE] += numbers.step * base_force
     if step == 1:  # A0 may be any, later accelerations follow from the forces
         row[scale + ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)

@@ -49,6 +49,7 @@ AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the
 COLUMN_OUTCOMES = OUTCOMES | {LIMIT: "solve limit exceeded"}
 PLAIN_STEP = 5e-6  # seconds of plain Python for each step
 PLAIN_BLOCK = 1.5e-6  # and for each block in it
+PLAIN_ENERGIES = 2.3  # times as long with the energies
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,7 @@ def solve_contact_column(
         (),
         (numbers, blocks, joints, state, _room_for_state(n), _room(n), _steps_of(drive), observed),
         (values, states, solves, switches, record),
-        instants * (PLAIN_STEP + n * PLAIN_BLOCK),
+        instants * (PLAIN_STEP + n * PLAIN_BLOCK) * (PLAIN_ENERGIES if options.energies else 1.0),
     )
     rows = slice(1, reached + 1)
     early = () if ended == FOUND else (f"{COLUMN_OUTCOMES[ended]} at step {reached + 1}",)
@@ -234,12 +235,13 @@ def step_equations(
         coupling[1] = 0.0
     lowest = 0 if column.rests_on_base else 1
     springs = _springs_from(column, lowest)
-    compliance, lower, upper = np.zeros((3, n))
+    compliance, lower, upper, gaps = np.zeros((4, n))
     opens = np.zeros(n, dtype=np.int64)
     for j, (spring, face) in enumerate(zip(springs, column.contacts[lowest:], strict=True), lowest):
         compliance[j] = 1 / spring.stiffness
         lower[j] = -spring.strength
         upper[j] = spring.strength
+        gaps[j] = spring.gap
         if column.law == "unilateral" and face is not None:
             opens[j] = 1
             lower[j] = 0.0
@@ -250,6 +252,7 @@ def step_equations(
         lower=lower,
         upper=upper,
         opens=opens,
+        gap=gaps,
     )
     blocks = BlockColumn(mass, stiffness, dt2 / mass, stretch / 2, stretch * stiffness)
     numbers = StepNumbers(
@@ -307,8 +310,9 @@ def start_state(
     rigid[:lowest] = False
     welds = rigid & (joints.opens == 0) & np.isinf(joints.upper)  # their blocks get a common velocity at once
     rigid_forces(blocks, state.w, state.we, base_speed, joints, welds, np.zeros(n + 1), lowest)
-    state.gap[lowest:] = [spring.gap for spring in _springs_from(column, lowest)]
-    state.gap[0] -= drive.displacement[0]
+    state.gap[:] = joints.gap
+    if numbers.first == 0:
+        state.gap[0] -= drive.displacement[0]
     unilateral = joints.opens == 1
     # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
     spring = joints.compliance > 0
@@ -361,9 +365,8 @@ def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints
     state.force[:n] = state.force[n] + np.cumsum(weights[::-1])[::-1]
     mean = (state.force[:n] + state.force[1:]) / 2
     state.e[:] = np.where(blocks.stiffness > 0, -mean / np.where(blocks.stiffness > 0, blocks.stiffness, 1.0), 0.0)
-    initial_gaps = np.array([spring.gap for spring in _springs_from(column, 0)])
     state.gap[:] = -state.force[:n] * joints.compliance
-    tops = base + np.cumsum(state.gap - initial_gaps + state.e)
+    tops = base + np.cumsum(state.gap - joints.gap + state.e)
     state.u[:] = tops - state.e / 2
     if np.any((state.force[:n] < 0) & (joints.opens == 1)):
         raise ValueError("settled: needs a pressure that holds the column down, got tension in a contact")
@@ -410,6 +413,7 @@ def rigid_forces(
         lower=np.where(rigid, joints.lower, force[:n]),
         upper=np.where(rigid, joints.upper, force[:n]),
         opens=np.where(rigid, joints.opens, 0),
+        gap=joints.gap,
     )
     work = _room(n)
     work.tried[:] = np.where(rigid, STICK, SLIP)

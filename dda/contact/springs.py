@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.model.block import Block
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dda.model.arrays import Array
 from dda.model.material import Material
 from dda.model.polygon import Section, checked_polygon, section
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,16 @@
-"""What acts on a block: loads switched on at t = 0, and the motion of the base."""
+"""What acts on a block: loads switched on at t = 0, and the motion of the base; a block with loads over its base."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from dda.model.arrays import Array
+from dda.model.block import Block
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,3 +122,60 @@ def pressed_part(start: Array, end: Array, eccentricity: float) -> tuple[Array, 
     forward = side[0] > 0 or (side[0] == 0 and side[1] > 0)
     shift = 2 * (eccentricity if forward else -eccentricity) / length
     return (start + shift * side, end) if shift > 0 else (start, end + shift * side)
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class LoadedBlock:
+    """One block over the contacts of its base edge. Edge i runs from corner i to corner i + 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, the eccentricity leaves nothing of the top edge, or base and top are not two edges
+        of the block.
+    """
+
+    block: Block
+    contact: Any
+    load: Load
+    base: int  # edge over the corners M (its start) and N (its end)
+    top: int  # edge under pressure and traction
+
+    def __init__(
+        self, block: Block, contact: Any, load: Load | float = 0.0, base: int = 0, top: int = 2, **others: Any
+    ) -> None:
+        """Set the fields and check them.
+
+        Parameters
+        ----------
+        load
+            All loads, or a pressure alone [Pa].
+        others
+            Further fields of the model, and fields of `Load` in place of those in `load`, by name.
+        """
+        loads = load if isinstance(load, Load) else Load(pressure=load)
+        changes = {name: others.pop(name) for name in set(Load.__dataclass_fields__) & set(others)}
+        values = {"block": block, "contact": contact, "load": replace(loads, **changes), "base": base}
+        values |= {"top": top} | others
+        for name in set(values) - {field.name for field in fields(self)}:
+            raise TypeError(f"{name}: is no field of {type(self).__name__} or Load")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        self.check()
+
+    def check(self) -> None:
+        """Check the loads and the edges."""
+        self.block.check_edges(self.base, self.top)
+        pressed_part(*self.block.edge(self.top), self.load.eccentricity)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a field of the loads, which is read as one of the model too."""
+        if name in Load.__dataclass_fields__:
+            return getattr(self.load, name)
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    @property
+    def base_length(self) -> float:
+        """Length a of the base edge [m]."""
+        start, end = self.block.edge(self.base)
+        return float(np.hypot(*(end - start)))

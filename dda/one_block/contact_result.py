@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.kernel import FOUND
-from dda.contact.unilateral import OPEN
+from dda.contact.unilateral import OPEN, SLIP
+from dda.model.arrays import Array
 from dda.one_block.solution import Result, step_times
 from dda.scheme.newmark import Scheme
 from dda.stepping.driver import OUTCOMES, History
-
-Array = NDArray[np.float64]
 
 
 def lazily(name: str, meaning: str) -> cached_property[Array]:
@@ -35,6 +34,20 @@ def at_corner(name: str, end: int) -> property:
     return property(lambda r: np.asarray(getattr(r, name)[r.base_contacts[end]]), doc=f"{name} at one corner")
 
 
+def of_contacts(name: str, meaning: str, sign: float = 1.0) -> cached_property[Array]:
+    """Return the property of a result that its history holds for each contact.
+
+    Of a symmetric motion one contact stands for both corners: it is N, and M has the same value with a sign.
+    """
+
+    def read(result: ContactResult) -> Array:
+        rows: Array = getattr(result.history, name)[1:].T
+        return np.array([[sign], [1.0]]) * rows + 0.0 if len(rows) == 1 else rows
+
+    read.__doc__ = meaning
+    return cached_property(read)
+
+
 @dataclass(frozen=True, eq=False)
 class ContactResult(Result):
     """Histories of the steps that were reached; element 0 is step 1. Forces act on the block.
@@ -48,23 +61,32 @@ class ContactResult(Result):
     outcome: str  # "completed", or why the history ends early, in words
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
     step_cuts: NDArray[np.int_]  # times that a step was cut
+    history: History  # from t = 0 on; one contact may stand for both corners
     base_contacts: tuple[int, int]  # rows of M and N
-    parts: Mapping[str, Callable[[], Any]]  # makes what is asked for
+    softness: float  # 1/p_s, 0 without springs in shear [m/N]
+    parts: Mapping[str, Callable[[], Any]]  # makes the displacement along the base and the velocities
     balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
 
-    normal = lazily("normal", "N, away from the base, (contacts, steps) [N].")
-    shear = lazily("shear", "T, along the base from M to N, (contacts, steps) [N].")
-    gap = lazily("gap", "w, negative when pressed, (contacts, steps) [m].")
-    stretch = lazily("stretch", "Stretch s - r of the shear springs, 0 where open, (contacts, steps) [m].")
+    normal = of_contacts("normal", "N, away from the base, (contacts, steps) [N].")
+    shear = of_contacts("shear", "T, along the base from M to N, (contacts, steps) [N].", -1.0)
+    gap = of_contacts("gap", "w, negative when pressed, (contacts, steps) [m].")
+    slipped = of_contacts("slipped", "Change of the shear reference by slip in each step, (contacts, steps) [m].", -1.0)
     slide = lazily("slide", "Displacement s along the base, less that of the base, (contacts, steps) [m].")
-    slipped = lazily("slipped", "Change of the shear reference by slip in each step, (contacts, steps) [m].")
     velocity = lazily("velocity", "Of the centroid, upwards, (steps,) [m/s].")
     horizontal_velocity = lazily("horizontal_velocity", "Of the centroid, (steps,) [m/s].")
 
     @cached_property
+    def stretch(self) -> Array:
+        """Stretch s - r of the shear springs, 0 where open, (contacts, steps) [m]."""
+        return np.asarray(0.0 - self.shear * self.softness)
+
+    @cached_property
     def states(self) -> NDArray[np.int_]:
         """0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M, (contacts, steps)."""
-        return np.asarray(self.parts["states"](), dtype=int)
+        states = self.history.state[1:].T.astype(int)
+        if len(states) == 1:  # one contact for both corners: they slip in opposite directions
+            return np.vstack([np.where(np.abs(states) == SLIP, -states, states), states])
+        return states
 
     @cached_property
     def closed(self) -> NDArray[np.bool_]:
@@ -93,27 +115,6 @@ class ContactResult(Result):
     state_m, state_n = at_corner("states", 0), at_corner("states", 1)
 
 
-def contact_parts(
-    history: History, softness: float, **parts_of_body: Callable[[], Array]
-) -> dict[str, Callable[[], Any]]:
-    """Return what makes the properties of a result: those of the contacts, beside what a body has of its own.
-
-    Parameters
-    ----------
-    softness
-        1/p_s, 0 without springs in shear [m/N].
-    """
-    shared: dict[str, Callable[[], Any]] = {
-        "normal": lambda: history.normal[1:].T,
-        "shear": lambda: history.shear[1:].T,
-        "gap": lambda: history.gap[1:].T,
-        "stretch": lambda: 0.0 - history.shear[1:].T * softness,
-        "slipped": lambda: history.slipped[1:].T,
-        "states": lambda: history.state[1:].T,
-    }
-    return shared | parts_of_body
-
-
 def run_fields(
     history: History, ended: int, scheme: Scheme, notes: Sequence[str], clock: tuple[float, float]
 ) -> dict[str, Any]:
@@ -136,6 +137,7 @@ def run_fields(
         "setup_seconds": ready - began,
         "stepping_seconds": perf_counter() - ready,
         "outcome": OUTCOMES[ended],
+        "history": history,
         "step_solves": history.solves[1:],
         "step_cuts": history.cuts[1:],
     }

@@ -19,18 +19,18 @@ through the inertia alone.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.springs import Contact, base_directions
+from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
-
-Array = NDArray[np.float64]
 
 UNKNOWNS = ("U", "w", "s", "ex", "e2", "gxy")
 COLUMNS = (
@@ -42,14 +42,7 @@ COLUMNS = (
     "strain_y",
     "shear_strain",
 )
-_D_ROWS = {
-    "horizontal_displacement": 0,
-    "displacement": 1,
-    "rotation": 2,
-    "strain_x": 3,
-    "strain_y": 4,
-    "shear_strain": 5,
-}
+D_COLUMNS = ("horizontal_displacement", "displacement", "rotation", "strain_x", "strain_y", "shear_strain")  # of D
 # An integral below this share of its terms is the rounding of a symmetric shape's exact zero:
 # each term carries a few roundings, and a polygon adds a handful of terms.
 _ROUNDING = 64 * np.finfo(float).eps
@@ -184,17 +177,22 @@ def _load(local: Array, top: int, tangent: Array, c: float, load: Load) -> Array
 def _edge(ends: tuple[Array, ...], extent: Array, traction: Array, c: float) -> Array:
     """Return the load of a uniform traction (local directions) on a straight part of the outline."""
     x, y = (ends[0] + ends[1]) / 2
-    x, y = _zero_below(x, extent[0]), _zero_below(y, extent[1])
-    fx, fy = float(np.hypot(*(ends[1] - ends[0]))) * traction
-    return np.array([fx, fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
+    force = float(np.hypot(*(ends[1] - ends[0]))) * traction
+    return _loads(1.0, _zero_below(x, extent[0]), _zero_below(y, extent[1]), force, c)
 
 
 def _gravity(i: AreaIntegrals, weight: float, falling: tuple[float, float], tangent: Array, c: float) -> Array:
     """Return the load of a weight per area [N/m^3] in the direction `falling`."""
     right, up = falling
-    fx, fy = weight * (right * tangent[0] + up * tangent[1]), weight * (up * tangent[0] - right * tangent[1])
-    x, y = i.x, i.y
-    return np.array([i.area * fx, i.area * fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
+    along = weight * (right * tangent[0] + up * tangent[1])
+    across = weight * (up * tangent[0] - right * tangent[1])
+    return _loads(i.area, i.x, i.y, (along, across), c)
+
+
+def _loads(size: float, x: float, y: float, force: Sequence[float] | Array, c: float) -> Array:
+    """Return the load of a force by the integrals of 1, x' and y' over what it acts on."""
+    fx, fy = force
+    return np.array([size * fx, size * fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
 
 
 def _translation(tangent: Array, load: Load) -> Array:
@@ -230,6 +228,6 @@ def _to_block_unknowns(i: AreaIntegrals, c: float, tangent: Array) -> Array:
 
 def _observers(Q: Array, contact: Contact, a: float) -> dict[str, Array]:
     """Return the row of every column: the block's unknowns and -2 pn w / a."""
-    rows = {name: Q[index] for name, index in _D_ROWS.items()}
+    rows = dict(zip(D_COLUMNS, Q, strict=True))
     rows["contact_pressure"] = np.array([0.0, -2 * contact.normal / a, 0.0, 0.0, 0.0, 0.0])
     return {name: rows[name] for name in COLUMNS}

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import spectral, viscous
-from dda.scheme.newmark import Scheme, assembled_step, effective_matrix, modal_step, viscosity
-
-Array = NDArray[np.float64]
+from dda.scheme.newmark import Scheme, effective_matrix, modal_step, viscosity
 
 
 @dataclass(frozen=True)
@@ -76,14 +74,17 @@ def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) 
     """Return the (3n, 3n) matrix of one unloaded step on (D, dt V, dt^2 A).
 
     D holds the reduced unknowns (all six if `full`), each scaled by a power of two; the matrix
-    is similar to the one on (D, V, A) and has the same eigenvalues.
+    is similar to the one on (D, V, A) and has the same eigenvalues. It is (6) and (7) with M A1 + C V1 + K D1 = 0.
     """
     form = model.gap_form if full else model.gap_form.reduced()
     M, k, _ = _scaled(form, scheme)
-    n = len(k)
+    n, K = len(k), np.diag(k)
+    C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * K  # dt C
     D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
-    D1, P1, f1 = assembled_step(scheme, M, k, D, M @ V, M @ A)
-    return np.vstack([D1, np.linalg.solve(M, P1), np.linalg.solve(M, f1)])
+    displacement = D + scheme.gg * V + (0.5 - scheme.alpha) * A
+    velocity = scheme.gg * V + (1 - scheme.delta) * A
+    A1 = -np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement)
+    return np.vstack([displacement + scheme.alpha * A1, velocity + scheme.delta * A1, A1])
 
 
 def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
-
-Array = NDArray[np.float64]
 
 _SWEEPS = 40  # Jacobi's method converges quadratically: six unknowns take about five
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.solution import check_request
@@ -13,7 +13,6 @@ from dda.one_block.two_block import TwoBlockModel
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
 
-Array = NDArray[np.float64]
 _OWN = {"horizontal_displacement": 0, "displacement": 1}  # what a moving base adds to the columns
 
 

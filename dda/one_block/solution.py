@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dda.model.load import Load, at_once, load_share
+from dda.model.arrays import Array
+from dda.model.load import BaseMotion, Load, at_once, load_share
 from dda.one_block.gap_form import COLUMNS, GapForm
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
@@ -20,7 +20,6 @@ from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
 from dda.scheme.newmark import Scheme, carried_histories, stepped_modes
 
-Array = NDArray[np.float64]
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")  # of self-adaptive damping, further columns [-, J]
 
 
@@ -87,7 +86,7 @@ def solve(
         observed += 0.0
         overflow = bound_overflow(observed, model.load_size)
         if model.load.motion is not None:
-            observed += _carried(model, scheme, modal, rows, columns, steps)
+            observed += _carried(model.load.motion, scheme, modal, rows, columns, steps)
             overflow = bound_overflow(observed, 1.0)
     ended = perf_counter()
     return Result(
@@ -184,12 +183,9 @@ def _ramped_modes(load: Load, scheme: Scheme, modal: ModalForm, steps: int) -> A
 
 
 def _carried(
-    model: TwoBlockModel, scheme: Scheme, modal: ModalForm, rows: Array, columns: Sequence[str], steps: int
+    motion: BaseMotion, scheme: Scheme, modal: ModalForm, rows: Array, columns: Sequence[str], steps: int
 ) -> Array:
     """Return the part of the columns that the base's motion causes, (columns, steps)."""
-    motion = model.load.motion
-    if motion is None:
-        return np.zeros((len(columns), steps))
     instants = scheme.step * np.arange(steps + 1.0)
     histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
     base_columns = carried(motion, instants[1:])

@@ -12,13 +12,11 @@ from collections.abc import Sequence
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.one_block.solution import Result, bound_overflow, check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme.newmark import Scheme
-
-Array = NDArray[np.float64]
 
 _STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3}
 
@@ -43,10 +41,7 @@ def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
 
 
 def solve_textbook(
-    model: TwoBlockModel,
-    scheme: Scheme,
-    steps: int,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
+    model: TwoBlockModel, scheme: Scheme, steps: int, columns: Sequence[str] = ("displacement", "contact_pressure")
 ) -> Result:
     """Step the printed recursion from rest and return the asked columns.
 

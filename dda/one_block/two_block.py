@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from dda.contact.springs import Contact, contact_stiffness
-from dda.model.load import BaseMotion, pressed_part
-from dda.model.loaded import LoadedBlock
+from dda.model.arrays import Array
+from dda.model.load import BaseMotion, LoadedBlock, pressed_part
 from dda.one_block.gap_form import GapForm, gap_form
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -8,19 +8,17 @@ follows, so that every interval ends at its own time.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from time import perf_counter
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dda.contact.unilateral import SLIP, Unilateral
-from dda.model.load import at_once
-from dda.model.loaded import LoadedBlock
-from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
+from dda.contact.unilateral import Unilateral
+from dda.model.arrays import Array
+from dda.model.load import LoadedBlock, at_once
+from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
@@ -37,8 +35,6 @@ from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
 from dda.stepping.energy import ENERGIES, GIVEN, spring_energies
-
-Array = NDArray[np.float64]
 
 SHEAR_COMPILE_TIME = 2.5  # with springs in shear, over that of contacts which slide freely
 PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
@@ -160,6 +156,8 @@ def solve_unilateral(
     for name, moved in carried(motion, step_times(scheme, reached)).items():
         if name in values:
             values[name] = values[name] + moved
+    D, P = np.hsplit(history.motion[1:], 2)
+    per_momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
     notes = [f"stepped, {how}: contact opens and closes"]
     if len(form.unknowns) < 6:
         notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
@@ -170,7 +168,12 @@ def solve_unilateral(
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=int(left[0].made[0]),
         base_contacts=(0, 1),
-        parts=_parts(model, form, scheme, history),
+        softness=law.softness,
+        parts={
+            "slide": lambda: form.slide @ D.T,
+            "horizontal_velocity": lambda: P @ per_momentum[0],
+            "velocity": lambda: P @ per_momentum[1],
+        },
         balance=(lambda: energies(model, form, scheme, history)) if options.energies else None,
     )
 
@@ -208,40 +211,6 @@ def energies(model: UnilateralModel, form: UnilateralForm, scheme: Scheme, histo
         load,
     )
     return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
-
-
-def _parts(
-    model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History
-) -> dict[str, Callable[[], Any]]:
-    """Return what makes the properties of a result; a contact that stands for both corners is N."""
-    n = len(form.unknowns)
-    momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
-    parts = contact_parts(
-        history,
-        softness=model.contact.softness,
-        slide=lambda: form.slide @ history.motion[1:, :n].T,
-        horizontal_velocity=lambda: history.motion[1:, n:] @ momentum[0],
-        velocity=lambda: history.motion[1:, n:] @ momentum[1],
-    )
-    if form.contacts == 1:
-        for name in ("normal", "gap"):
-            parts[name] = partial(_at_both, parts[name], 1.0)
-        for name in ("shear", "stretch", "slipped"):
-            parts[name] = partial(_at_both, parts[name], -1.0)
-        parts["states"] = partial(_mirrored_states, history)
-    return parts
-
-
-def _at_both(of_one: Callable[[], Array], sign: float) -> Array:
-    """Return what one contact has that stands for both corners, at M with a sign."""
-    values: Array = np.array([[sign], [1.0]]) * of_one() + 0.0
-    return values
-
-
-def _mirrored_states(history: History) -> Array:
-    """Return the states of one contact that stands for both corners: they slip in opposite directions."""
-    state = history.state[1:].T
-    return np.vstack([np.where(np.abs(state) == SLIP, -state, state), state])
 
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:

@@ -19,16 +19,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import Unilateral
+from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.model.loaded import LoadedBlock
+from dda.model.load import LoadedBlock
 from dda.one_block.gap_form import UNKNOWNS as GAP_UNKNOWNS
 from dda.one_block.gap_form import gap_form
-
-Array = NDArray[np.float64]
 
 UNKNOWNS = ("ex", "e2", "gxy", "U", "w_M", "w_N")
 ONE = ("ex", "e2", "w")  # of a symmetric motion

@@ -26,7 +26,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.conserving import conserving
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
@@ -46,6 +45,7 @@ from dda.contact.kernel import (
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
+from dda.model.arrays import Array
 from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
@@ -56,10 +56,9 @@ from dda.scheme.newmark import (
     momentum_balance,
     velocity_corrector,
 )
-from dda.stepping.driver import BaseRecord, base_displacement, driver
+from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
-Array = NDArray[np.float64]
 NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
 RULES = (NEWMARK, IMPLICIT, CONSERVING)
 
@@ -244,22 +243,15 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
         state: BlockState,
         after: BlockState,
         base: BaseRecord | None,
-        begun: float,
-        ratio: float,
+        part: Part,
     ) -> tuple[int, int]:
-        """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
-
-        Parameters
-        ----------
-        begun, ratio
-            Where it begins and how long it is, in steps.
-        """
-        length = length_of(block, shear_law, ratio)
+        """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
+        length = length_of(block, shear_law, part.ratio)
         scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
-        free_step(block, shear_law, length, scheme, state, base, begun, ratio)
+        free_step(block, shear_law, length, scheme, state, base, part)
         outcome, solves = solve(block, shear_law, state.contacts, length, after.contacts)
         if outcome == FOUND:
-            accept(block, shear_law, length, scheme, state, after, ratio)
+            accept(block, shear_law, length, scheme, state, after)
             if shear_law is not None:
                 refer(block, state.contacts, after)
         return outcome, solves
@@ -274,15 +266,15 @@ def free_step(
     scheme: StepScheme,
     state: BlockState,
     base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+    part: Part,
 ) -> None:
     """Write the increments of a step without contact forces, and what it does to the contacts."""
     room = block.room
     n = len(block.K)
     c = len(block.room.slide)
+    ratio = part.ratio
     if block.ramp > 0:
-        share = load_share(block.ramp, (begun + ratio) * block.step)
+        share = load_share(block.ramp, (part.begun + ratio) * block.step)
         for i in range(n):
             length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     for i in range(n):
@@ -290,7 +282,7 @@ def free_step(
         room.f[i] = ratio * ratio * state.f[i]
         room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
     if base is not None:
-        base_displacement(base, block.step, begun, ratio, room.start, room.base)
+        base_displacement(base, block.step, part, room.start, room.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], room.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
@@ -319,7 +311,6 @@ def accept(
     scheme: StepScheme,
     state: BlockState,
     after: BlockState,
-    ratio: float,
 ) -> None:
     """Write (D, P, f) at the end of the step under the contact forces."""
     room = block.room
@@ -327,6 +318,7 @@ def accept(
     c = len(block.room.slide)
     normal = block.work.mean if block.rule == 2 else after.contacts.normal
     contact_forces(block, shear_law, normal, after.contacts.shear)
+    ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
         after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
@@ -401,19 +393,12 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 
 
 def account(
-    block: BlockEquations,
-    shear_law: Shear,
-    state: BlockState,
-    after: BlockState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
-    sums: Vector,
+    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
 ) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says; `base` is known from `advance`."""
+    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says."""
     room = block.room
     n = len(block.K)
-    length = length_of(block, shear_law, ratio)
+    length = length_of(block, shear_law, part.ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
@@ -426,30 +411,22 @@ def account(
     if block.rule != 2:
         if shear_law is not None:
             slides_by(block, room.change, room.slide)
+        h = length.numbers[2]
         late = block.delta if block.rule == 0 else 1.0
         share = block.multiplicity
         add_contact_losses(
-            block.law,
-            shear_law,
-            state.contacts,
-            after.contacts,
-            room.slide,
-            room.base,
-            late,
-            length.numbers[2],
-            share,
-            sums,
+            block.law, shear_law, state.contacts, after.contacts, room.slide, room.base, late, h, share, sums
         )
     if block.ramp > 0:  # what a load that rises does beside the work of the whole one
-        share = (1 - block.delta) * load_share(block.ramp, begun * block.step)
-        share += block.delta * load_share(block.ramp, (begun + ratio) * block.step)
+        share = (1 - block.delta) * load_share(block.ramp, part.begun * block.step)
+        share += block.delta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
         for i in range(n):
             moved = room.change[i] + dot(block.translation[i], room.base, 2)
             sums[GIVEN] += (share - 1) * block.load[i] * moved
-    if begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
+    if part.begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         share = load_share(block.ramp, 0.0)
         for i in range(n):
-            missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - ratio * ratio * state.f[i]
+            missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - part.ratio * part.ratio * state.f[i]
             moved = room.change[i] + dot(block.translation[i], room.base, 2)
             sums[ALGORITHMIC] += (1 - block.delta) * moved * missing / h2
     kinetic = 0.0

@@ -25,16 +25,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
+from dda.model.arrays import Array
 from dda.model.block import Block
-
-Array = NDArray[np.float64]
 
 EXACT, FIRST_ORDER = "exact", "first-order"
 
@@ -78,13 +76,13 @@ def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
             out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2
 
 
-def strained(q: Vector, x: float, y: float) -> tuple[float, float]:
+def strained(q: Vector, x: Any, y: Any) -> tuple[Any, Any]:
     """Return (I + E) xi of a point of the unstrained outline."""
     return x + (x * q[3] + y * q[5] / 2), y + (x * q[5] / 2 + y * q[4])
 
 
-def place(q: Vector, Q: Matrix, x: float, y: float) -> tuple[float, float]:
-    """Return where a point of the unstrained outline is, for the unknowns q = (c, r, e) [m]."""
+def place(q: Vector, Q: Matrix, x: Any, y: Any) -> tuple[Any, Any]:
+    """Return where a point of the unstrained outline is, or several are, for the unknowns q = (c, r, e) [m]."""
     across, up = strained(q, x, y)
     return q[0] + (across * Q[0][0] + up * Q[0][1]), q[1] + (across * Q[1][0] + up * Q[1][1])
 
@@ -121,13 +119,8 @@ class RollingMotion(NamedTuple):
 
     def points(self, xi: Array) -> Array:
         """Return points of the unstrained outline where they are, (k, points, 2) [m]."""
-        x, y = xi.T
-        ex, ey, gxy = self.e.T[:, :, None]
-        across = x + (x * ex + y * gxy / 2)
-        up = y + (x * gxy / 2 + y * ey)
-        turned_parts = [across * row[:, :1] + up * row[:, 1:] for row in (self.Q[:, 0], self.Q[:, 1])]
-        placed: Array = self.c[:, None] + np.stack(turned_parts, axis=-1)
-        return placed
+        q = np.column_stack([self.c, self.r, self.e]).T[:, :, None]
+        return np.stack(place(q, self.Q.transpose(1, 2, 0)[:, :, :, None], *xi.T), axis=-1)
 
 
 def motion_of(rows: Array) -> RollingMotion:

@@ -1,30 +1,187 @@
-"""Histories of a block that turns: its steps, cut where the contacts have no single state."""
+"""Histories of a block that may turn by any angle: its model, its steps, and what is read from them.
+
+A step is cut where the contacts have no single state.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dda.contact.kernel import shear_law_of
-from dda.model.load import BaseMotion
-from dda.one_block.contact_result import contact_parts, run_fields
+from dda.contact.kernel import at_rest, shear_law_of
+from dda.contact.unilateral import Unilateral
+from dda.model.arrays import Array
+from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
+from dda.one_block.contact_result import ContactResult, run_fields
+from dda.one_block.gap_form import COLUMNS
 from dda.one_block.solution import check_damping, check_request
-from dda.one_block.unilateral import check_scheme
-from dda.rotation.body import motion_of
-from dda.rotation.model import RollingModel, RollingOptions
-from dda.rotation.result import RollingResult, energies, observed
-from dda.rotation.step import STATE, make_steps, rolling_equations
+from dda.one_block.unilateral import check_iteration, check_scheme
+from dda.rotation.body import (
+    EXACT,
+    FIRST_ORDER,
+    Body,
+    RollingMotion,
+    body,
+    directions,
+    motion_of,
+    strain_matrices,
+    turned,
+)
+from dda.rotation.step import STATE, RollingState, Setting, make_steps, rolling_equations
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
-from dda.stepping.driver import base_record, history_of, reached_history
-
-Array = NDArray[np.float64]
+from dda.stepping.driver import History, base_record, history_of, reached_history
+from dda.stepping.energy import ENERGIES, FRICTION, GIVEN, IMPULSE, SWITCHING, spring_energies
 
 COMPILE_TIME = 4.0  # of the loop, over that of contacts which slide freely
 PLAIN_STEP = 4e-4  # seconds of plain Python for each step
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class RollingModel(LoadedBlock):
+    """One convex block that slides, rocks, topples and rolls over the line of its base edge, prolonged both ways.
+
+    Pressure and traction are dead loads: they keep size and direction and act on the material points of the top edge.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, the outline is not convex, the contact has a band, the eccentricity leaves nothing
+        of the top edge, or base and top are not two edges of the block.
+    """
+
+    contact: Unilateral  # at every corner of the outline
+    tilt: float = 0.0  # counter-clockwise at t = 0, about the end of the base that stays down [rad]
+    velocity: tuple[float, float] = (0.0, 0.0)  # of the centroid at t = 0, in x and y of the block's coordinates [m/s]
+    spin: float = 0.0  # at t = 0, counter-clockwise [rad/s]
+
+    def check(self) -> None:
+        """Check the numbers and the edges."""
+        super().check()
+        at_once(self.load, "updated geometry")
+        for name in ("tilt", "spin", "velocity"):
+            if not np.all(np.isfinite(getattr(self, name))):
+                raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
+        if any(self.contact.band):
+            raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
+        _ = self.body
+
+    @cached_property
+    def body(self) -> Body:
+        """Outline and matrices in the frame of the base."""
+        return body(self.block, self.base)
+
+    def setting(self, options: RollingOptions) -> Setting:
+        """Return what stays the same from step to step."""
+        where, dead = self._dead()
+        weight = self.load.gravity * (self.body.to_base @ self.load.falling)
+        return Setting(self.body, self.contact, weight, where, dead, options.rotation, options.solve_limit)
+
+    def _dead(self) -> tuple[Array, Array]:
+        """Return where the resultants of pressure and traction act, and these, along and across the base."""
+        load, (start, end) = self.load, self.block.edge(self.top)
+        pressed = pressed_part(start, end, load.eccentricity)
+        edge_loads = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
+        acting = [(ends, size, direction) for ends, size, direction in edge_loads if size]
+        local = self.body.to_base
+        where = [local @ (np.mean(ends, axis=0) - self.block.section.centroid) for ends, _, _ in acting]
+        forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ along) for ends, size, along in acting]
+        return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2)
+
+    def start(self, setting: Setting, scheme: Scheme) -> RollingState:
+        """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
+        body = self.body
+        Q = turned(self.tilt)
+        touching = body.base if self.tilt == 0 else body.base[:1] if self.tilt > 0 else body.base[1:]
+        down = body.xi[touching[0]]
+        q = np.zeros(6)
+        q[:2] = body.centroid + down - Q @ down + np.array([0.0, self.contact.gap])
+        gap = (q[:2] + body.xi @ Q.T)[:, 1]
+        gap[list(touching)] = self.contact.gap
+        V = np.zeros(6)
+        V[:2] = body.to_base @ self.velocity
+        V[2] = self.spin
+        A = np.zeros(6)
+        if scheme.start == "consistent":
+            push = np.zeros(6)
+            push[:2] = body.M[0, 0] * setting.weight
+            spin = np.array([-Q[1], Q[0]])
+            across, up = np.zeros((2, 6))
+            for (x, y), force in zip(setting.where, setting.dead, strict=True):
+                directions(spin, Q, q, x, y, across, up)
+                push += force[0] * across + force[1] * up
+            A[:] = np.linalg.solve(body.M, push)
+        return RollingState(q, Q, V, A, at_rest(gap))
+
+
+@dataclass(frozen=True)
+class RollingOptions:
+    """How the steps are made.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its range.
+    """
+
+    rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
+    solve_limit: int = 6  # solves of the open-close iteration before all states are tried
+    cut: float = 0.3  # length of a cut step over that of the failed one
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        if self.rotation not in (EXACT, FIRST_ORDER):
+            raise ValueError(f"rotation: must be {EXACT!r} or {FIRST_ORDER!r}, got {self.rotation!r}")
+        check_iteration(self.solve_limit, self.cut)
+
+
+@dataclass(frozen=True, eq=False)
+class RollingResult(ContactResult):
+    """Histories of a block that turns; the contacts are all corners of its outline, `base_contacts` M and N."""
+
+    body: Body
+    motion: RollingMotion  # from t = 0 on
+
+    @property
+    def angle(self) -> Array:
+        """Sum of the steps' rotations, (steps,) [rad]."""
+        return self.motion.r[1:]
+
+    @property
+    def spin(self) -> Array:
+        """Rate of rotation [rad/s]."""
+        return self.motion.V[1:, 2]
+
+    @property
+    def impulse(self) -> Array:
+        """Integral of the sum of N from t = 0 on, as the scheme takes it, (steps,) [N s]."""
+        return self.history.sums[1:, IMPULSE]
+
+    @cached_property
+    def slipped(self) -> Array:  # type: ignore[override]
+        """Distance that the shear reference moved by slip in each step, (contacts, steps) [m]."""
+        return np.asarray(np.abs(self.history.slipped[1:].T))
+
+    @cached_property
+    def slip(self) -> Array:
+        """Largest movement of the shear reference of any corner by slip, summed while it was closed, (steps,) [m]."""
+        return np.asarray(np.cumsum(self.slipped, axis=1).max(axis=0))
+
+    @cached_property
+    def outline(self) -> Array:
+        """Corners in the frame of the base, (steps, corners, 2) [m]."""
+        return self.motion.points(self.body.xi)[1:]
+
+    @cached_property
+    def area(self) -> Array:
+        """Area of the outline over that of the start, (steps,) [-]."""
+        e = self.motion.e[1:]
+        strained = (1 + e[:, 0]) * (1 + e[:, 1]) - e[:, 2] ** 2 / 4
+        return np.asarray(np.linalg.det(self.motion.Q[1:]) * strained)
 
 
 def base_motion(model: RollingModel) -> BaseMotion | None:
@@ -41,19 +198,8 @@ def solve_rolling(
 ) -> RollingResult:
     """Step a block that slides, rocks, topples and rolls over its base.
 
-    Displacements and rotation count from t = 0, strains are those along axes that turn with the block. A numerical
-    failure is an outcome, not an exception: the history then ends with the last step that was reached.
-
-    Parameters
-    ----------
-    model, scheme
-        What moves and how it is stepped. The start "consistent" means M A0 = F, since no contact presses at t = 0.
-    steps : int
-        Number of steps.
-    columns : sequence of str
-        Any of `dda.COLUMNS`.
-    options
-        How the steps are made; the defaults if absent.
+    Rotation counts from t = 0, strains are those along axes that turn with the block. Parameters and outcomes are those
+    of `dda.solve_unilateral`.
 
     Raises
     ------
@@ -91,14 +237,6 @@ def solve_rolling(
             placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
         return placed[:, 1:] - placed[:, :1]
 
-    parts = contact_parts(
-        history,
-        setting.law.softness,
-        slide=slide,
-        slipped=lambda: np.abs(history.slipped[1:].T),
-        horizontal_velocity=lambda: velocity[:, 0],
-        velocity=lambda: velocity[:, 1],
-    )
     note = f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation"
     return RollingResult(
         **run_fields(history, ended, scheme, [note], (began, ready)),
@@ -107,9 +245,42 @@ def solve_rolling(
         nonzeros=int(np.count_nonzero(setting.body.M)),
         factorisations=int(left[0].made[0]),
         base_contacts=setting.body.base,
-        parts=parts,
+        softness=setting.law.softness,
+        parts={"slide": slide, "horizontal_velocity": lambda: velocity[:, 0], "velocity": lambda: velocity[:, 1]},
         balance=lambda: energies(setting, motion, history),
         body=setting.body,
         motion=motion,
-        history=history,
     )
+
+
+def observed(body: Body, states: RollingMotion, history: History) -> dict[str, Array]:
+    """Return all of `dda.COLUMNS`."""
+    out = body.to_base.T
+    moved = (states.c[1:] - states.c[0]) @ out.T
+    E = np.einsum("ai,kij,bj->abk", out, strain_matrices(states.e[1:]), out)
+    a = float(np.hypot(*(body.xi[body.base[1]] - body.xi[body.base[0]])))
+    pressure = history.normal[1:].sum(axis=1) / a
+    values = (moved[:, 1], pressure, moved[:, 0], states.r[1:], E[0, 0], E[1, 1], 2 * E[0, 1])
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def energies(setting: Setting, states: RollingMotion, history: History) -> dict[str, Array]:
+    """Return the energies [J] after every step, the losses summed from t = 0 on.
+
+    They are those of `dda.stepping.energy`, but for the algorithmic loss, which is what the others leave of the total:
+    at delta = 1 and alpha >= 1/2 none of them is negative, however far the block turns.
+    """
+    M, V = setting.body.M, states.V
+    growth = np.ones(len(V)) if setting.rotation == EXACT else np.linalg.det(states.Q)
+    moving = growth * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
+    turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
+    load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ setting.weight)
+    loaded = states.points(setting.where)
+    load -= np.einsum("kma,ma->k", loaded - loaded[0], setting.dead) + history.sums[:, GIVEN]
+    strain = growth * np.einsum("ki,ij,kj->k", states.e, setting.body.K, states.e) / 2
+    stored = ((moving + turning) / 2, strain, spring_energies(setting.law, history.normal, history.shear), load)
+    total = np.sum(stored, axis=0)
+    damped, switching, friction = history.sums[1:, SWITCHING - 1 : FRICTION + 1].T
+    algorithmic = total[0] - total[1:] - damped - switching - friction
+    values = (*(part[1:] for part in stored), algorithmic, damped, switching, friction)
+    return dict(zip(ENERGIES, values, strict=True))

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
@@ -44,12 +43,12 @@ from dda.contact.kernel import (
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
+from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
-from dda.stepping.driver import BaseRecord, base_at, driver
+from dda.stepping.driver import BaseRecord, Part, base_at, driver
 from dda.stepping.energy import DAMPING, add_contact_losses
 
-Array = NDArray[np.float64]
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
@@ -269,21 +268,15 @@ def advance(
     state: RollingState,
     after: RollingState,
     base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+    part: Part,
 ) -> tuple[int, int]:
-    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves.
+    """Make a part of a step from `state` to `after`; return the outcome and the number of solves.
 
     Of a convex outline two corners at most touch a plane. Which they may be is guessed from the step without contact,
     and the step is made again with those that turn out to be the lowest, until no other one has crossed the plane.
-
-    Parameters
-    ----------
-    begun, ratio
-        Where it begins and how long it is, in steps.
     """
-    matrices = matrices_of(body, state.Q, ratio)
-    predict(body, matrices, state, base, begun, ratio)
+    matrices = matrices_of(body, state.Q, part.ratio)
+    predict(body, matrices, state, base, part)
     room = body.room
     near = nearest(body, room.near, REACH * body.size)
     total = 0
@@ -311,20 +304,15 @@ def pair_number(at: States, near: int) -> int:
 
 
 def predict(
-    body: RollingEquations,
-    matrices: StepMatrices,
-    state: RollingState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+    body: RollingEquations, matrices: StepMatrices, state: RollingState, base: BaseRecord | None, part: Part
 ) -> None:
     """Write what is known of a step before its contact: the step without it, and where the corners come from."""
     room = body.room
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
     if base is not None:
-        base_at(base, body.step * begun, room.start)
-        base_at(base, body.step * (begun + ratio), room.base)
+        base_at(base, body.step * part.begun, room.start)
+        base_at(base, body.step * (part.begun + part.ratio), room.base)
         for axis in range(2):
             room.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
@@ -592,31 +580,16 @@ def accept(
 
 
 def account(
-    body: RollingEquations,
-    shear_law: Shear,
-    state: RollingState,
-    after: RollingState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
-    sums: Vector,
+    body: RollingEquations, shear_law: Shear, state: RollingState, after: RollingState, part: Part, sums: Vector
 ) -> None:
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
     room = body.room
-    gg = body.gg**ratio
+    gg = body.gg**part.ratio
+    h = body.step * part.ratio
     if gg != 1:
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
-        body.law,
-        shear_law,
-        state.contacts,
-        after.contacts,
-        room.slide,
-        room.moved,
-        body.delta,
-        body.step * ratio,
-        1.0,
-        sums,
+        body.law, shear_law, state.contacts, after.contacts, room.slide, room.moved, body.delta, h, 1.0, sums
     )
 
 

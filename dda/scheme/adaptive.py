@@ -15,11 +15,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, effective_matrix, initial_acceleration, modal_step
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

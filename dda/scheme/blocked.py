@@ -14,19 +14,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from decimal import Context, Decimal, localcontext
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.scheme import newmark
-from dda.scheme.exact import PLACES, Exact
 from dda.scheme.newmark import Scheme
 
-Array = NDArray[np.float64]
-
 BLOCK = 1024  # most steps in a row: its products stay in the cache
-_RANGE = 1e15  # of w dt: its square has full digits as an `Exact`
+PLACES = 192  # binary places of a map's entries: one from 1e-30 on keeps far more digits than a double
+_DIGITS = Context(prec=80)  # of the one step from which they come
+_RANGE = 1e15  # of w dt: its square has full digits
 _ONE = 1 << PLACES
 
 Map = tuple[int, int, int, int, int, int]
@@ -108,19 +108,13 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
 
 
 def with_all_digits(scheme: Scheme) -> Scheme:
-    """Return the scheme in numbers that `modal_step` takes in place of doubles."""
-    fields: dict[str, Any] = {name: Exact.of(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
+    """Return the scheme in decimal numbers, which `modal_step` takes in place of doubles."""
+    fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
     return replace(scheme, **fields)
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
-    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled."""
-    entries, unit, (u, p) = mode_maps(exact, w, levels)
-    return entries, (u / _ONE, p / _ONE / unit)
-
-
-def mode_maps(exact: Scheme, w: float, levels: int) -> tuple[Array, float, tuple[int, int]]:
-    """Return the entries of the maps of one mode, (levels, 6), the unit of its p, and (u, p) 2^PLACES at step 1.
+    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
     The momentum is measured in the power of two that makes the off-diagonal entries about equal.
 
@@ -129,12 +123,12 @@ def mode_maps(exact: Scheme, w: float, levels: int) -> tuple[Array, float, tuple
     exact
         The scheme of `with_all_digits`.
     """
-    step, first = _one_step(exact, w)
+    step, (u, p) = _one_step(exact, w)
     b, c = step[1].bit_length(), step[2].bit_length()
     unit = math.ldexp(1.0, (c - b) // 2) if b and c else 1.0
     scales = np.array([1.0, unit, 1 / unit, 1.0, 1.0, 1 / unit]) / _ONE
     entries = [list(map(float, power)) for power in _squared(step, levels)]
-    return np.array(entries).reshape(-1, 6) * scales, unit, first
+    return np.array(entries).reshape(-1, 6) * scales, (u / _ONE, p / _ONE / unit)
 
 
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
@@ -142,19 +136,22 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
 
     Under the load F = k the static displacement is 1, so that D is u and P is p.
     """
-    omega, zero, one = Exact.of(w) * exact.step, Exact(0), Exact(_ONE)
-    k = omega * omega
-    S = newmark.effective_matrix(exact, one, k)
+    frequency: Any = Decimal(w)
+    zero: Any = Decimal(0)
+    one: Any = Decimal(1)
+    with localcontext(_DIGITS):
+        k = (frequency * exact.step) ** 2
+        S = newmark.effective_matrix(exact, one, k)
 
-    def step(D: Exact, P: Exact, f: Exact) -> tuple[int, int]:
-        D, P, _ = newmark.modal_step(exact, S, k, k, (D, P, f))
-        return D.scaled, P.scaled
+        def step(D: Any, P: Any, f: Any) -> tuple[int, int]:
+            D, P, _ = newmark.modal_step(exact, S, k, k, (D, P, f))
+            return int(D * _ONE), int(P * _ONE)
 
-    unstrained = newmark.acceleration_corrector(k, k, zero)
-    e, g = step(zero, zero, unstrained)
-    a, c = step(one, zero, newmark.acceleration_corrector(k, k, one))
-    b, d = step(zero, one, unstrained)
-    return (a - e, b - e, c - g, d - g, e, g), step(zero, zero, newmark.initial_acceleration(exact, k))
+        unstrained = newmark.acceleration_corrector(k, k, zero)
+        e, g = step(zero, zero, unstrained)
+        a, c = step(one, zero, newmark.acceleration_corrector(k, k, one))
+        b, d = step(zero, one, unstrained)
+        return (a - e, b - e, c - g, d - g, e, g), step(zero, zero, newmark.initial_acceleration(exact, k))
 
 
 def _squared(power: Map, levels: int) -> Iterator[Map]:

@@ -25,13 +25,11 @@ from itertools import islice, repeat
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dda.scheme.exact import Exact
+from dda.model.arrays import Array
 
-Array = NDArray[np.float64]
 Start = Literal["zero", "consistent"]
-Real = TypeVar("Real", float, Array, Exact)  # one mode, all unknowns at once, one mode with all digits
+Real = TypeVar("Real", float, Array)  # one mode, all unknowns at once; `dda.scheme.blocked` puts in decimal numbers
 
 
 @dataclass(frozen=True)
@@ -99,7 +97,7 @@ def initial_acceleration(scheme: Scheme, F: Real) -> Real:
 
 def predictor(scheme: Scheme | StepScheme, P: Real, f: Real) -> Real:
     """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9)."""
-    return scheme.gg * P + (0.5 - scheme.alpha) * f
+    return scheme.gg * P + (1 - 2 * scheme.alpha) / 2 * f  # whole numbers: decimal ones go with no doubles
 
 
 def acceleration_corrector(F: Real, k: Real, D: Real) -> Real:
@@ -212,38 +210,3 @@ def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, mo
         P, f = velocity_corrector(scheme, P, f, f1), f1
         row[:] = D
     return histories
-
-
-def assembled_step(scheme: Scheme, M: Array, k: Array, D: Array, P: Array, f: Array) -> tuple[Array, Array, Array]:
-    """Return (D, P, f) of all unknowns one step later without load.
-
-    Parameters
-    ----------
-    M : (n, n) array
-        Inertia.
-    k : (n,) array
-        Diagonal of dt^2 K.
-    D, P, f : (n, m) arrays
-        As many states as there are columns.
-    """
-    column, zero = k[:, None], np.zeros_like(D)
-    S = effective_matrix(scheme, M, np.diag(k))
-    if scheme.damped:
-        return _assembled_viscous_step(scheme, M, column, S, (D, P, f))
-    D = D + np.linalg.solve(S, momentum_balance(scheme, zero, column, D, P, f))
-    f1 = acceleration_corrector(zero, column, D)
-    return D, velocity_corrector(scheme, P, f, f1), f1
-
-
-def _assembled_viscous_step(
-    scheme: Scheme, M: Array, k: Array, S: Array, state: tuple[Array, Array, Array]
-) -> tuple[Array, Array, Array]:
-    """Return the state one step later where C = a0 M + a1 K; `k` is a column."""
-    D, P, f = state
-    C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * np.diag(k[:, 0])  # dt C
-    velocity, ahead = scheme.gg * P + (1 - scheme.delta) * f, predictor(scheme, P, f)
-    drag = C @ np.linalg.solve(M, velocity)
-    resisting = ahead + scheme.delta * C @ np.linalg.solve(M, ahead)
-    D = D + np.linalg.solve(S, resisting - scheme.alpha * (k * D + drag))
-    f1 = M @ np.linalg.solve(M + scheme.delta * C, -(k * D + drag))
-    return D, velocity + scheme.delta * f1, f1

@@ -15,7 +15,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from dda.model.arrays import Array
+
 Number = float | Array  # alpha, delta and gg may vary with Omega where a function takes arrays
 ComplexArray = NDArray[np.complex128]
 

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
 from dda.contact.kernel import FAILURES, FOUND, Contacts, Shear
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SHORTEST = 0.01  # shortest step that a cut may leave, over the scheme's step
@@ -55,6 +55,13 @@ def reached_history(history: History, reached: int) -> History:
     return History(*rows)
 
 
+class Part(NamedTuple):
+    """A whole step, or a part of one."""
+
+    begun: float  # where it begins, in steps from t = 0
+    ratio: float  # how long it is, in steps
+
+
 class BaseRecord(NamedTuple):
     """Displacement of the base, linear between the instants of a record and constant beyond them."""
 
@@ -71,16 +78,16 @@ def base_record(motion: BaseMotion | None) -> BaseRecord | None:
     return BaseRecord(np.array(motion.time, dtype=float), displacement, np.zeros(1, dtype=np.int64))
 
 
-def base_displacement(base: BaseRecord, step: float, begun: float, ratio: float, start: Vector, out: Vector) -> None:
-    """Write how far the base moves in a part of a step [m], which begins and lasts so many steps of `step` [s].
+def base_displacement(base: BaseRecord, step: float, part: Part, start: Vector, out: Vector) -> None:
+    """Write how far the base moves in a part of a step [m], where a whole one takes `step` [s].
 
     Parameters
     ----------
     start
         Where its displacement at the beginning is written [m].
     """
-    base_at(base, begun * step, start)
-    base_at(base, (begun + ratio) * step, out)
+    base_at(base, part.begun * step, start)
+    base_at(base, (part.begun + part.ratio) * step, out)
     for axis in range(2):
         out[axis] -= start[axis]
 
@@ -111,11 +118,10 @@ def driver(
     Parameters
     ----------
     advance
-        Makes a step, or a part of one: (body, shear_law, state, after, base, begun, ratio) -> outcome and solves, with
-        where it begins and how long it is, in steps. It writes `after` and leaves `state` as it is.
+        Makes a part of a step from `state` to `after`: (body, shear_law, state, after, base, part) -> outcome and
+        number of solves. It writes `after` and leaves `state` as it is.
     account
-        Adds what an accepted part of a step loses to the sums: (body, shear_law, state, after, base, begun,
-        ratio, sums).
+        Adds what the part of a step that was made last loses to the sums: (body, shear_law, state, after, part, sums).
     keep
         Writes the state at the end of a step into a row, (body, state, rows, number), and tells whether it is finite.
     """
@@ -141,7 +147,8 @@ def driver(
                 for k in range(SUMS):
                     history.sums[row, k] = history.sums[number, k]
             while True:
-                outcome, solves = advance(body, shear_law, state, after, base, number + (1.0 - remainder), ratio)
+                part = Part(number + (1.0 - remainder), ratio)
+                outcome, solves = advance(body, shear_law, state, after, base, part)
                 history.solves[row] += solves
                 if outcome != FOUND:
                     if ratio <= SHORTEST:
@@ -150,7 +157,7 @@ def driver(
                     history.cuts[row] += 1
                     continue
                 if len(history.sums) > 0:
-                    account(body, shear_law, state, after, base, number + (1.0 - remainder), ratio, history.sums[row])
+                    account(body, shear_law, state, after, part, history.sums[row])
                 for i in range(len(after.contacts.gap)):
                     history.slipped[row, i] += after.contacts.slipped[i]
                 state, after = after, state

@@ -16,13 +16,11 @@ first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.dense import Vector
 from dda.contact.kernel import Contacts, Law, Shear, spring_energy
 from dda.contact.unilateral import OPEN, Unilateral
-
-Array = NDArray[np.float64]
+from dda.model.arrays import Array
 
 STORED = ("kinetic", "strain", "springs", "load")
 LOST = ("algorithmic", "kinetic damping", "switching", "friction")

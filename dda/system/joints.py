@@ -22,11 +22,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.model.block import Block
 
-Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 FIXED = -1  # the body that all fixed parts form

@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.kernel import (
     FOUND,
@@ -37,30 +36,21 @@ from dda.contact.kernel import (
 )
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
-from dda.one_block.contact_result import ContactResult, contact_parts, run_fields
+from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import BaseRecord, base_displacement, base_record, driver, history_of, reached_history
-from dda.stepping.energy import (
-    ALGORITHMIC,
-    DAMPING,
-    ENERGIES,
-    GIVEN,
-    add_contact_losses,
-    bulk_loss,
-    spring_energies,
-)
+from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
+from dda.stepping.energy import ALGORITHMIC, DAMPING, ENERGIES, GIVEN, add_contact_losses, bulk_loss, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import Stepper
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations, inverses
-
-Array = NDArray[np.float64]
 
 LENGTHS = 16  # step lengths whose factors are kept
 COMPILE_TIME = 2.0  # of the search for contacts, over that of the smallest loop
@@ -137,7 +127,6 @@ class Length:
     """Everything of a step that depends on its length alone, factorised once."""
 
     def __init__(self, opening: OpeningSystem, scheme: Scheme, ratio: float) -> None:
-        self.ratio = ratio
         self.scheme = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
         self.stepper = Stepper(opening.equations, self.scheme)
         h2 = self.scheme.step**2
@@ -152,30 +141,6 @@ class Length:
         self.flexible = Flexibility(C, C.copy())
         if len(C) == 4 and len(opening.normals) == 2:
             change_slides(C, TO_PAIR, self.flexible.C_paired)
-
-
-class SystemEnergy:
-    """Energy of sub-blocks, of which strain counts the sub-blocks and their glue: D' Ke D + lambda' kappa^-1 lambda."""
-
-    def __init__(self, opening: OpeningSystem, dt: float) -> None:
-        """Keep the matrices; `dt` is the step of the units of `SystemState` [s]."""
-        self.opening, self.dt = opening, dt
-        e = opening.equations
-        self.inverse, self.elastic = e.blockwise(inverses(e.mass)), e.blockwise(e.elastic)
-        self.F = e.F * opening.system.load_size
-
-    def stored(self, state: SystemState) -> tuple[float, ...]:
-        """Return kinetic and strain energy, and that of the load without what the base gave."""
-        strain = self.stiff(state.D, state.mu / self.dt**2) / 2
-        return self.kinetic(state.P / self.dt), strain, -float(self.F @ state.D)
-
-    def kinetic(self, momentum: Array) -> float:
-        """Return momentum' M^-1 momentum / 2."""
-        return float(momentum @ (self.inverse @ momentum)) / 2
-
-    def stiff(self, D: Array, force: Array) -> float:
-        """Return D' Ke D + lambda' kappa^-1 lambda."""
-        return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
 
 
 class OpeningBody:
@@ -196,7 +161,11 @@ class OpeningBody:
         self.law = self.find.room(law_of(opening.law, limit))
         self.shear_law = self.find.room(shear_law_of(opening.law))
         self.work = self.find.room(work_for(points))
-        self.energy = SystemEnergy(opening, scheme.step) if energies else None
+        e = opening.equations
+        self.inverse_mass = e.blockwise(inverses(e.mass))
+        self.elastic = e.blockwise(e.elastic)
+        self.F = e.F * opening.system.load_size
+        self.energies = energies
         self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
 
     def length(self, ratio: float) -> Length:
@@ -220,30 +189,35 @@ class OpeningBody:
         contacts = at_rest(np.full(self.points, self.opening.law.gap))
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
 
-    def moved_base(self, base: BaseRecord | None, begun: float, ratio: float) -> Array:
-        """Return how far the base moves in a part of a step, along and away from itself [m]."""
-        if base is not None:
-            base_displacement(base, self.scheme.step, begun, ratio, np.zeros(2), self.carried)
-        return self.carried
+    def stored(self, state: SystemState) -> tuple[float, ...]:
+        """Return kinetic and strain energy, and that of the load without what the base gave [J]."""
+        dt = self.scheme.step
+        strain = self.stiff(state.D, state.mu / dt**2) / 2
+        return self.kinetic(state.P / dt), strain, -float(self.F @ state.D)
+
+    def kinetic(self, momentum: Array) -> float:
+        """Return momentum' M^-1 momentum / 2."""
+        return float(momentum @ (self.inverse_mass @ momentum)) / 2
+
+    def stiff(self, D: Array, force: Array) -> float:
+        """Return D' Ke D + lambda' kappa^-1 lambda, twice the strain energy of the sub-blocks and their glue."""
+        return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
 
 
 def advance(
-    body: OpeningBody,
-    shear_law: Shear,
-    state: SystemState,
-    after: SystemState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
+    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, base: BaseRecord | None, part: Part
 ) -> tuple[int, int]:
-    """Make a step, or a part of one, from `state` to `after`; return the outcome and the number of solves."""
+    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
+    ratio = part.ratio
     length = body.length(ratio)
     scheme, stepper = length.scheme, length.stepper
     P, f, mu = ratio * state.P, ratio * ratio * state.f, ratio * ratio * state.mu
     internal = stepper.k @ state.D + stepper.Bt @ mu
     dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - internal), length.still)
     moved = length.rows @ dD
-    carried = body.moved_base(base, begun, ratio)
+    carried = body.carried
+    if base is not None:
+        base_displacement(base, body.scheme.step, part, np.zeros(2), carried)
     n = body.points
     free = Free(np.array(state.contacts.gap) + moved[:n] - carried[1], np.zeros(n), np.zeros(n))
     if len(moved) > n:
@@ -268,37 +242,26 @@ def advance(
 
 
 def account(
-    body: OpeningBody,
-    shear_law: Shear,
-    state: SystemState,
-    after: SystemState,
-    base: BaseRecord | None,
-    begun: float,
-    ratio: float,
-    sums: Array,
+    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, part: Part, sums: Array
 ) -> None:
     """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
-    energy = body.energy
-    if energy is None:
-        return
     opening = body.opening
-    length = body.length(ratio)
-    scheme = length.scheme
+    scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
-    carried = body.moved_base(base, begun, ratio)
+    carried = body.carried
     moved = after.D - state.D
     slide = opening.tangents @ moved - carried[0]
     add_contact_losses(
         body.law, shear_law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums
     )
-    sums[DAMPING] += (1 - scheme.gg**2) * energy.kinetic(state.P / body.scheme.step)
+    sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
     R0, R1 = state.f / dt2, after.f / dt2
-    internal = energy.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
+    internal = body.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
     pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
-    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (energy.F - internal + pressed - R0))
-    stiff = energy.stiff(moved, (after.mu - state.mu) / dt2)
-    kinetic = energy.kinetic(R1) - energy.kinetic(R0)
-    change = energy.kinetic(R1 - R0)
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (body.F - internal + pressed - R0))
+    stiff = body.stiff(moved, (after.mu - state.mu) / dt2)
+    kinetic = body.kinetic(R1) - body.kinetic(R0)
+    change = body.kinetic(R1 - R0)
     sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, scheme.step**2, stiff, kinetic, change)
 
 
@@ -306,7 +269,7 @@ def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> boo
     """Write columns, momentum and energy at the end of a step; tell whether it is finite."""
     columns = body.observers @ state.D + body.pressure * np.sum(state.contacts.normal)
     momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
-    stored = body.energy.stored(state) if body.energy else ()
+    stored = body.stored(state) if body.energies else ()
     rows[number] = np.concatenate([columns, momentum, body.opening.tangents @ state.D, stored])
     return bool(np.isfinite(state.D).all())
 
@@ -368,7 +331,6 @@ def solve_opening_system(
         stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
         return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
 
-    own_parts = {"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]}
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),
         columns=dict(zip(columns, motion[:, :requested].T + 0.0, strict=True)),
@@ -376,6 +338,7 @@ def solve_opening_system(
         nonzeros=nonzeros,
         factorisations=body.made,
         base_contacts=(0, -1),
-        parts=contact_parts(history, law.softness, **own_parts),
+        softness=law.softness,
+        parts={"slide": slide, "horizontal_velocity": lambda: velocity[0], "velocity": lambda: velocity[1]},
         balance=balance if options.energies else None,
     )

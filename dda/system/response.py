@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dda.model.arrays import Array
 from dda.one_block.solution import check_request
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
@@ -26,7 +27,6 @@ from dda.system.system import BlockSystem, Equations
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-Array = NDArray[np.float64]
 
 BAND = 2e5  # unknowns times the square of their band's width up to which every frequency is solved by itself
 LARGEST = 600  # vectors

@@ -20,8 +20,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.one_block.modes import Mode, scalar_eigenvalues
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, step_times
 from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
@@ -30,7 +30,6 @@ from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-Array = NDArray[np.float64]
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
 _DENSE = 300  # unknowns up to which all modes are found by a dense solver
 

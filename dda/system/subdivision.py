@@ -8,16 +8,15 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.contact.springs import base_directions
+from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.load import at_once, pressed_part
 from dda.one_block.two_block import TwoBlockModel
 from dda.system.joints import FIXED, Joint
 from dda.system.system import BlockSystem, SurfaceLoad
 
-Array = NDArray[np.float64]
 Pattern = Literal["squares", "triangles"]
 Corner = tuple[int, int]
 Point = tuple[float, float]

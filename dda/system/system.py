@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.load import BaseMotion, falling
+from dda.one_block.gap_form import D_COLUMNS
 from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-Array = NDArray[np.float64]
-_D_COLUMNS = ("horizontal_displacement", "displacement", "rotation", "strain_x", "strain_y", "shear_strain")
 _ROUNDING = 64 * np.finfo(float).eps
 
 
@@ -87,8 +87,8 @@ class BlockSystem:
         B, G, kappa, C = _springs(blocks, joints)
         size = self.load_size or 1.0
         return Equations(
-            mass=_block_matrices([_without_rounding(block.mass()) for block in blocks]),
-            elastic=_block_matrices([block.elastic() for block in blocks]),
+            mass=np.array([_without_rounding(block.mass()) for block in blocks]).reshape(-1, 6, 6),
+            elastic=np.array([block.elastic() for block in blocks]).reshape(-1, 6, 6),
             B=B,
             G=G if self.motion is not None else 0 * G,
             kappa=kappa,
@@ -128,7 +128,7 @@ class BlockSystem:
         for i in self._blocks_at_point:
             rows[:2, place[i]] = share * _without_noise(self.blocks[i], self.blocks[i].T(*self.observed))
             rows[2:, place[i], 2:] = share * np.eye(4)
-        return dict(zip(_D_COLUMNS, rows.reshape(6, -1), strict=True))
+        return dict(zip(D_COLUMNS, rows.reshape(6, -1), strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,15 +263,11 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
     """Return the matrix with square blocks on its diagonal, without their zeros."""
-    from scipy.sparse import coo_array, csr_array
+    from scipy.sparse import block_diag, csr_array
 
-    entries, first = [], 0
-    for block in blocks:
-        i, k = np.nonzero(block)
-        entries.append((block[i, k], first + i, first + k))
-        first += len(block)
-    data, i, k = (np.concatenate(part) for part in zip(*entries, strict=True))
-    return csr_array(coo_array((data, (i, k)), shape=(first, first)))
+    matrix = csr_array(block_diag(blocks))
+    matrix.eliminate_zeros()
+    return matrix
 
 
 def _inverses_of(matrices: Sequence[Array]) -> list[Array]:
@@ -289,10 +285,6 @@ def inverses(matrices: Array) -> Array:
     scale = root[:, :, None] * root[:, None, :]
     inverse: Array = np.linalg.inv(matrices / scale) / scale
     return inverse
-
-
-def _block_matrices(matrices: list[Array]) -> Array:
-    return np.array(matrices).reshape(-1, 6, 6)
 
 
 def _sparse_blocks(matrices: Array) -> csr_array:

@@ -19,12 +19,15 @@ from fem_reference.events.block_flow import CELLS, CUTS, FIRST_CELLS, FLOAT_TERM
 from fem_reference.events.column_drive import TAIL_SUM, Piece
 from fem_reference.events.column_model import BASE, ColumnModel
 from fem_reference.events.enclosure import Fall, Local, ball, first_fall
+from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
 OPEN, CLOSED, STICKS, SLIPS = 0, 1, 1, 2
 """States of a contact; `SLIPS` towards +, -`SLIPS` towards -."""
 ANGLE = 6.0
 """Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
+MOST_LOOKS = 5000
+"""Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more."""
 ROUNDING = 400 * np.finfo(float).eps
 """Part of its terms by which Bernstein's forms of `FLOAT_TERMS` terms may be wrong after all cuts."""
 
@@ -170,6 +173,7 @@ class Watched:
     def __init__(
         self,
         model: ColumnModel,
+        time: float,
         segment: Segment,
         watches: Sequence[Watch],
         rate: float,
@@ -177,6 +181,7 @@ class Watched:
         error_at_switch: arb,
     ) -> None:
         self.model = model
+        self.time = time  # at its beginning [s]
         self.segment = segment
         self.watches = [watch for watch in watches if watch.lead is not None]
         self.error = error  # norm of the error in the step, see `Bounds`
@@ -282,6 +287,7 @@ class Watched:
         begin = arb(low)
         end = high - begin
         for watch in watches:
+            looks = [0]
             value = arb_poly(self.coefficients(watch))
             slope = value.derivative()
             bend = slope.derivative()
@@ -294,7 +300,11 @@ class Watched:
                 parts: tuple[arb_poly, arb_poly, arb_poly] = (value, slope, bend),
                 third: arb = third,
                 tail: arb = tail,
+                looks: list[int] = looks,
             ) -> Local:
+                looks[0] += 1
+                if looks[0] > MOST_LOOKS:
+                    raise LostDigitsError(self.time, "a contact is so near to a switch for so long")
                 x = begin + middle
                 about = parts[2](x) + tail
                 if half:

@@ -162,7 +162,8 @@ class March:
         self._grow(segment)
         acceleration = max((abs(c).upper() for c in segment.terms[2]), default=arb(0)) * 2 / arb(length) ** 2
         rate = rate_of(model, self.states)
-        watched = Watched(model, segment, self.watches, rate, self.error, self._error_at_switch(acceleration))
+        error_at_switch = self._error_at_switch(acceleration)
+        watched = Watched(model, self._now, segment, self.watches, rate, self.error, error_at_switch)
         self.offset = arb(0)
         share, width, doubtful = watched.clear()
         whole = ((limit - start.time) / arb(length)).mid()

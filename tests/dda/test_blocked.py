@@ -1,5 +1,7 @@
 """Blocked histories: equal to stepped ones, as many digits, logarithmic work."""
 
+from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -11,8 +13,7 @@ from oracles import mp_reference
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
 from dda.one_block.solution import modal_histories
 from dda.scheme import blocked as blocks
-from dda.scheme.exact import Exact
-from dda.scheme.newmark import stepped_modes
+from dda.scheme.newmark import modal_step, stepped_modes
 
 SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
 COLUMNS = ("displacement", "contact_pressure")
@@ -98,10 +99,13 @@ def test_what_cannot_be_blocked_is_stepped_and_says_so(scheme, reason):
     assert "blocked" in solve(model(), Scheme(0.25, 0.5, 1.0, 1e3), 40).notes
 
 
-def test_exact_numbers_follow_the_rules_of_arithmetic():
-    third = Exact.of(1.0) / 3
-    assert float(third) == 1 / 3
-    assert float(1 - third * 3) == pytest.approx(0, abs=1e-57)  # cut at 192 binary places
-    assert float((2 - third) + 0.5 - third) == pytest.approx(2.5 - 2 / 3, rel=1e-15)
-    assert 0 <= third <= 1
-    assert third > 0.25
+@pytest.mark.parametrize("omega", [3e-15, 0.7, 1e14])
+def test_the_map_of_one_step_has_the_digits_of_rational_numbers(omega):
+    scheme = Scheme(0.3, 0.6, 0.99, 0.1)
+    fields = {name: Fraction(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
+    rational = replace(scheme, **fields)
+    k = (Fraction(omega / 0.1) * rational.step) ** 2
+    at_rest, one = Fraction(0), Fraction(1)
+    state = modal_step(rational, one + rational.alpha * k, k, k, (at_rest, at_rest, k))[:2]
+    (_, _, _, _, e, g), _ = blocks._one_step(blocks.with_all_digits(scheme), omega / 0.1)
+    assert [abs(e - state[0] * 2**192), abs(g - state[1] * 2**192)] <= [2, 2]

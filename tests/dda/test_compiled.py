@@ -193,7 +193,7 @@ def test_what_is_kept_is_read_for_shorter_histories_than_are_compiled(fresh, mon
 
 def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeypatch, caplog):
     class Elapsed(threading.Timer):
-        """A timer whose interval is over as soon as it starts: a real one is another thread, which may come too late."""
+        """A timer whose interval is over at once: a real one is another thread, which may come too late."""
 
         def start(self):
             assert self.interval == compiled.MESSAGE_DELAY

@@ -238,14 +238,14 @@ def test_cohesion_holds_what_friction_does_not():
 def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
     saved, ratios = [], []
 
-    def stubborn(block, shear_law, state, after, base, begun, ratio):
-        ratios.append(ratio)
-        outcome, solves = step.advance(block, shear_law, state, after, base, begun, ratio)
+    def stubborn(block, shear_law, state, after, base, part):
+        ratios.append(part.ratio)
+        outcome, solves = step.advance(block, shear_law, state, after, base, part)
         if len(ratios) in (40, 41, 42):
             saved.append(deepcopy(state))
         if len(ratios) == 42:
             first = deepcopy(after)
-            step.advance(block, shear_law, state, after, base, begun, ratio)
+            step.advance(block, shear_law, state, after, base, part)
             assert first == after
         return (NONE if len(ratios) in (40, 41) else outcome), solves
 

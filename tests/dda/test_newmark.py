@@ -54,11 +54,11 @@ def test_central_differences_are_the_two_step_formula(gg):
 @pytest.mark.parametrize(
     ("piece", "fault"),
     [
-        (seams.DDA_PREDICTOR, lambda s, P, f: P + (0.5 - s.alpha) * f),
+        (seams.DDA_PREDICTOR, lambda s, P, f: P + (1 - 2 * s.alpha) / 2 * f),
         (seams.DDA_VELOCITY, lambda s, P, f, f1: P + (1 - s.delta) * f + s.delta * f1),
-        (seams.DDA_ACCELERATION, lambda F, k, D: F - 0.999 * k * D),
+        (seams.DDA_ACCELERATION, lambda F, k, D: F - k * D * 999 / 1000),
         (seams.DDA_START, lambda s, F: F),
-        (seams.DDA_EFFECTIVE, lambda s, M, k: M + 1.001 * s.alpha * k),
+        (seams.DDA_EFFECTIVE, lambda s, M, k: M + s.alpha * k * 1001 / 1000),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )

@@ -26,7 +26,7 @@ from dda import (
     subdivided,
 )
 from dda.contact.kernel import NONE
-from dda.stepping.driver import driver
+from dda.stepping.driver import Part, driver
 from fem_reference.events.bar_events import solve as bar_motion
 from fem_reference.events.bar_model import BarProblem
 
@@ -66,7 +66,7 @@ def test_two_halves_of_a_step_are_free_fall_of_the_whole():
     body = opening.OpeningBody(opening_subdivided(model, 2, 1, GLUE), scheme, 6, (), 1, False)
     state, after = body.start_state(), body.start_state()
     for share in (0.5, 1.0):
-        opening.advance(body, body.shear_law, state, after, None, share - 0.5, 0.5)
+        opening.advance(body, body.shear_law, state, after, None, Part(share - 0.5, 0.5))
         fallen, time = after.D.reshape(-1, 6)[:, 1], scheme.step * share
         assert fallen == pytest.approx(np.full(2, -0.5 * time - 9.81 * time**2 / 2), rel=1e-9)
         assert after.contacts.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
@@ -164,9 +164,9 @@ def test_long_glued_steps_are_cut_as_those_of_one_block():
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     given = []
 
-    def stubborn(body, shear_law, state, after, base, begun, ratio):
-        given.append((ratio, state, [np.copy(part) for part in (state.D, state.P, state.f, state.mu)]))
-        outcome, solves = opening.advance(body, shear_law, state, after, base, begun, ratio)
+    def stubborn(body, shear_law, state, after, base, part):
+        given.append((part.ratio, state, [np.copy(part) for part in (state.D, state.P, state.f, state.mu)]))
+        outcome, solves = opening.advance(body, shear_law, state, after, base, part)
         return (NONE if len(given) <= 2 else outcome), solves
 
     monkeypatch.setattr(stepping, "make_steps", driver(stubborn, opening.account, opening.keep))

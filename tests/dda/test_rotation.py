@@ -16,8 +16,7 @@ from dda import BaseMotion, Block, Load, Material, Scheme, Unilateral, Unilatera
 from dda import solve_unilateral as solve_small
 from dda.contact.kernel import NONE
 from dda.rotation.body import FIRST_ORDER, turned
-from dda.rotation.model import RollingModel, RollingOptions
-from dda.rotation.solution import solve_rolling
+from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
 from dda.rotation.step import rolling_equations, set_matrices
 from dda.stepping.driver import OUTCOMES, driver
 
@@ -197,8 +196,8 @@ def test_a_step_leaves_the_state_that_it_starts_from_and_is_bitwise_the_same_aga
 def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
     tried = []
 
-    def refused(body, shear_law, state, after, base, begun, ratio):
-        made = step.matrices_of(body, state.Q, ratio)
+    def refused(body, shear_law, state, after, base, part):
+        made = step.matrices_of(body, state.Q, part.ratio)
         tried.append(list(made.numbers))
         return NONE, 3
 
@@ -212,12 +211,12 @@ def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
 def test_the_parts_of_a_cut_step_are_a_whole_step():
     failed, bases = [], []
 
-    def once(body, shear_law, state, after, base, begun, ratio):
-        outcome, solves = step.advance(body, shear_law, state, after, base, begun, ratio)
-        if not failed and ratio == 1 and state.q[2] != 0:
-            failed.append(begun)
+    def once(body, shear_law, state, after, base, part):
+        outcome, solves = step.advance(body, shear_law, state, after, base, part)
+        if not failed and part.ratio == 1 and state.q[2] != 0:
+            failed.append(part.begun)
             return NONE, 1
-        bases.append((begun + ratio, body.room.base[0]))
+        bases.append((part.begun + part.ratio, body.room.base[0]))
         return outcome, solves
 
     scheme = Scheme(*AVERAGE, 0.99, 1e-3)

@@ -10,8 +10,7 @@ from oracles.rolling import RollingBlock
 import dda.rotation.step as step
 from dda import Block, Load, Material, Scheme, Unilateral
 from dda.rotation.body import Turn, turn
-from dda.rotation.model import RollingModel
-from dda.rotation.solution import solve_rolling
+from dda.rotation.solution import RollingModel, solve_rolling
 
 OUTLINE = [[0, 0], [1, 0], [1.1, 1.4], [0.1, 1.6]]
 MATERIAL = Material(2000.0, 3e7, 0.2)

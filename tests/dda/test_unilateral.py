@@ -214,9 +214,9 @@ def failing(times):
     """Return a loop whose contacts have no state in the first attempts, and what these were given."""
     given = []
 
-    def stubborn(block, shear_law, state, after, base, begun, ratio):
-        given.append((ratio, deepcopy(state), block.room))
-        outcome, solves = step.advance(block, shear_law, state, after, base, begun, ratio)
+    def stubborn(block, shear_law, state, after, base, part):
+        given.append((part.ratio, deepcopy(state), block.room))
+        outcome, solves = step.advance(block, shear_law, state, after, base, part)
         return (NONE if len(given) <= times else outcome), solves
 
     return stepping_by(stubborn), given

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -26,13 +27,18 @@ def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[
     def wrap(sound: Callable[..., object]) -> Callable[..., object]:
         def faulty(*arguments: object, **named: object) -> object:
             scheme = arguments[position]
-            values = {name: change(getattr(scheme, name)) for name, change in changes.items()}
+            values = {name: of_one_kind(change, getattr(scheme, name)) for name, change in changes.items()}
             changed = replace(scheme, **values)
             return sound(*arguments[:position], changed, *arguments[position + 1 :], **named)
 
         return faulty
 
     return wrap
+
+
+def of_one_kind(change: Callable[[float], float], number: float) -> object:
+    """Return what a change makes of a number; of a decimal one again a decimal one, which goes with no doubles."""
+    return Decimal(change(float(number))) if isinstance(number, Decimal) else change(number)
 
 
 def times(factor: float) -> Callable[..., Callable[..., object]]:

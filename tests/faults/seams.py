@@ -16,12 +16,12 @@ import dda
 import fem_reference.exact.bar as exact_bar
 import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
+from dda.column import contacts as column_contacts
 from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
 from dda.model.block import Block
 from dda.one_block import gap_form, solution, unilateral_step
 from dda.one_block import response as dda_vibration
-from dda.rotation import model as rolling_model
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
 from dda.scheme import blocked, newmark
@@ -30,7 +30,7 @@ from dda.system import solution as system_solution
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
-from fem_reference.events import bar_events, block_events
+from fem_reference.events import bar_events, bars_events, block_events, column_events
 from fem_reference.events import restitution as map_of_impacts
 from fem_reference.exact import opening_bar
 from fem_reference.exact import vibration as bar_vibration
@@ -47,6 +47,7 @@ from validation.engine import origin
 from validation.problems import models
 from validation.runs import provenance
 from validation.solvers import fenicsx, registry
+from validation.solvers.columns import blocks as dda_columns
 
 
 @dataclass(frozen=True)
@@ -118,8 +119,8 @@ SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
 
 # Blocks that turn
-ROLLING_SETTING = Seam(rolling_model.RollingModel, rolling_model.RollingModel.setting)
-ROLLING_START = Seam(rolling_model.RollingModel, rolling_model.RollingModel.start)
+ROLLING_SETTING = Seam(rolling.RollingModel, rolling.RollingModel.setting)
+ROLLING_START = Seam(rolling.RollingModel, rolling.RollingModel.start)
 ROLLING_STEPS = Seam(rolling, rolling.make_steps)
 ROLLING_BASE = Seam(rolling, rolling.base_motion)
 ROLLING_OBSERVED = Seam(rolling, rolling.observed)
@@ -167,6 +168,10 @@ COLUMN_PREDICTORS = Seam(column_stepping, column_stepping.predictors)
 COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
 COLUMN_SPRINGS = Seam(column_equations, column_equations.opening_stiffness)
 COLUMN_RUN = Seam(column_stepping.Stepper, column_stepping.Stepper.run)
+CONTACT_EQUATIONS = Seam(column_contacts, column_contacts.step_equations)
+CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_contact_column)
+EVENTS_COLUMN = Seam(column_events, column_events.solve)
+EVENTS_BARS = Seam(bars_events, bars_events.solve)
 LINE_VELOCITY = Seam(line_stepping, line_stepping.velocity_predictor)
 LINE_SPRINGS = Seam(line_mesh, line_mesh._springs)
 LINE_RUN = Seam(line_stepping.DampedStepper, line_stepping.DampedStepper.run)

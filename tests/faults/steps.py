@@ -33,9 +33,9 @@ def velocity_twice(monkeypatch):
     """A step that is repeated begins with the velocity of the failed one."""
     real = step.accept
 
-    def faulty(block, shear_law, length, scheme, state, after, ratio):
-        real(block, shear_law, length, scheme, state, after, ratio)
-        if ratio == 1:
+    def faulty(block, shear_law, length, scheme, state, after):
+        real(block, shear_law, length, scheme, state, after)
+        if length.numbers[0] == 1:
             state.P[:] = after.P
 
     monkeypatch.setattr(step, "accept", faulty)
@@ -85,9 +85,9 @@ def stopped(first, times, run):
     """Return what a run gives whose steps fail so often after the first ones, and what each try of a step was given."""
     calls = []
 
-    def stubborn(block, shear_law, state, after, base, begun, ratio):
+    def stubborn(block, shear_law, state, after, base, part):
         calls.append(deepcopy(state))
-        outcome, solves = step.advance(block, shear_law, state, after, base, begun, ratio)
+        outcome, solves = step.advance(block, shear_law, state, after, base, part)
         return (NONE, solves) if first < len(calls) <= first + times else (outcome, solves)
 
     with patch.object(unilateral, "make_steps", stepping_by(stubborn)):

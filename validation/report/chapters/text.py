@@ -16,7 +16,8 @@ from validation.scenes.scene import Scene
 
 DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
-OF_POLYGONS = {"block.base", "block.top"}  # edges of a polygon, of which only the number of vertices is written
+# edges of a polygon, of which only the number of vertices is written, and what the words of a column's faces say
+IMPLIED = {"block.base", "block.top", "column.law", "column.stiffness"}
 _FACES = {
     "bonded": "glued with",
     "unilateral": "on contacts without tension of",
@@ -257,7 +258,7 @@ def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
     for place, table in scene.tables().items():
         if place in ("block", "contact", "load", "damping", "column"):
             for name, value, key in stated(table):
-                if f"{place}.{name}" not in written | OF_POLYGONS:
+                if f"{place}.{name}" not in written | IMPLIED:
                     yield f"{place}.{name}", described(name, value, key)
 
 

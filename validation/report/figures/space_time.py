@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from validation.report.figures.histories import Margins, axes_grid, house_style
 from validation.runs.history import Array
 
-COLORS = "cividis_r"  # light where nothing presses, and told apart by everybody
+COLORS = "YlGnBu"  # pale where nothing presses, and told apart by everybody
 MOST_INSTANTS = 240  # that are drawn
 BAR = 2.5  # mm, width of the bar of colours
 OPENED = 0.6  # of the lowest block's height: how wide the widest gap is drawn
@@ -53,7 +53,7 @@ class SpaceTime:
         return max(1.0, float(power * max(part for part in (1, 2, 5) if part * power <= wanted)))
 
 
-def space_time_figure(columns: Sequence[SpaceTime], height: float = 55.0) -> Figure:
+def space_time_figure(columns: Sequence[SpaceTime], height: float = 46.0) -> Figure:
     """Draw columns side by side, each with a bar of its forces."""
     with house_style():
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(columns), MARGINS)

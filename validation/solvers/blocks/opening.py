@@ -28,7 +28,7 @@ from validation.solvers.translation import check_columns, naming, no_fields, ope
 
 if TYPE_CHECKING:
     import dda
-    from dda.rotation.result import RollingResult
+    from dda.rotation.solution import RollingResult
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
 GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed

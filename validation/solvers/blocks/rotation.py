@@ -20,7 +20,7 @@ from validation.solvers.translation import check_columns, naming, no_fields, ope
 
 if TYPE_CHECKING:
     import dda
-    from dda.rotation.result import RollingResult
+    from dda.rotation.solution import RollingResult
 
 AREA = "area"  # column: of the outline, over that of the start [-]
 ROLLING_COLUMNS = (*OPENING, AREA)
@@ -37,7 +37,7 @@ class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None) -> None:
-        from dda.rotation.model import RollingModel, RollingOptions
+        from dda.rotation.solution import RollingModel, RollingOptions
 
         self.scene = scene
         self.scheme = scheme
