@@ -13,13 +13,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 from flint import acb, acb_poly, arb, arb_poly
 
 from fem_reference.events.enclosure import first_fall, polynomial
 
-Rate = arb | acb
-Polynomial = arb_poly | acb_poly
+Rate = Any
+"""arb, or acb of a sine; python-flint's stubs know no arithmetic of either."""
+Polynomial = Any
+"""arb_poly, or acb_poly beside the rate of a sine."""
 NEGLIGIBLE_BITS = 80
 """Bits, of the size of the velocities, below which a coefficient counts as zero: bars that touch at rest, whose
 contacts would otherwise open and close in turns of no size and at the cost of all digits."""
@@ -218,7 +221,7 @@ class ExponentialSum:
 
     def series(self) -> list[arb]:
         """Coefficients of the power series about zero, as many as `ORDER` and those of polynomials."""
-        total = arb_poly([])
+        total: Polynomial = arb_poly([])
         for number, Q in self.terms.items():
             if not number:
                 total += Q
