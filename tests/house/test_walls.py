@@ -123,7 +123,7 @@ def test_dolfinx_is_imported_by_one_folder_that_shares_nothing_with_the_others()
 
 def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
-    columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events")}
+    columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
     assert elements == {"exact.py", "solvers/fem.py", "solvers/bar.py", "solvers/events.py", *rigid, *columns}
     assert not dda & elements
