@@ -71,12 +71,14 @@ class Rates:
     @cached_property
     def fastest(self) -> arb:
         """Greatest size of a derivative over its function [1/s]."""
-        return max([1 / self.travel, *(abs(rate) for rate in self.values)], key=float).mid()
+        sizes: list[arb] = [1 / self.travel, *(abs(rate) for rate in self.values)]
+        return max(sizes, key=float).mid()
 
     def unit(self, number: int) -> arb:
         """Size of a derivative of a term over the term [1/s]."""
         rate = self.values[number]
-        return abs(rate) if number and isinstance(rate, arb) else 1 / self.end
+        size: arb = abs(rate) if number and isinstance(rate, arb) else 1 / self.end
+        return size
 
 
 def distinct(rates: list[Rate]) -> tuple[Rate, ...]:
