@@ -231,12 +231,14 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < 30:
         raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    until = 0.0
     motion = _solved(problem, float(end), digits, limit)
     while motion.digits < MOST_DIGITS:
         finer = _solved(problem, float(end), 2 * motion.digits, limit)
-        until = _agree_until(motion, finer)
-        if until is None:
+        differing = _agree_until(motion, finer)
+        if differing is None:
             return finer
+        until = differing
         motion = finer
     raise LostDigitsError(until, f"{len(motion.switches)} switches have cost the digits")
 

@@ -278,7 +278,8 @@ def nodes_of(problem: BarsProblem, end: float) -> tuple[list[Node | Joint], list
     """Nodes from the base upwards, and the waves that leave foot and top of each bar."""
     rates = problem.rates(end)
     bars = problem.bars
-    up, down = [], []
+    up: list[Wave] = []
+    down: list[Wave] = []
     for bar in bars:
         start = ExponentialSum.polynomial(rates, [arb(bar.velocity) / 2])
         for waves in (up, down):

@@ -13,13 +13,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 from flint import acb, acb_poly, arb, arb_poly
 
 from fem_reference.events.enclosure import first_fall, polynomial
 
-Rate = arb | acb
-Polynomial = arb_poly | acb_poly
+Rate = Any
+"""arb, or acb of a sine; python-flint's stubs know no arithmetic of either."""
+Polynomial = Any
+"""arb_poly, or acb_poly beside the rate of a sine."""
 NEGLIGIBLE_BITS = 80
 """Bits, of the size of the velocities, below which a coefficient counts as zero: bars that touch at rest, whose
 contacts would otherwise open and close in turns of no size and at the cost of all digits."""
@@ -68,12 +71,14 @@ class Rates:
     @cached_property
     def fastest(self) -> arb:
         """Greatest size of a derivative over its function [1/s]."""
-        return max([1 / self.travel, *(abs(rate) for rate in self.values)], key=float).mid()
+        sizes: list[arb] = [1 / self.travel, *(abs(rate) for rate in self.values)]
+        return max(sizes, key=float).mid()
 
     def unit(self, number: int) -> arb:
         """Size of a derivative of a term over the term [1/s]."""
         rate = self.values[number]
-        return abs(rate) if number and isinstance(rate, arb) else 1 / self.end
+        size: arb = abs(rate) if number and isinstance(rate, arb) else 1 / self.end
+        return size
 
 
 def distinct(rates: list[Rate]) -> tuple[Rate, ...]:
@@ -218,7 +223,7 @@ class ExponentialSum:
 
     def series(self) -> list[arb]:
         """Coefficients of the power series about zero, as many as `ORDER` and those of polynomials."""
-        total = arb_poly([])
+        total: Polynomial = arb_poly([])
         for number, Q in self.terms.items():
             if not number:
                 total += Q

@@ -213,6 +213,11 @@ def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
             assert np.all(slip[(state.states == AT_LOWER)] >= 0) and np.all(slip[state.states == AT_UPPER] <= 0)
             if column.law == "frictional":
                 assert np.all(slip[state.states == INSIDE] == 0)
+            # the springs carry what their length says, and what is rigid has none
+            apart = stepper.B @ state.D - stepper.base_opening(float(drive.displacement[step]))
+            length = apart - state.opening if column.law == "frictional" else apart + stepper.gaps
+            closed = np.minimum(length, 0.0) if column.law == "unilateral" else length
+            assert closed == pytest.approx(-state.force * stepper.compliance, abs=1e-9 * np.abs(length).max())
         before = state
 
 

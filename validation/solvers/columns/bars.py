@@ -168,7 +168,7 @@ class BarsOfColumn(Motion):
 
 def contact_name(height: float) -> str:
     """Return how a contact is called."""
-    return f"contact at {height:g} m"
+    return f"{height:g} m"
 
 
 class BarsEvents(Solver):

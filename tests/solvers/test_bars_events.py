@@ -1,0 +1,178 @@
+"""The adapters of elastic bars and of line elements whose contacts open or slip: the elements tend to the bars."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fem_reference.events import bars_events
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers.registry import get_solver, solve
+
+LAYERS = [
+    {"thickness": 2.0, "density": 2400.0, "young": 1e9, "blocks": 2, "velocity": -0.5},
+    {"thickness": 1.5, "density": 2000.0, "young": 5e8, "blocks": 1, "velocity": -0.5},
+]
+OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
+SLIPS = {"motion": "shear", "law": "frictional", "stiffness": 5e8, "strength": 4e4, "layer": LAYERS}
+WELDED = {"motion": "pressure", "law": "unilateral", "layer": LAYERS, "gravity": 9.81}  # but for its joints
+HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
+PULSE = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
+
+
+def scene_of(column: dict[str, Any], columns: list[str], elements: int = 4, **tables: Any) -> Scene:
+    time = {"step": 1e-4, "steps": 200, "alpha": 0.25, "delta": 0.5, "start": "consistent"} | tables.pop("time", {})
+    run = {"solvers": ["bars-events", "fem"], "columns": columns}
+    fem = {"elements": elements, "degree": 1}
+    return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, "fem": fem} | tables, "made")
+
+
+def history(scene: Scene, solver: str) -> dict[str, np.ndarray]:
+    run = solve(scene, solver)
+    assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
+    return dict(run.history.columns)
+
+
+SMOOTH = ("displacement", "displacement_2", "displacement_5")  # the others have fronts, about which elements ring
+
+
+def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: str) -> float:
+    """Greatest mean distance of a column of the elements, at the exact motion's instants, over its greatest value."""
+    stepped = history(finer, "fem")
+    errors = []
+    for name in names or exact:
+        largest = np.abs(exact[name]).max()
+        if largest:
+            errors.append(np.abs(stepped[name][stride - 1 :: stride] - exact[name]).mean() / largest)
+        else:
+            assert not stepped[name].any(), name
+    return max(errors)
+
+
+@pytest.mark.parametrize("column", [OPENS, SLIPS], ids=["opens", "slips"])
+@pytest.mark.parametrize("base", ["rigid", "transmitting", "free", "springs"])
+def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
+    below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}
+    column = column | {"base": base} | below.get(base, {})
+    opening = "gap" if column["law"] == "unilateral" else "slip"
+    columns = ["displacement", "contact_pressure"]
+    columns += [f"{part}_{n}" for part in ("displacement", "velocity", "stress") for n in (2, 5)]
+    at_contacts = (1, 3) if base in ("rigid", "springs") else (3, 4)
+    columns += [f"{part}_{n}" for part in ("force", opening) for n in at_contacts]
+    exact = history(scene_of(column, columns, input=PULSE), "bars-events")
+    errors = []
+    for elements in (4, 12):
+        time = {"step": 1e-4 / elements, "steps": 200 * elements}
+        fine = scene_of(column, columns, elements, input=PULSE, time=time)
+        errors.append((distance(fine, elements, exact), distance(fine, elements, exact, *SMOOTH)))
+    # velocities that start with a jump have fronts, about which the error falls as a root of the elements' size
+    assert errors[1][0] < 0.12 and errors[1][0] < 0.8 * errors[0][0]
+    assert errors[1][1] < 0.01 and errors[1][1] < 0.4 * errors[0][1]
+
+
+@pytest.mark.parametrize("shape", ["sine", "cosine", "triangle", "half-sine"])
+def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
+    size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
+    layers = [layer | {"velocity": 0.0} for layer in LAYERS]
+    column = WELDED | {"joint": [{"height": 2.0, "stiffness": 1e9}], "settled": True, "layer": layers}
+    drive = {"at": "base", "shape": shape, "velocity": -0.3, **size}
+    columns = ["displacement", "displacement_2", "force_4"]
+    scene = scene_of(column, columns, input=drive, time={"steps": 100})
+    exact = history(scene, "bars-events")
+    time = {"step": 1e-4 / 16, "steps": 1600}
+    fine = scene_of(column, columns, 16, input=drive, time=time)
+    assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
+    assert distance(fine, 16, exact) < 0.12
+
+
+def written(directory: Path, header: str, *rows: tuple[float, float]) -> str:
+    file = directory / f"{header}.csv"
+    file.write_text(f"time,{header}\n" + "".join(f"{t},{value}\n" for t, value in rows))
+    return str(file)
+
+
+def test_records_are_taken_row_by_row(tmp_path: Path) -> None:
+    columns = ["displacement", "force_3", "gap_3"]
+    pulse = scene_of(OPENS, columns, input={"at": "top", "shape": "triangle", "pressure": 2e5, "duration": 0.01})
+    record = written(tmp_path, "pressure", (0.0, 2e5), (0.01, 0.0))
+    same = history(scene_of(OPENS, columns, input={"at": "top", "record": record}), "bars-events")
+    for name, values in history(pulse, "bars-events").items():
+        assert same[name] == pytest.approx(values, rel=1e-12, abs=1e-18)
+    rising = written(tmp_path, "acceleration", (0.0, 50.0), (0.01, 50.0))
+    ramp = written(tmp_path, "velocity", (0.0, 0.0), (0.01, 0.5), (0.02, 0.5), (1.0, 0.5))
+    by_rate = history(scene_of(OPENS, columns, input={"at": "base", "record": ramp}), "bars-events")
+    by_acceleration = history(scene_of(OPENS, columns, input={"at": "base", "record": rising}), "bars-events")
+    for name, values in by_rate.items():
+        assert by_acceleration[name] == pytest.approx(values, rel=1e-12, abs=1e-18)
+
+
+def test_layers_without_joints_between_them_are_bars_of_pieces() -> None:
+    halves = [LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[1]]
+    joints = [{"height": 0.0, "stiffness": 2e9, "gap": 1e-3}]
+    columns = ["displacement", "contact_pressure", "velocity_2", "stress_5"]
+    one = get_solver("bars-events").prepare(scene_of(WELDED | {"joint": joints}, columns))
+    two = get_solver("bars-events").prepare(scene_of(WELDED | {"joint": joints, "layer": halves}, columns))
+    assert one.problem == two.problem and len(one.problem.bars) == 2  # type: ignore[attr-defined]
+    exact = history(one.scene, "bars-events")
+    fine = scene_of(WELDED | {"joint": joints}, columns, 16, time={"step": 1e-4 / 16, "steps": 3200})
+    assert distance(fine, 16, exact, *SMOOTH[:1]) < 0.01
+    assert distance(fine, 16, exact) < 0.06
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"input": {"shape": "ricker", "velocity": 0.1, "frequency": 50.0}}, "Ricker"),
+        ({"time": {"gg": 0.99}}, "gg is below 1"),
+        ({"column": {"layer": [LAYERS[0], LAYERS[1] | {"young": math.inf}]}}, "rigid blocks"),
+    ],
+)
+def test_what_has_no_exact_waves_is_refused_by_name(change: dict[str, Any], reason: str) -> None:
+    tables = {"input": PULSE} | change
+    scene = scene_of(OPENS | tables.pop("column", {}), ["displacement"], **tables)
+    with pytest.raises(InputError, match=reason):
+        solve(scene, "bars-events")
+
+
+def test_bonded_columns_are_left_to_the_layers() -> None:
+    refusal = get_solver("bars-events").refusal(load_scene("waves-base").expand()[0])
+    assert refusal is not None and "layers" in refusal
+
+
+def test_switches_carry_the_height_of_their_contact() -> None:
+    scene = load_scene("columns-cradle").expand()[0]
+    exact = get_solver("bars-events").prepare(scene)
+    run = exact.run()
+    switches = exact.switches()
+    assert [(one.corner, one.opens) for one in switches[:3]] == [("2 m", False), ("3 m", False), ("1 m", True)]
+    assert switches[2].time == pytest.approx(2.2732050806379, rel=1e-13)
+    assert any("40 and in 80 digits" in note for note in run.notes)
+    elements = get_solver("fem").prepare(scene)
+    elements.run()
+    assert [(one.corner, one.opens) for one in elements.switches()[:2]] != []
+    opened = [one.time for one in elements.switches() if one.corner == "3 m" and one.opens]
+    assert opened[-1] == pytest.approx(4.375314148121, abs=0.05)
+
+
+def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bars_events, "ADVANCES", 30)
+    run = solve(scene_of(OPENS, ["displacement"], input=PULSE), "bars-events")
+    assert run.outcome is Outcome.HORIZON and "the scene may have" in run.notes[0]
+
+
+def test_the_elements_count_their_solves_and_end_at_their_limit() -> None:
+    thrown = OPENS | {"gap": 0.0, "layer": [LAYERS[0] | {"thickness": 6.0, "blocks": 6}]}
+    time = {"step": 2e-3, "steps": 20, "alpha": 0.5, "delta": 1.0}
+    prepared = get_solver("fem").prepare(scene_of(thrown, ["displacement"], 1, time=time))
+    assert prepared.run().outcome is Outcome.COMPLETED
+    record = prepared.contact_record()
+    assert record.solves is not None and record.solves[0] == 7 and record.cuts is not None and not record.cuts.any()
+    assert record.start_velocity == -0.5 and record.force.max() > 0 == record.gap[0]
+    limited = solve(scene_of(thrown | {"solve_limit": 6}, ["displacement"], 1, time=time), "fem")
+    assert limited.outcome is Outcome.NO_CONTACT_STATE and "6 solves" in limited.notes[0]
