@@ -1,4 +1,4 @@
-"""Columns of blocks as wave guides: displacement along one axis, which strains each block uniformly.
+"""Columns of blocks, bonded or on contacts that open or slip: displacement along one axis, one strain a block.
 
 In come layers, joints, base and drive as numbers; scenes and pulses do not.
 """

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Motion = Literal["pressure", "shear"]
 SpringLaw = Literal["bonded", "unilateral", "frictional"]
-_NEAR = 1e-9  # of the column's height: how near a joint must be to a face between blocks
+NEAR = 1e-9  # of the column's height: how near a joint must be to a face between blocks
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,7 @@ class Column:
     def face_of(self, joint: Spring) -> int:
         """Return the number of the face that a joint lies on, 0 for the base."""
         number = int(np.argmin(np.abs(self.faces - joint.height)))
-        if abs(self.faces[number] - joint.height) > _NEAR * self.faces[-1] or number == len(self.heights):
+        if abs(self.faces[number] - joint.height) > NEAR * self.faces[-1] or number == len(self.heights):
             raise ValueError(f"joints: must lie where blocks meet, below the top, got {joint.height!r} m")
         return number
 
@@ -220,6 +220,6 @@ class Column:
         total = float(self.faces[-1])
         if not 0 <= height <= total:
             raise ValueError(f"height: must be between 0 and {total:g} m, got {height!r}")
-        below = self.faces + _NEAR * total
+        below = self.faces + NEAR * total
         block = max(int(np.searchsorted(below, height, side="left")) - 1, 0)
         return block, (height - float(self.faces[block])) / float(self.heights[block])

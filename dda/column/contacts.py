@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.column.column import Column, Spring
+from dda.column.column import NEAR, Column, Spring
 from dda.column.contact_step import (
     FORCES,
     GAP,
@@ -460,6 +460,6 @@ def _contact_at(column: Column, name: str, height: float) -> int:
     """Return the number of the contact at a height."""
     for joint in column.joints:
         face = column.face_of(joint)
-        if abs(joint.height - height) <= 1e-9 * column.faces[-1]:
+        if abs(joint.height - height) <= NEAR * column.faces[-1]:
             return face
     raise ValueError(f"heights: {name} needs a contact there, got {height!r} m")

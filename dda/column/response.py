@@ -83,8 +83,8 @@ def _solved(lower: Complex, right: Complex) -> Complex:
 def highest_frequency(column: Column) -> float:
     """Return the highest natural frequency [rad/s] with all springs closed, which limits an explicit scheme.
 
-    Rigid contacts that may open or slip are left out: they only lower it. A half-space below is left out, too: it
-    damps; a bonded column counts as held there, since a spring to it joins what has no inertia.
+    Rigid contacts that may open or slip are left out: they only lower it. So is the dashpot of a half-space, which
+    leaves the foot of a column of contacts free; a bonded column counts as held there.
     """
     from scipy.linalg import eigh
 

@@ -677,6 +677,24 @@ def test_the_highest_frequency_is_that_of_the_bonded_column() -> None:
     assert highest_frequency(rigid) == pytest.approx(math.sqrt(2 * 1e9 / 2500))
 
 
+@pytest.mark.parametrize("blocks", [2, 4])
+@pytest.mark.parametrize("ratio", [0.01, 1.0, 3.0])
+def test_the_limit_on_a_half_space_is_that_of_a_free_foot(blocks: int, ratio: float) -> None:
+    """Whatever the impedance, explicit steps just below the limit are stable and those just above it grow."""
+    joints = [Spring(float(k), 8e7) for k in range(1, blocks)]
+    layer = Layer(float(blocks), 2000.0, 8e7, blocks=blocks)
+    column = Column([layer], "shear", law="frictional", joints=joints, impedance=ratio * 3e5)
+    largest = []
+    for share in (0.99, 1.01):
+        step = share * 2 / highest_frequency(column)
+        t = step * np.arange(3001)
+        wave = Drive(0 * t, np.where(t < 20 * step, np.sin(np.pi * t / (20 * step)), 0.0), 0 * t, 0 * t)
+        result = solve_contact_column(column, Scheme(0.0, 0.5, 1.0, step), wave)
+        largest.append(np.abs(result.columns["displacement"]).max())
+    assert largest[0] < 10
+    assert not largest[1] < 1e6
+
+
 def test_explicit_steps_stay_below_their_limit() -> None:
     column = CASES["A1"].column
     step = 1.8 / highest_frequency(column)
