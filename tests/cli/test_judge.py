@@ -18,7 +18,7 @@ from validation.problems import cause
 from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
-from validation.problems.problem import problem, problem_of
+from validation.problems.problem import PROBLEMS, problem, problem_of
 from validation.report.chapters import judged
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
@@ -146,7 +146,7 @@ def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
 def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:
     place = answered(tmp_path / "mine", exact, pack="1.0")
     done = typed("judge", place)
-    assert done.returncode == 2 and "submission.json: pack: must be '2.0'" in done.stderr
+    assert done.returncode == 2 and f"submission.json: pack: must be {PACK!r}" in done.stderr
     assert len(list(place.iterdir())) == 2
     for arguments, said in (
         (("judge", tmp_path / "none"), "must be a directory with submission.json"),
@@ -244,3 +244,17 @@ def test_the_callers_own_scene(tmp_path: Path, scene_file: Path, undrawn: None) 
     place = answered(tmp_path / "mine", standard(own).exact, problem=own.name)
     done = typed("judge", place, "--scene", scene_file)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_help_names_every_problem() -> None:
+    words = re.findall(r"[\w-]+", typed("judge", "--help").stdout)
+    assert set(PROBLEMS) <= set(words)
+
+
+def test_a_column_on_contacts_is_judged(tmp_path: Path, undrawn: None) -> None:
+    """The step of the habit damps; the badge and the page carry names of columns with their units."""
+    done = typed("judge", "mass-ratio", "--solver", "dda", "--out", tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "cause: DDA's usual scheme" in done.stdout
+    assert re.search(r"force_3_Pa +FAIL", done.stdout) and re.search(r"displacement_2_m +PASS", done.stdout)
+    assert "the contacts&#39; stiffness" in (tmp_path / "judged.html").read_text(encoding="utf-8")

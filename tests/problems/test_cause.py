@@ -10,7 +10,7 @@ from faults import seams
 from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
 from validation.problems import models
-from validation.problems.bands import standard
+from validation.problems.bands import changes, contact_values, standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import Word, judge
 from validation.problems.problem import problem, problem_of
@@ -230,3 +230,150 @@ def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:
     first = runs.index(None)
     assert first > 100
     assert len(runs) - first - 2 < first / 3
+
+
+# ---- columns whose contacts open or slip ----------------------------------------------------------------------------
+
+OF_BARS = ("cradle", "joint", "spall")  # whose exact motions take seconds, and a search among them a minute
+QUICK = ("stack", "mass-ratio")
+
+
+def exactly(name: str, values: dict) -> History:
+    """Return the exact motion of a problem's scene with other values."""
+    posed = problem(name)
+    return get_solver(posed.truth.name).solve(posed.scene.with_values(values)).history
+
+
+def of_layers(name: str, key: str, factor: float) -> dict:
+    """Return the values that change a datum of all layers by a factor, where it is a number."""
+    layers = problem(name).scene.definition()["column"]["layer"]
+    return {
+        "column.layer": [
+            layer | ({key: layer[key] * factor} if isinstance(layer.get(key), float) else {}) for layer in layers
+        ]
+    }
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.long) for name in OF_BARS)])
+@pytest.mark.parametrize(
+    ("values", "ids"),
+    [
+        ({}, ("scheme",)),
+        ({"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}, ("scheme",)),
+    ],
+)
+def test_schemes_of_columns_on_contacts_are_named(name: str, values: dict, ids: tuple[str, ...]) -> None:
+    posed = problem(name)
+    run = get_solver("dda").solve(posed.scene.with_values(values)).history
+    if judge(posed, run).word is Word.FAIL:
+        identified = cause(posed, run, standard(posed))
+        assert identified.ids == ids
+        assert identified.values["alpha"] == values.get("time.alpha", 0.5)
+        assert ("of so many blocks" in identified.sentence) is (name in OF_BARS)  # rigid ones have no such error
+
+
+@pytest.mark.parametrize(
+    "name", ["stack", *(pytest.param(name, marks=pytest.mark.long) for name in ("mass-ratio", "cradle", "joint"))]
+)
+def test_a_discount_of_columns_on_contacts_is_named(name: str) -> None:
+    posed = problem(name)
+    run = get_solver("dda").solve(posed.scene.with_values({"time.gg": 0.99})).history
+    identified = cause(posed, run, standard(posed))
+    assert identified.ids == ("scheme", "gg")
+    assert identified.values["gg"] == pytest.approx(0.99, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "factor"),
+    [
+        ("stack", "density", 1.2),
+        pytest.param("mass-ratio", "density", 0.9, marks=pytest.mark.long),
+        pytest.param("cradle", "young", 0.8, marks=pytest.mark.long),
+    ],
+)
+def test_a_wrong_datum_of_a_column_on_contacts_is_named(name: str, key: str, factor: float) -> None:
+    identified = named(name, exactly(name, of_layers(name, key, factor)))
+    assert identified.ids == (f"{key}-factor",)
+    assert identified.values[f"{key}-factor"] == pytest.approx(factor, rel=1e-3)
+
+
+def without_gaps(name: str) -> dict:
+    """Return the values that close all gaps of a problem at t = 0."""
+    joints = problem(name).scene.definition()["column"].get("joint", [])
+    values: dict = {"column.gap": 0.0}
+    if joints:
+        values["column.joint"] = [{key: x for key, x in joint.items() if key != "gap"} for joint in joints]
+    return values
+
+
+CONTACT_FAULTS = {  # to what the scene has in their place, and the words of which a cause that is named must have one
+    "gaps": (without_gaps, ("gap",)),
+    "stiffness": (lambda name: contact_values(problem(name).scene.column, stiffness=1.3), ("stiffness", "spring")),
+    "strength": (lambda name: contact_values(problem(name).scene.column, strength=0.8), ("strength",)),
+    "weight": (lambda name: {"column.gravity": 0.0}, ("weight", "gravity")),
+    "velocity": (lambda name: of_layers(name, "velocity", 1.1), ("velocity", "1.1 times")),
+    "two data": (
+        lambda name: contact_values(problem(name).scene.column, stiffness=1.3) | of_layers(name, "density", 1.2),
+        (),
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "fault"),
+    [
+        ("stack", "gaps"),
+        ("stack", "stiffness"),
+        *(
+            pytest.param(name, fault, marks=pytest.mark.long)
+            for name, fault in (
+                ("stack", "weight"),
+                ("stack", "velocity"),
+                ("stack", "two data"),
+                ("mass-ratio", "gaps"),
+                ("mass-ratio", "stiffness"),
+                ("mass-ratio", "weight"),
+                ("mass-ratio", "velocity"),
+                ("mass-ratio", "two data"),
+                ("cradle", "stiffness"),
+                ("cradle", "velocity"),
+                ("joint", "strength"),
+            )
+        ),
+    ],
+)
+def test_a_fault_of_contacts_is_named_rightly_or_not_at_all(name: str, fault: str) -> None:
+    values, words = CONTACT_FAULTS[fault]
+    identified = named(name, exactly(name, values(name)))
+    silent = identified.sentence.startswith(NOT_EXPLAINED)
+    assert silent or any(word in identified.sentence for word in words), identified.sentence
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.long) for name in OF_BARS)])
+def test_columns_on_contacts_in_millimetres_are_named(name: str) -> None:
+    exact = standard(problem(name)).exact
+    lengths = [key for key in exact.columns if key.startswith(("displacement", "gap", "slip"))]
+    scaled = {key: x * (1e3 if key in lengths else 1.0) for key, x in exact.columns.items()}
+    identified = named(name, History(exact.time, scaled))
+    assert (identified.ids, identified.values) == (("unit",), dict.fromkeys(lengths, 1e3))
+
+
+@pytest.mark.long
+def test_rows_of_a_column_that_are_late_begin_with_its_state_at_rest_or_its_velocity() -> None:
+    """Half a step late between rows of the exact motion, which is kept at parts of a step."""
+    posed = problem("stack")
+    step = posed.scene.time.step
+    fine = exactly("stack", {"time.step": step / 2, "time.steps": 2 * posed.scene.time.steps})
+    late = {key: x[0::2] for key, x in fine.columns.items()}
+    identified = named("stack", History(standard(posed).exact.time, late))
+    assert identified.ids == ("shift",)
+    assert identified.values["shift"] == pytest.approx(0.5, abs=1e-2)
+
+
+def test_the_modulus_of_rigid_blocks_is_no_cause() -> None:
+    posed = problem("stack")
+    runs = models.runs_of(posed.scene, standard(posed))
+    base = runs.exact()
+    assert base is not None and base.solver == posed.truth.name
+    assert "young-factor" not in {change.id for change in module.of_data(runs, base, cheap=True)}
+    assert "Young's modulus" not in changes(posed.scene)

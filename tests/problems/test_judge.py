@@ -14,7 +14,11 @@ from validation.scenes.scene import load_scene
 
 SHORTENED = {"sliding": 6, "creep": 30, "rebound": 120}  # steps
 # those whose exact motion takes long are judged over their first steps
-ALL = ("locked", "opening", "rocking", "column", *(pytest.param(name, marks=pytest.mark.long) for name in SHORTENED))
+SLOW = (*SHORTENED, "spall")
+ALL = (
+    *("locked", "opening", "rocking", "column", "stack", "mass-ratio", "cradle", "joint"),
+    *(pytest.param(name, marks=pytest.mark.long) for name in SLOW),
+)
 
 
 def short(name: str) -> Problem:
@@ -158,6 +162,78 @@ def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) 
     t, g = held.exact.time, -9.81 if name == DISPLACEMENT else -9.81 * math.sin(math.radians(30.0))
     for late, word in ((1e-7, Word.PASS), (0.5 * t[0], Word.FAIL)):
         assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).word is word
+
+
+def test_numbers_of_columns_on_contacts() -> None:
+    """What opened or slipped, then forces, velocities and displacements, the uppermost first, each in its unit."""
+    stack = judge(short("stack"), standard(short("stack")).exact).quantities
+    assert [(one.name, one.unit) for one in stack] == [
+        ("gap_5 in the end", "m"),
+        ("largest force_5", "Pa"),
+        ("largest force_4", "Pa"),
+    ]
+    assert stack[0].value == stack[0].exact == pytest.approx(0.03962539 - 0.02665348 + 0.0005, rel=1e-6)
+    joint = judge(short("joint"), standard(short("joint")).exact).quantities
+    assert [(one.name, one.unit) for one in joint] == [
+        ("slip_3 in the end", "m"),
+        ("largest force_3", "Pa"),
+        ("velocity_2 in the end", "m/s"),
+    ]
+    assert joint[1].value == pytest.approx(1e5, rel=1e-12)  # the strength
+
+
+def test_data_of_columns_on_contacts() -> None:
+    springs, strength, young, density = (
+        "the contacts' stiffness",
+        "the contacts' strength",
+        "Young's modulus",
+        "the density",
+    )
+    assert set(changes(load_scene("field-stack"))) == {springs, density}  # no factor changes a rigid block's modulus
+    assert set(changes(load_scene("field-cradle"))) == {springs, young, density}
+    assert set(changes(load_scene("field-joint"))) == {springs, strength, young, density}
+    stops = load_scene("field-cradle").with_values({"column.stiffness": "inf"})
+    assert set(changes(stops)) == {young, density}
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "stiffness", "strength"),
+    [
+        ("field-stack", {}, [1.01e9] * 5, [math.inf] * 5),
+        ("field-joint", {}, [1.01e9], [1.01e5]),
+        (
+            "field-mass-ratio",
+            {"column.base": "springs", "column.base_stiffness": 4e9},
+            [4.04e9, 1.01e9],
+            [math.inf] * 2,
+        ),
+        (
+            "field-joint",
+            {
+                "column.gravity": 10.0,
+                "column.joint": [
+                    {"height": 40.0, "stiffness": "inf", "friction": 45.0},
+                    {"height": 80.0, "stiffness": 1e8},
+                ],
+            },
+            [math.inf, 1.01e8],
+            [1.01 * 160 * 2000 * 10, math.inf],
+        ),
+    ],
+)
+def test_one_per_cent_of_contacts_is_of_each_of_them(
+    name: str, values: dict, stiffness: list[float], strength: list[float]
+) -> None:
+    scene = load_scene(name).with_values(values)
+    data = changes(scene)
+    before = scene.column.contacts
+    for datum, key, expected in (("stiffness", "stiffness", stiffness), ("strength", "strength", strength)):
+        if f"the contacts' {datum}" in data:
+            after = scene.with_values(data[f"the contacts' {datum}"]).column.contacts
+            assert [getattr(contact, key) for contact in after] == pytest.approx(expected)
+            assert [(one.height, one.gap) for one in after] == [(one.height, one.gap) for one in before]
+        else:
+            assert not any(map(math.isfinite, expected))
 
 
 def test_data_that_a_scene_has() -> None:

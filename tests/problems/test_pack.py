@@ -17,7 +17,8 @@ from validation.problems.problem import PROBLEMS
 from validation.problems.submission import read_submission
 from validation.studies import pack as studies_pack
 
-QUICK = ("locked", "rocking", "column")
+QUICK = ("locked", "rocking", "column", "stack", "joint")
+OF_COLUMNS = ("column", "stack", "joint")
 FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody"}
 
 
@@ -56,8 +57,8 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
     for column in data.answer:
         assert 0 == column.low < column.high < 0.2 and "one per cent of" in column.reason
         assert column.until_s <= data.sampling.step_s * data.sampling.count * (1 + 1e-9)
-    assert (data.pack, data.problem, data.column is None) == (PACK, name, name != "column")
-    assert (data.block is None) == (data.contact is None) == (data.load is None) == (name == "column")
+    assert (data.pack, data.problem, data.column is None) == (PACK, name, name not in OF_COLUMNS)
+    assert (data.block is None) == (data.contact is None) == (data.load is None) == (name in OF_COLUMNS)
 
 
 def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import astuple
 from typing import Any
 
 import pytest
 
+from validation.errors import InputError
 from validation.problems.data import (
     PACK,
     BlockData,
+    ColumnContactData,
     ColumnData,
     ContactData,
+    InputData,
+    JointData,
+    LayerData,
     LoadData,
     block_data,
     column_data,
@@ -22,12 +28,13 @@ from validation.problems.data import (
     united,
 )
 from validation.problems.problem import PREFIX, PROBLEMS
+from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene, load_scene, parse_scene
 
 SI = ("_m", "_kg_per_m3", "_Pa", "_m_per_s", "_deg", "_N_per_m", "_m_per_s2", "_Pa_per_m", "_Pa_s_per_m", "_Hz", "_s")
 # of the data of each version; where one differs the version must be another one, so that no submission to the
 # earlier problem is judged by the new one
-KNOWN = {"2.0": "8610b1ba23137e10"}
+KNOWN = {"3.0": "c699879fefade33e"}
 
 
 def of_block(block: BlockData, contact: ContactData, load: LoadData, geometry: str) -> dict[str, Any]:
@@ -66,31 +73,51 @@ def of_block(block: BlockData, contact: ContactData, load: LoadData, geometry: s
 def of_column(column: ColumnData) -> dict[str, Any]:
     """Return the tables of a scene that the plain data describe; the impedance stands for density and speed."""
     base = column.base
+    bonded = column.law == "bonded"
     below = {"base_density": base.impedance_Pa_s_per_m, "base_speed": 1.0} if base.impedance_Pa_s_per_m else {}
     below |= {"base_stiffness": base.stiffness_Pa_per_m} if base.stiffness_Pa_per_m else {}
-    layers = [
-        {"thickness": one.thickness_m, "density": one.density_kg_per_m3, "young": one.young_Pa, "poisson": one.poisson}
-        for one in column.layers
-    ]
-    joints = [{"height": one.height_m, "stiffness": one.stiffness_Pa_per_m} for one in column.joints]
-    drive = column.input
-    given = {
-        "velocity": drive.velocity_m_per_s,
-        "pressure": drive.pressure_Pa,
-        "frequency": drive.frequency_Hz,
-        "duration": drive.duration_s,
-    }
+    layers = []
+    for one in column.layers:
+        layer = {"thickness": one.thickness_m, "density": one.density_kg_per_m3, "poisson": one.poisson}
+        velocity = {} if bonded else {"velocity": one.velocity_m_per_s}
+        layers.append(layer | {"young": float(one.young_Pa)} | velocity)
+    springs = column.joints if bonded else column.contacts
+    joints = []
+    for spring in springs:
+        joint = {"height": spring.height_m, "stiffness": float(spring.stiffness_Pa_per_m)}
+        if column.law == "unilateral":
+            joint["gap"] = spring.gap_m
+        if column.law == "frictional" and spring.strength_Pa is not None:
+            joint["strength"] = spring.strength_Pa
+        joints.append(joint)
+    weight = {"gravity": column.gravity_m_per_s2, "settled": column.settled} if column.law == "unilateral" else {}
     return {
         "column": {
             "motion": column.motion,
+            "law": column.law,
             "base": base.kind,
             "heights": list(column.heights_m),
             "layer": layers,
             "joint": joints,
             **below,
+            **weight,
         },
-        "input": {"at": drive.at, "shape": drive.shape} | {k: v for k, v in given.items() if v is not None},
+        **of_input(column.input),
     }
+
+
+def of_input(drive: InputData | None) -> dict[str, Any]:
+    """Return the table of what drives a column, none where nothing but weight and velocities does."""
+    if drive is None:
+        return {}
+    stated = {
+        "velocity": drive.velocity_m_per_s,
+        "pressure": drive.pressure_Pa,
+        "frequency": drive.frequency_Hz,
+        "duration": drive.duration_s,
+    }
+    sizes = {key: value for key, value in stated.items() if value is not None}
+    return {"input": {"at": drive.at, "shape": drive.shape} | sizes}
 
 
 def rebuilt(scene: Scene) -> Scene:
@@ -107,18 +134,30 @@ def rebuilt(scene: Scene) -> Scene:
 def seen(scene: Scene) -> dict[str, Any]:
     """Return what a scene's motion depends on."""
     if scene.column is not None:
-        assert scene.column.law == "bonded"  # no problem's contacts open or slip yet
-        contacts = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
-        plain = scene.column.model_dump(exclude={"base_density", "base_speed", *contacts})
-        for layer in plain["layer"]:
-            del layer["blocks"], layer["velocity"]  # a code of blocks has its own
-        for joint in plain["joint"]:
-            del joint["gap"], joint["strength"], joint["friction"]
-        return plain | {"impedance": scene.column.impedance, "input": scene.input.model_dump()}
+        return seen_of_column(scene, scene.column)
     block = scene.block.model_dump(exclude={"side", "width", "height"}) | {"outline": scene.block.outline}
     contact = scene.contact.model_dump() | {"shear_stiffness": scene.contact.shear}
     load = scene.load.model_dump(exclude={"ramp"})  # no exact motion is known under a ramp, and so no problem has one
     return block | contact | load | {"geometry": scene.run.geometry}
+
+
+def seen_of_column(scene: Scene, column: ColumnSection) -> dict[str, Any]:
+    """Return what the motion of a column depends on; a code of blocks has its own number of them in a bar."""
+    plain = column.model_dump(include={"motion", "law", "layer", "glue", "settled", "heights"})
+    for layer in plain["layer"]:
+        del layer["blocks"]
+    # springs below a column whose contacts open or slip are the lowest of these
+    base = "rigid" if column.base == "springs" and column.contacts else column.base
+    springs = [(joint.height, joint.stiffness) for joint in column.springs] if column.law == "bonded" else []
+    drive = scene.stated_input.model_dump() if scene.stated_input is not None else None
+    return plain | {
+        "base": base,
+        "springs": springs,
+        "contacts": [astuple(contact) for contact in column.contacts],
+        "gravity": column.gravity if column.law == "unilateral" else 0.0,
+        "impedance": column.impedance,
+        "input": drive,
+    }
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -140,13 +179,53 @@ def test_nothing_of_another_scene_is_lost(values: dict[str, Any]) -> None:
     assert seen(rebuilt(scene)) == seen(scene) != seen(load_scene(f"{PREFIX}locked"))
 
 
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("columns-shaken", {}),
+        ("columns-joint", {"input.shape": "cosine"}),
+        ("columns-slips", {}),
+        ("columns-spall-bars", {}),
+        ("columns-mass-ratio", {"column.base": "springs", "column.base_stiffness": 3e9}),
+        ("field-stack", {"column.settled": True}),
+        ("field-cradle", {"column.stiffness": "inf"}),
+        ("field-joint", {"column.joint": [{"height": 40.0, "stiffness": "inf"}]}),
+    ],
+)
+def test_nothing_of_another_column_is_lost(name: str, values: dict[str, Any]) -> None:
+    scene = load_scene(name).with_values(values)
+    assert seen(rebuilt(scene)) == seen(scene)
+
+
+def test_what_is_infinite_stands_in_json_as_inf() -> None:
+    data = column_data(load_scene("field-stack"))
+    assert data is not None
+    assert {layer.young_Pa for layer in data.layers} == {"inf"}
+    assert [contact.height_m for contact in data.contacts] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert [contact.gap_m for contact in data.contacts] == [0.005, 0.0005, 0.0005, 0.0005, 0.0005]
+    assert ColumnData.model_validate_json(json.dumps(data.model_dump(mode="json"), allow_nan=False)) == data
+    assert column_data(load_scene("field-joint")).contacts[0].strength_Pa == 1e5
+    assert column_data(load_scene("field-cradle")).contacts[0].strength_Pa is None
+
+
+def test_a_record_is_no_plain_data() -> None:
+    with pytest.raises(InputError) as caught:
+        column_data(load_scene("waves-site").with_values({}))
+    assert caught.value.field == "input.shape"
+
+
 def test_every_number_of_the_data_names_its_unit() -> None:
-    for data in (BlockData, ContactData, LoadData, ColumnData):
+    for data in (BlockData, ContactData, LoadData, ColumnData, LayerData, JointData, ColumnContactData, InputData):
         for name in data.model_fields:
             plain = name in ("poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "input")
+            plain |= name in ("contacts", "settled", "at", "shape")
             assert plain or name.endswith(SI), name
     assert united("displacement_2") == "displacement_2_m" and united("stress_1") == "stress_1_Pa"
     assert united("rotation") == "rotation_rad" and united("contact_pressure") == "contact_pressure_Pa"
+    assert united("velocity_1") == "velocity_1_m_per_s" and united("force_12") == "force_12_Pa"
+    assert (united("gap_3"), united("slip_3")) == ("gap_3_m", "slip_3_m")
+    for name in ("velocity_2", "force_2", "gap_2", "slip_2"):
+        assert "the 2. of the heights" in meaning(name)
     assert meaning("displacement_2").startswith("displacement at the 2. of the heights")
 
 

@@ -24,6 +24,7 @@ TYPES: dict[str, tuple[type, ...]] = {
     "number": (int, float),
     "integer": (int,),
     "null": (type(None),),
+    "boolean": (bool,),
 }
 SILENT = {"title", "description", "default", "$defs"}  # keywords that refuse nothing
 
@@ -39,7 +40,7 @@ def _holds(keyword: str, rule: Any, value: Any, schema: Mapping[str, Any], root:
     checks: dict[str, Callable[[], bool]] = {
         "$ref": lambda: takes(root["$defs"][rule.rpartition("/")[2]], value, root),
         "anyOf": lambda: any(takes(one, value, root) for one in rule),
-        "type": lambda: isinstance(value, TYPES[rule]) and not isinstance(value, bool),
+        "type": lambda: isinstance(value, TYPES[rule]) and isinstance(value, bool) is (rule == "boolean"),
         "const": lambda: value == rule,
         "enum": lambda: value in rule,
         "required": lambda: set(rule) <= set(fields),
@@ -74,7 +75,7 @@ def submission() -> JSON:
     return {"format": SUBMISSION, "pack": PACK, "problem": "locked", **TEMPLATE}
 
 
-@pytest.mark.parametrize("name", ["locked", "column"])
+@pytest.mark.parametrize("name", ["locked", "column", "stack", "mass-ratio", "cradle", "joint"])
 def test_what_the_pack_writes_conforms(name: str) -> None:
     schema, data = ProblemData.model_json_schema(), exported(name)
     assert takes(schema, data, schema) and pydantic_takes(ProblemData, data)
@@ -103,12 +104,23 @@ def changed(data: JSON, at: tuple[Any, ...], value: Any) -> JSON:
     return found
 
 
+def test_the_schema_takes_infinite_data_by_name_only() -> None:
+    schema, data = ProblemData.model_json_schema(), exported("stack")
+    at = ("column", "contacts")
+    for value, taken in (("inf", True), (1e9, True), ("infinite", False), ("-inf", False), (None, False)):
+        contact = data["column"]["contacts"][0] | {"stiffness_Pa_per_m": value}
+        other = changed(data, at, [contact])
+        assert takes(schema, other, schema) is pydantic_takes(ProblemData, other) is taken, value
+
+
 @pytest.mark.parametrize("model", [ProblemData, SubmissionData])
 def test_schema_and_pydantic_say_the_same_of_changed_data(model: type[BaseModel]) -> None:
     """Pydantic alone takes true for the number one; all else both take or both refuse."""
     schema = model.model_json_schema()
     told: set[bool] = set()
-    for data in (exported("locked"), exported("column")) if model is ProblemData else (submission(),):
+    for data in (
+        (exported("locked"), exported("column"), exported("stack")) if model is ProblemData else (submission(),)
+    ):
         for at in places(data):
             for value in VALUES:
                 other = changed(data, at, value)

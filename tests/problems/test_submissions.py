@@ -13,7 +13,7 @@ import pytest
 from oracles.submissions import STATED, submitted
 
 from validation.errors import InputError
-from validation.problems.data import united
+from validation.problems.data import PACK, united
 from validation.problems.pack import TEMPLATE, TIME, table_of
 from validation.problems.problem import Problem, problem, problem_of
 from validation.problems.submission import FILE, read_submission
@@ -71,8 +71,8 @@ def test_what_a_program_cannot_report_is_left_out_by_name(tmp_path: Path, motion
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"pack": "1.0"}, "pack: must be '2.0', the version of this pack, got '1.0'"),
-        ({"pack": 2.0}, "pack: must be '2.0', the version of this pack, got 2.0"),
+        ({"pack": "2.0"}, f"pack: must be {PACK!r}, the version of this pack, got '2.0'"),
+        ({"pack": 3.0}, f"pack: must be {PACK!r}, the version of this pack, got 3.0"),
         ({"pack": ...}, "pack: is required, got nothing"),
         ({"format": "other"}, "format: must be 'dda-validation submission', got 'other'"),
         ({"problem": "lokced"}, "problem: must be among locked, opening,"),

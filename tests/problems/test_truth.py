@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
+from validation.problems.bands import standard
 from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
 from validation.problems.truth import exact, truth_of
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
 from validation.solvers.rigid.rocking import friction_needed
+from validation.theory.joints import slipping_spring_joint
 
 ROCKING = load_scene("field-rocking")
 
@@ -22,9 +24,81 @@ ROCKING = load_scene("field-rocking")
 def test_every_problem_has_its_exact_motion(name: str) -> None:
     one = problem(name)
     kinds = {"column": "layers", "rocking": "rigid rocking"}
+    kinds |= dict.fromkeys(("stack", "mass-ratio"), "column-events")
+    kinds |= dict.fromkeys(("spall", "cradle", "joint"), "bars-events")
     assert one.truth.name == kinds.get(name, "block-events")
+    assert one.truth.name == "layers" or one.truth.name in (*one.scene.run.solvers, "rigid rocking")
     if name != "rocking":
         assert one.truth.until == one.scene.time.duration
+
+
+def test_rigid_blocks_beside_elastic_bars_have_none() -> None:
+    scene = load_scene("field-mass-ratio")
+    light, heavy = scene.definition()["column"]["layer"]
+    with pytest.raises(InputError) as caught:
+        truth_of(scene.with_values({"column.layer": [light, heavy | {"young": 1e9}]}))
+    assert caught.value.field == "column.layer.young"
+    assert "1e+09" in str(caught.value)
+
+
+def test_rigid_stops_of_rigid_blocks_have_none() -> None:
+    with pytest.raises(InputError, match=r"column-events: .*rigid"):
+        truth_of(load_scene("field-mass-ratio").with_values({"column.stiffness": "inf"}))
+
+
+# Of Taylor series with thirty digits, and for the cradle of characteristics: last rows, or those at an instant [s].
+KNOWN = [
+    ("stack", "displacement_1", 0.06, 0.01074499902223, 1e-11),
+    ("stack", "displacement_2", 0.06, 0.02493494560588, 1e-11),
+    ("stack", "displacement_3", 0.06, 0.03962539027349, 1e-11),
+    ("stack", "velocity_3", 0.06, 1.030656757347, 1e-11),
+    ("stack", "force_4", 0.02, 1606810.4758, 1e-9),
+    ("mass-ratio", "displacement_1", 0.03, -0.01331442988, 1e-9),
+    ("mass-ratio", "displacement_2", 0.02, -0.01994421045988, 1e-11),
+    ("mass-ratio", "force_3", 0.0105, 4829582.3038, 1e-10),
+    ("mass-ratio", "force_4", 0.0105, 3993437.96, 1e-8),
+]
+
+
+@pytest.mark.parametrize(("name", "column", "instant", "known", "digits"), KNOWN)
+def test_columns_of_rigid_blocks_move_as_is_known(
+    name: str, column: str, instant: float, known: float, digits: float
+) -> None:
+    one = problem(name)
+    row = round(instant / one.scene.time.step) - 1
+    assert standard(one).exact.columns[column][row] == pytest.approx(known, rel=digits)
+
+
+def test_the_bars_of_the_cradle_go_on_as_is_known() -> None:
+    """Velocities over 2 L/c, after which the waves of a free bar repeat, once all contacts have opened."""
+    known = (-0.0088908684872307, -0.006232130608299, 0.022724961596268, 0.99239803749926)
+    one = problem("cradle")
+    period = 2 / math.sqrt(1e9 / 2500)
+    names = [f"displacement_{number}" for number in range(1, 5)]
+    scene = one.scene.with_values({"time.step": period / 4, "time.steps": 16, "run.columns": names})
+    motion = exact(scene, one.truth)
+    for name, velocity in zip(names, known, strict=True):
+        x = motion.columns[name]
+        assert (x[-1] - x[-5]) / period == pytest.approx(velocity, abs=1e-10)
+
+
+def test_the_joint_passes_the_share_that_is_known() -> None:
+    """Root of the mean square over a period of the velocity above the joint, over the incident wave's."""
+    one = problem("joint")
+    scene = one.scene
+    assert scene.column is not None
+    contact = scene.column.contacts[0]
+    impedance = 2000.0 * 1000.0
+    frequency, velocity = 10.0, 0.1
+    strength_ratio = contact.strength / (impedance * velocity)
+    stiffness_ratio = 2 * contact.stiffness / (impedance * 2 * math.pi * frequency)
+    motion = standard(one).exact
+    period = 1 / frequency
+    last_period = motion.time > motion.time[-1] - period * (1 - 1e-9)
+    above = motion.columns["velocity_2"][last_period]
+    transmitted = math.sqrt(2 * float(np.mean(above**2))) / velocity
+    known = slipping_spring_joint(strength_ratio, stiffness_ratio)
+    assert transmitted == pytest.approx(known.transmitted, rel=1e-4)
 
 
 @pytest.mark.parametrize(

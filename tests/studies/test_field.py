@@ -38,10 +38,10 @@ def brought(monkeypatch, tmp_path):
 def run(problems, tmp_path, monkeypatch):
     """Run the study over some problems."""
     for room in (module, scenes, module.predictions):
-        monkeypatch.setattr(room, "PROBLEMS", problems, raising=False)
+        monkeypatch.setattr(room, "FIELD_PROBLEMS", problems)
     from validation.studies.field import cells
 
-    monkeypatch.setattr(cells, "PROBLEMS", problems)
+    monkeypatch.setattr(cells, "FIELD_PROBLEMS", problems)
     whole = module.study()
     gates = [gate for gate in whole.gates() if gate.scene in {f"field-{name}" for name in problems} | {"field"}]
     results = Results(tmp_path / "results")
@@ -73,7 +73,7 @@ def test_the_table_of_one_problem(brought, tmp_path, monkeypatch) -> None:
 def answered(*runs: tuple[Outcome, str]):
     """Return the row on how many problems were answered, of runs that ended so."""
     rows = {}
-    for problem, (outcome, note) in zip(module.predictions.PROBLEMS, runs, strict=False):
+    for problem, (outcome, note) in zip(module.predictions.FIELD_PROBLEMS, runs, strict=False):
         name = f"{PREFIX}{problem}"
         rows[name, "siconos-default"] = made_row("siconos-default", {}, name, outcome=outcome, notes=(note,))
     compute = module.predictions._answered("siconos-default", "apt-get install python3-siconos")

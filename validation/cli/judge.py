@@ -49,10 +49,11 @@ def judge(
 ) -> None:
     """Judge an answer to a problem against its exact motion, and write page and badge.
 
-    The problems and a submission to fill in come with dda-validate export-pack. A column passes where its error is
-    below what one per cent of the problem's data changes. PARTIAL: the columns that it reports pass, others that the
-    problem asks for are withheld. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver
-    ended in a named failure.
+    Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
+    spall, cradle, joint. They and a submission to fill in come with dda-validate export-pack. A column passes where its
+    error is below what one per cent of the problem's data changes. PARTIAL: the columns that it reports pass, others
+    that the problem asks for are withheld. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the
+    solver ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]

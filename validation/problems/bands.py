@@ -7,15 +7,18 @@ cent does to the exact motion changes nothing for who uses the answer; a larger 
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.numbers import Values, numbers
+from validation.diagnosis.numbers import Values, layers, numbers
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
+from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene, parse_scene
 
 UNKNOWN = 0.01  # relative error of a datum that nobody knows better
@@ -89,10 +92,50 @@ DATA = {
 
 def changes(scene: Scene) -> dict[str, Values]:
     """Return what one per cent of each datum of a scene is: datum to keys and values."""
+    if scene.column is not None and scene.column.law != "bonded":
+        return _changes_of_contacts(scene, scene.column, 1 + UNKNOWN)
     changed = {number.id: number.changed(scene, 1 + UNKNOWN) for number in numbers(scene)}
     if scene.column is None and scene.block.vertices is not None:
         changed.pop("width-factor", None)
     return {name: changed[number] for number, name in DATA.items() if number in changed}
+
+
+def _changes_of_contacts(scene: Scene, column: ColumnSection, factor: float) -> dict[str, Values]:
+    """Return the data of a column whose contacts open or slip, each larger by a factor; none that is infinite.
+
+    Gaps and velocities are not among them: they are the question, as a block's are.
+    """
+    changed: dict[str, Values] = {}
+    if any(math.isfinite(contact.stiffness) for contact in column.contacts):
+        changed["the contacts' stiffness"] = contact_values(column, stiffness=factor)
+    if any(math.isfinite(contact.strength) for contact in column.contacts):
+        changed["the contacts' strength"] = contact_values(column, strength=factor)
+    if any(math.isfinite(layer.young) for layer in column.layer):
+        changed["Young's modulus"] = layers("young")(scene, factor)
+    changed["the density"] = layers("density")(scene, factor)
+    return changed
+
+
+def contact_values(column: ColumnSection, stiffness: float = 1.0, strength: float = 1.0) -> Values:
+    """Return the contacts of a column as joints of their own, their data larger by factors.
+
+    Infinite data stay so; strengths of friction are stated as what they amount to.
+    """
+    values: Values = {}
+    joints = []
+    for contact in column.contacts:
+        if contact.height == 0 and column.base_stiffness is not None:
+            values["column.base_stiffness"] = contact.stiffness * stiffness
+            continue
+        joint: dict[str, Any] = {"height": contact.height, "stiffness": contact.stiffness * stiffness}
+        if contact.gap:
+            joint["gap"] = contact.gap
+        if math.isfinite(contact.strength):
+            joint["strength"] = contact.strength * strength
+        joints.append(joint)
+    if joints:
+        values["column.joint"] = joints
+    return values
 
 
 def changed_scenes(scene: Scene) -> dict[str, Scene]:

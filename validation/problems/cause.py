@@ -56,7 +56,7 @@ WOULD_TELL = (
 OTHERS_WOULD = "an answer to another problem of the pack, on which these differ"
 USUAL = (  # causes that give the same rows are told in this order
     *("scheme", "density-factor", "young-factor", "springs-factor", "friction-factor", "load-factor", "gravity-factor"),
-    *("factor", "shift", "time-factor"),
+    *("velocity-factor", "factor", "shift", "time-factor"),
 )
 BAR = 0.1  # of the band, that an explanation may leave
 CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
@@ -75,7 +75,10 @@ def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Change]:
     scene = runs.scene
     if "column.layer" in base.values:  # the base cuts the scene's layers finer
         scene = scene.with_values({"column.layer": base.values["column.layer"]})
-    changes = [*of_numbers(scene, FACTORS if cheap else FACTORS[:1], units=cheap)]
+    factors = FACTORS if cheap else FACTORS[:1]
+    changes = [*of_numbers(scene, factors, units=cheap)]
+    if features.RIGID_BLOCKS in features.of(scene):  # whose modulus no factor changes
+        changes = [change for change in changes if change.id != "young-factor"]
     if base.every == 1:
         changes.append(of_discount(scene, DISCOUNTS))
     for change in changes:
@@ -170,13 +173,20 @@ def _moved(
     instants = rate * (step * np.arange(1.0, runs.scene.time.steps + 1) - late * step)
     if instants[-1] > dense.time[-1]:
         return None
-    return {name: _at(dense, name, instants) if name in group else x for name, x in plain.items()}
+    moving_column = features.OF_MOVING_COLUMN & {*features.of(runs.scene)}
+    moved = dict(plain)
+    for name in group:
+        # columns whose contacts open may start with a velocity, or at rest under their weight
+        start = float(dense.columns[name][0]) if moving_column else 0.0
+        moved[name] = _at(dense, name, instants, start)
+    return moved
 
 
-def _at(dense: History, name: str, instants: Array) -> Array:
+def _at(dense: History, name: str, instants: Array, start: float) -> Array:
     from scipy.interpolate import CubicSpline
 
-    time, column = np.concatenate([[0.0], dense.time]), np.concatenate([[0.0], dense.columns[name]])
+    time = np.concatenate([[0.0], dense.time])
+    column = np.concatenate([[start], dense.columns[name]])
     values = CubicSpline(time, column)(np.maximum(instants, 0.0))
     return np.asarray(values, dtype=np.float64)
 
@@ -278,15 +288,21 @@ class Search:
         if causes and causes[0].left <= SAME:  # digit for digit
             return causes
         exact = self.runs.exact()
-        cheap = not {features.FRICTION, features.ROTATION} & {*features.of(self.runs.scene)}
+        cheap = self._is_cheap()
         for base in self._bases(exact, cheap):
             causes += [*self._laws(base), *self._changes(base, cheap)]
         return sorted(causes, key=lambda one: (one.left, len(one.ids)))
 
+    def _is_cheap(self) -> bool:
+        """Whether runs take so little that fits may begin from many numbers."""
+        scene_features = {*features.of(self.runs.scene)}
+        elastic_bars = features.OF_MOVING_COLUMN & scene_features and features.RIGID_BLOCKS not in scene_features
+        return not elastic_bars and not {features.FRICTION, features.ROTATION} & scene_features
+
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
         """Return the runs that one wrong number is put into: the exact motion's, and those of the usual schemes."""
         bases = [] if exact is None else [exact]
-        if exact is not None and not exact.values:  # the scene's own scheme is exact enough by itself
+        if exact is not None and not exact.values and not exact.solver:  # the scene's own scheme is exact enough
             return bases
         return [*bases, *(base for base in self.runs.schemes() if base.usual and (cheap or not base.values))]
 
@@ -345,7 +361,8 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     alpha, delta = base.alpha(t), base.delta(t)
     damps = delta > 0.5 or t.discount < 1
     why = "numerical damping" if damps else "the error of its step"
-    why += "" if scene.column is None else ", and the error of so many blocks"
+    if scene.column is not None and features.RIGID_BLOCKS not in features.of(scene):
+        why += ", and the error of so many blocks"
     if base.every == 1 and (alpha, delta) == (0.5, 1.0):
         return f"DDA's usual scheme, {base.words}, at this step: {why}"
     step = "" if base.every > 1 else ", at this step"

@@ -2,26 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+import math
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene
 
-PACK = "2.0"
+PACK: Final = "3.0"
 """Version of the pack; another one is refused. It changes with any problem's data."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
-UNITS = {DISPLACEMENT: "m", "horizontal_displacement": "m", "rotation": "rad", PRESSURE: "Pa", "stress": "Pa"}
+UNITS = {
+    DISPLACEMENT: "m",
+    "horizontal_displacement": "m",
+    "rotation": "rad",
+    PRESSURE: "Pa",
+    "stress": "Pa",
+    "velocity": "m/s",
+    "force": "Pa",
+    "gap": "m",
+    "slip": "m",
+}
 MEANINGS = {
     DISPLACEMENT: "vertical displacement of the centroid, upwards positive",
     "horizontal_displacement": "horizontal displacement of the centroid, towards +x, which is down a slope",
     "rotation": "rotation since t = 0, counter-clockwise positive",
     PRESSURE: "sum of the normal forces of the springs over the length of the base, compression positive",
     "stress": "stress at the {n}. of the heights, compression positive",
+    "velocity": "velocity at the {n}. of the heights, upwards positive (of shear: across the column)",
+    "force": (
+        "stress of the contact at the {n}. of the heights on what is above it: compression positive, 0 while it is "
+        "open (of shear: along the positive displacement)"
+    ),
+    "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
+    "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
 }
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
+INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
+OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
 
 
@@ -32,7 +53,12 @@ def unit(column: str) -> str:
 
 def united(column: str) -> str:
     """Return a history's column as the pack names it, with its unit."""
-    return f"{column}_{unit(column)}"
+    return f"{column}_{in_names(unit(column))}"
+
+
+def in_names(symbol: str) -> str:
+    """Return a unit as names carry it, m_per_s of m/s."""
+    return symbol.replace("/", "_per_")
 
 
 def kind(column: str) -> tuple[str, str]:
@@ -93,45 +119,78 @@ class LayerData(Data):
 
     thickness_m: float
     density_kg_per_m3: float
-    young_Pa: float
+    young_Pa: OrInfinite = Field(
+        description='"inf": all between two contacts is one rigid body; a number: all between two contacts is one '
+        "elastic bar, through which waves run."
+    )
     poisson: float
+    velocity_m_per_s: float = Field(description="At t = 0, upwards positive (of shear: across the column).")
 
 
 class JointData(Data):
-    """A spring across a column."""
+    """A spring across a column, which pulls and pushes and does not slip."""
 
     height_m: float
     stiffness_Pa_per_m: float
 
 
+class ColumnContactData(Data):
+    """A contact across a column, per unit of area.
+
+    Of pressure: its force is stiffness times closure, and nothing while it is open. Of shear: its force is stiffness
+    times (sliding less slip), and slip grows where the force would be more than the strength.
+    """
+
+    height_m: float
+    stiffness_Pa_per_m: OrInfinite = Field(description='"inf": a rigid stop, or a joint that sticks until it slips.')
+    gap_m: float = Field(description="At t = 0; of pressure.")
+    strength_Pa: float | None = Field(description="Greatest shear stress, fixed; null: it does not slip.")
+
+
 class BaseData(Data):
     """What a column stands on."""
 
-    kind: Literal["rigid", "springs", "transmitting"]
+    kind: Literal["rigid", "springs", "transmitting", "free"] = Field(description="Free: nothing is below it.")
     stiffness_Pa_per_m: float | None
     impedance_Pa_s_per_m: float | None = Field(description="Of the half-space below, density times wave speed.")
 
 
 class InputData(Data):
-    """What drives a column: a pulse."""
+    """What drives a column: a pulse, or a wave from t = 0 on."""
 
     at: Literal["base", "top"]
-    shape: Literal["ricker", "half-sine"]
+    shape: Literal["ricker", "half-sine", "triangle", "sine", "cosine"] = Field(
+        description="Of the velocity at the base (above a transmitting base: of the wave that comes up), or of the "
+        "pressure on the top. Triangle: from its greatest value at t = 0 to nothing."
+    )
     velocity_m_per_s: float | None
     pressure_Pa: float | None
-    frequency_Hz: float | None = Field(description="Of a Ricker pulse; its middle comes at 2 / frequency.")
-    duration_s: float | None
+    frequency_Hz: float | None = Field(
+        description="Of a sine or cosine; of a Ricker pulse, whose middle comes at 2 / frequency."
+    )
+    duration_s: float | None = Field(description="Of a half-sine or triangle.")
 
 
 class ColumnData(Data):
     """A column of layers from the base upwards, everything per unit of area; nothing strains sideways."""
 
     motion: Literal["pressure", "shear"]
+    law: Literal["bonded", "unilateral", "frictional"] = Field(
+        description="Bonded: nothing opens or slips; unilateral: the contacts carry no tension; frictional: they slip."
+    )
     layers: tuple[LayerData, ...]
-    joints: tuple[JointData, ...]
+    joints: tuple[JointData, ...] = Field(description="Of a bonded column.")
+    contacts: tuple[ColumnContactData, ...] = Field(
+        description="From the base upwards, of any other column; where there is none its parts move alike."
+    )
+    gravity_m_per_s2: float = Field(description="Downwards, of pressure.")
+    settled: bool = Field(
+        description="Whether it is at rest under its weight at t = 0, displacements being those since its parts were "
+        "unstrained with the gaps stated; else it is unstrained at t = 0, and the weight acts from then on."
+    )
     base: BaseData
-    heights_m: tuple[float, ...] = Field(description="Above the base, where displacements are asked for.")
-    input: InputData
+    heights_m: tuple[float, ...] = Field(description="Above the base, where the answer is asked for.")
+    input: InputData | None = Field(description="Null: weight and velocities alone move it.")
 
 
 class SamplingData(Data):
@@ -157,7 +216,7 @@ class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["2.0"] = "2.0"
+    pack: Literal["3.0"] = PACK
     problem: str
     title: str
     asks: str
@@ -175,7 +234,7 @@ class SubmissionData(Data):
     """What stands beside the table of a submission."""
 
     format: Literal["dda-validation submission"]
-    pack: Literal["2.0"]
+    pack: Literal["3.0"]
     problem: Text
     program: Text
     version: Text
@@ -232,43 +291,84 @@ def load_data(scene: Scene) -> LoadData:
 
 
 def column_data(scene: Scene) -> ColumnData | None:
-    """Return the column of a scene, if it has one."""
-    c = scene.column
-    if c is None:
-        return None
-    if c.law != "bonded" or c.base == "free":
-        raise InputError("must be bonded in a problem", source=scene.name, field="column.law", value=repr(c.law))
-    layers = [
-        LayerData(thickness_m=one.thickness, density_kg_per_m3=one.density, young_Pa=one.young, poisson=one.poisson)
-        for one in c.layer
-    ]
-    joints = [JointData(height_m=joint.height, stiffness_Pa_per_m=joint.stiffness) for joint in c.joint]
-    base = BaseData(kind=c.base, stiffness_Pa_per_m=c.base_stiffness, impedance_Pa_s_per_m=c.impedance)
-    return ColumnData(
-        motion=c.motion,
-        layers=tuple(layers),
-        joints=tuple(joints),
-        base=base,
-        heights_m=c.heights,
-        input=_input_data(scene),
-    )
-
-
-def _input_data(scene: Scene) -> InputData:
-    """Return the pulse of a scene.
+    """Return the column of a scene, if it has one.
 
     Raises
     ------
     InputError
         A record drives it, which plain data do not hold.
     """
+    c = scene.column
+    if c is None:
+        return None
+    layers = [
+        LayerData(
+            thickness_m=layer.thickness,
+            density_kg_per_m3=layer.density,
+            young_Pa=_or_infinite(layer.young),
+            poisson=layer.poisson,
+            velocity_m_per_s=layer.velocity,
+        )
+        for layer in c.layer
+    ]
+    bonded = c.law == "bonded"
+    joints = [JointData(height_m=joint.height, stiffness_Pa_per_m=joint.stiffness) for joint in c.joint]
+    return ColumnData(
+        motion=c.motion,
+        law=c.law,
+        layers=tuple(layers),
+        joints=tuple(joints) if bonded else (),
+        contacts=_column_contacts(c),
+        gravity_m_per_s2=c.gravity if c.law == "unilateral" else 0.0,
+        settled=c.settled,
+        base=_base_data(c),
+        heights_m=c.heights,
+        input=_input_data(scene),
+    )
+
+
+def _or_infinite(value: float) -> float | Literal["inf"]:
+    return INFINITE if math.isinf(value) else value
+
+
+def _column_contacts(column: ColumnSection) -> tuple[ColumnContactData, ...]:
+    """Return the contacts with their own numbers: friction is the strength that it amounts to."""
+    contacts = []
+    for contact in column.contacts:
+        strength = None if math.isinf(contact.strength) else contact.strength
+        stiffness = _or_infinite(contact.stiffness)
+        contacts.append(
+            ColumnContactData(
+                height_m=contact.height, stiffness_Pa_per_m=stiffness, gap_m=contact.gap, strength_Pa=strength
+            )
+        )
+    return tuple(contacts)
+
+
+def _base_data(column: ColumnSection) -> BaseData:
+    """Return what a column stands on; springs that open or slip are the lowest of its contacts."""
+    if column.base == "springs" and column.law != "bonded":
+        return BaseData(kind="rigid", stiffness_Pa_per_m=None, impedance_Pa_s_per_m=None)
+    return BaseData(kind=column.base, stiffness_Pa_per_m=column.base_stiffness, impedance_Pa_s_per_m=column.impedance)
+
+
+def _input_data(scene: Scene) -> InputData | None:
+    """Return what drives a scene, None where weight and velocities alone do.
+
+    Raises
+    ------
+    InputError
+        A record drives it, which plain data do not hold.
+    """
+    if scene.stated_input is None:
+        return None
     drive = scene.input
-    if drive.shape not in ("ricker", "half-sine"):
+    if drive.shape is None:
         raise InputError(
-            "must be a Ricker pulse or a half-sine in a problem",
+            "must be a shape in a problem, whose data hold no record",
             source=scene.name,
             field="input.shape",
-            value=drive.shape or "a record",
+            value="a record",
         )
     return InputData(
         at=drive.at,

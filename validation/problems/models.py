@@ -1,4 +1,4 @@
-"""DDA's own runs of a problem, by which answers are explained: exact but for rounding, or by a scheme at the steps."""
+"""Runs of a problem by which answers are explained: exact but for rounding, or DDA's own by a scheme at the steps."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from validation.diagnosis.numbers import accurate
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard, definition_of, scene_of
+from validation.problems.truth import truth_of
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -26,6 +27,7 @@ from validation.solvers.registry import by_role, get_solver
 
 FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is accurate is taken
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
+PARTS = 8  # of a step of the scene, at which an exact solution is kept: answers between steps are seen in it
 ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
 AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
 MOST_SAMPLES = 20_000  # runs that are kept: some 100 MB of the longest
@@ -34,18 +36,21 @@ Columns = Mapping[str, Array]
 
 @dataclass(frozen=True)
 class Base:
-    """A way to run a problem by DDA: a scheme and how many of its steps make one of the scene's.
+    """A way to run a problem, mostly by DDA: a scheme and how many of its steps make one of the scene's.
 
     Attributes
     ----------
     words
         The scheme in words; empty where the run stands for the exact motion.
+    solver
+        That runs it, where it is an exact solution; empty where it is DDA.
     """
 
     words: str
     values: Mapping[str, Any]
     every: int = 1
     usual: bool = False  # whether wrong numbers are looked for in runs of it as well
+    solver: str = ""
 
     @property
     def exact(self) -> bool:
@@ -80,8 +85,9 @@ class Runs:
     samples: dict[str, Columns | None] = field(default_factory=dict)
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
-        """Return a run at its own steps with other data, None where DDA cannot run it."""
-        return _run(self.scene, self._stepped(base, values or {}))
+        """Return a run at its own steps with other data, None where its solver cannot run it."""
+        stepped = self._stepped(base, values or {})
+        return _run_by(self.scene, stepped, base.solver) if base.solver else _run(self.scene, stepped)
 
     def _stepped(self, base: Base, values: Mapping[str, Any]) -> dict[str, Any]:
         t = self.scene.time
@@ -90,7 +96,7 @@ class Runs:
 
     def sampled(self, base: Base, values: Mapping[str, Any] | None = None) -> Columns | None:
         """Return a run at the steps of the scene."""
-        key = json.dumps(self._stepped(base, values or {}), sort_keys=True)
+        key = base.solver + json.dumps(self._stepped(base, values or {}), sort_keys=True)
         if key not in self.samples:
             if len(self.samples) >= MOST_SAMPLES:
                 self.samples.clear()
@@ -122,6 +128,10 @@ class Runs:
         return None
 
     def _accurate(self) -> Iterator[Base]:
+        if features.OF_MOVING_COLUMN & {*features.of(self.scene)}:
+            # more blocks would be more contacts, and elastic bars need so many that the exact solution costs less
+            yield Base("", {}, PARTS, solver=truth_of(self.scene).name)
+            return
         values = accurate(self.scene)
         yield Base("", {})
         for every in FINER:
@@ -149,13 +159,17 @@ class Runs:
 
 
 def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
+    return _run_by(scene, values, by_role(Role.JUDGED)[0])
+
+
+def _run_by(scene: Scene, values: Mapping[str, Any], name: str) -> History | None:
     try:
         changed = scene.with_values(dict(values))
-        judged = get_solver(by_role(Role.JUDGED)[0])
-        if judged.refusal(changed) is not None:
+        solver = get_solver(name)
+        if solver.refusal(changed) is not None:
             return None
         with np.errstate(all="ignore"):
-            run = judged.solve(changed)
+            run = solver.solve(changed)
     except (InputError, ArithmeticError, ValueError):
         return None
     whole = run.outcome is Outcome.COMPLETED and run.history is not None

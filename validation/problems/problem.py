@@ -45,6 +45,11 @@ ASKS = {
     "creep": "A block that friction could hold, suddenly loaded: how far it shifts while it rings on its springs.",
     "rocking": "A block let go from a large tilt: when it comes down on its base, its rotation not being small.",
     "column": "A wave through a column whose base lets it pass: its shape and its time of arrival.",
+    "stack": "Five rigid blocks dropped together: which contact closes when and how hard, and what is thrown up again.",
+    "spall": "A pulse that comes back from the free top of a column: which of its bars it tears off, and how fast.",
+    "cradle": "An elastic bar that strikes three that touch: what the last one takes away, and what the others keep.",
+    "joint": "A shear wave through a joint that slips: what passes, what is sent back, and the slip.",
+    "mass-ratio": "A heavy block on one of a thousandth of its mass: the light one rings between stiff contacts.",
 }
 PROBLEMS = tuple(ASKS)
 

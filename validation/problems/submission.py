@@ -16,7 +16,7 @@ from pydantic import ValidationError
 
 from validation.errors import InputError
 from validation.problems.bands import standard
-from validation.problems.data import PACK, SubmissionData, kind, unit, united
+from validation.problems.data import PACK, SubmissionData, in_names, kind, unit, united
 from validation.problems.judge import SAME_INSTANT
 from validation.problems.pack import TEMPLATE, TIME
 from validation.problems.problem import PROBLEMS, Problem, problem
@@ -29,7 +29,7 @@ FILE = "submission.json"
 LARGEST_FILE = 100_000_000  # bytes
 LARGEST = 1e100  # of a value in SI units; the squares of larger ones overflow
 SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks"}  # that stand where commas belong
-ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds"}
+ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds", "m/s": "metres per second"}
 EXPORT = "dda-validate export-pack DIR writes the problems"
 
 
@@ -253,8 +253,9 @@ def _check_header(path: Path, names: Sequence[str], posed: Problem, columns: Seq
 def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:
     """Return what is wrong with a name: its unit, or all of it."""
     for united_name, its_unit in unit_by_name.items():
-        plain = united_name.removesuffix(f"_{its_unit}")
-        if name == plain or (name.startswith(f"{plain}_") and name.removeprefix(f"{plain}_").isalpha()):
+        plain = united_name.removesuffix(f"_{in_names(its_unit)}")
+        other_unit = name.removeprefix(f"{plain}_").replace("_", "")
+        if name == plain or (name.startswith(f"{plain}_") and other_unit.isalpha()):
             return f"must be in {ALL_UNITS[its_unit]}, as {united_name}"
     if name in map(united, posed.scene.run.columns):
         return f"must not stand in the table and in not_reported of {FILE}"

@@ -53,13 +53,37 @@ def truth_of(scene: Scene) -> Truth:
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
-    of_one_strain = not {features.COLUMN, features.SUB_BLOCKS} & {*features.of(scene)}
-    for name in by_role(Role.LIMIT if of_one_strain else Role.TRUTH):
-        reason = get_solver(name).refusal(scene)
+    for name in by_role(_role(scene)):
+        solver = get_solver(name)
+        if (features.COLUMN in solver.handles) != (scene.column is not None):
+            continue  # what it says of the other kind of scene tells nobody anything
+        reason = solver.refusal(scene)
         if reason is None:
             return Truth(name, scene.time.duration)
         reasons.append(f"{name}: {reason}")
     raise InputError(f"no exact motion is known: {'; '.join(reasons)}", source=scene.name)
+
+
+def _role(scene: Scene) -> Role:
+    """Return which exact solution a scene asks for: that of blocks of one strain or rigid, or that of elastic bodies.
+
+    Raises
+    ------
+    InputError
+        The scene asks for both.
+    """
+    scene_features = {*features.of(scene)}
+    if features.RIGID_BLOCKS in scene_features and scene.column is not None:
+        elastic = [layer.young for layer in scene.column.layer if math.isfinite(layer.young)]
+        if elastic:
+            raise InputError(
+                "must be inf in all layers or in none: no exact motion is known of rigid blocks beside elastic bars",
+                source=scene.name,
+                field="column.layer.young",
+                value=format(elastic[0], "g"),
+            )
+        return Role.LIMIT
+    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS} & scene_features else Role.LIMIT
 
 
 def exact(scene: Scene, truth: Truth) -> History:

@@ -38,12 +38,17 @@ ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
 LENGTHS = {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"}
+STRESSES = {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"}
 UNITS = {  # what a value in another unit is, over the value in SI
     "time": {1e3: "milliseconds", 1e6: "microseconds"},
     DISPLACEMENT: LENGTHS,
     "horizontal_displacement": LENGTHS,
     "rotation": {math.degrees(1): "degrees", 1e3: "mrad"},
-    PRESSURE: {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"},
+    PRESSURE: STRESSES,
+    "velocity": {1e3: "mm/s", 1e2: "cm/s", 1e-3: "km/s"},
+    "force": STRESSES,
+    "gap": LENGTHS,
+    "slip": LENGTHS,
 }
 FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
 SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered

@@ -101,7 +101,7 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
             EXACT: History(exact.time, {name: exact.columns[name]}),
             ANSWER: History(answer.history.time[:rows], {name: answer.history.columns[name][:rows]}),
         }
-        panel = HistoryPanel(f"{united(name).rpartition('_')[0].replace('_', ' ')}", lines, {}, EXACT)
+        panel = HistoryPanel(name.replace("_", " "), lines, {}, EXACT)
         if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
             caption = f"The answer lies on the exact motion: {united(name)}."
         else:

@@ -9,12 +9,13 @@ from validation.gates.gate import settled
 from validation.problems.bands import Standard, standard, standard_of
 from validation.problems.cause import cause
 from validation.problems.judge import Judgement, Word, judge
-from validation.problems.problem import PREFIX, PROBLEMS
+from validation.problems.problem import PREFIX
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.studies.field.programs import ELEMENTS, FINE, HABIT, installed
 from validation.studies.field.scenes import (
     EXACT,
+    FIELD_PROBLEMS,
     changed,
     fine_name,
     finer,
@@ -43,7 +44,7 @@ class Cells:
 
     def derived(self) -> Iterator[Derived]:
         """Yield a derived row for every case that is judged."""
-        for name in PROBLEMS:
+        for name in FIELD_PROBLEMS:
             elements = (ELEMENTS,) if with_elements(scene_of(name)) else ()
             for program in (HABIT, FINE, *elements, *installed()):
                 yield self._row(name, program)

@@ -14,13 +14,13 @@ from typing import Any
 from validation.engine.finished import Derived, Finished, NothingToDerive
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
-from validation.problems.problem import PREFIX, PROBLEMS
+from validation.problems.problem import PREFIX
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.field.programs import HABIT, known
-from validation.studies.field.scenes import scene_of
+from validation.studies.field.scenes import FIELD_PROBLEMS, scene_of
 from validation.studies.field.table import STUDY, is_absent
 
 APART = "difference from its integrator"
@@ -98,7 +98,7 @@ def _difference(needs: tuple[tuple[str, str], tuple[str, str]]) -> Callable[[Fin
 
 def _answered(program: str, recipe: str) -> Callable[[Finished], Mapping[str, Value]]:
     def compute(finished: Finished) -> Mapping[str, Value]:
-        rows = [finished.rows.get((PREFIX + name, program)) for name in PROBLEMS]
+        rows = [finished.rows.get((PREFIX + name, program)) for name in FIELD_PROBLEMS]
         present = [row for row in rows if row is not None]
         endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in present]
         if not present or is_absent(endings):
@@ -114,4 +114,4 @@ def gates() -> Iterator[Gate]:
         yield Gate(PREFIX + prediction.problem, (prediction.name,), APART, 0.0, prediction.band, prediction.why)
     for program in known():
         why = "a program that is installed answers a problem at least; there are no more than all"
-        yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(PROBLEMS)), why)
+        yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(FIELD_PROBLEMS)), why)

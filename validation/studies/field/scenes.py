@@ -6,11 +6,13 @@ import functools
 
 from validation.diagnosis.numbers import accurate
 from validation.problems.bands import changed_scenes
-from validation.problems.problem import PREFIX, PROBLEMS, Problem, problem
+from validation.problems.problem import PREFIX, Problem, problem
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.field.programs import ELEMENTS, HABIT, installed
 
+# Problems of the pack that programs of the field are asked; their adapters state no contacts of columns.
+FIELD_PROBLEMS = ("locked", "opening", "rebound", "sliding", "creep", "rocking", "column")
 EXACT = "block-events"  # of the exact solutions the one that takes seconds, so that its motions are kept
 FINER = 32  # steps in one of the scene's
 FINER_TURNING = 4  # the same of a block that turns, which takes long
@@ -83,7 +85,7 @@ def changed(name: str) -> dict[str, Scene]:
 def scenes() -> list[Scene]:
     """Return all scenes of the study."""
     all_scenes = []
-    for name in PROBLEMS:
+    for name in FIELD_PROBLEMS:
         all_scenes += [judged(name), fine(name)]
         if kept_exact(scene_of(name)):
             all_scenes += changed(name).values()

@@ -13,13 +13,14 @@ from typing import Any
 
 from validation.engine.finished import Finished
 from validation.gates.gate import Gate
-from validation.problems.problem import ASKS, PREFIX, PROBLEMS
+from validation.problems.problem import ASKS, PREFIX
 from validation.runs.records import Annotations
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.declaration import Study
 from validation.studies.field import predictions, programs, scenes
 from validation.studies.field.cells import BESIDE, Cells, case_of, cell_name
+from validation.studies.field.scenes import FIELD_PROBLEMS
 from validation.studies.field.table import STUDY
 
 DAMPED = ("locked", "opening", "rebound")
@@ -29,7 +30,7 @@ ENDS = tuple(o for o in Outcome if o not in (Outcome.COMPLETED, Outcome.NOT_RUN,
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on this suite's own answers."""
-    for name in PROBLEMS:
+    for name in FIELD_PROBLEMS:
         why = "at fine steps DDA's error is that of its scheme, far below what one per cent of the data changes"
         yield Gate(PREFIX + name, (cell_name(programs.FINE),), BESIDE, 0.0, 1.0, why)
     for name in DAMPED:
@@ -41,12 +42,12 @@ def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which run each cell is of."""
     columns = programs.programs()
     runs = {}
-    for name, program in itertools.product(PROBLEMS, columns):
+    for name, program in itertools.product(FIELD_PROBLEMS, columns):
         runs[f"{name} {program.name}"] = [list(case_of(name, program.name)), cell_name(program.name)]
     return {
         "problems": [
             {"name": name, "scene": PREFIX + name, "title": scenes.scene_of(name).title, "asks": ASKS[name]}
-            for name in PROBLEMS
+            for name in FIELD_PROBLEMS
         ],
         "programs": [_program(program) for program in columns],
         "runs": runs,
