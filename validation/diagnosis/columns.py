@@ -258,7 +258,8 @@ class ColumnHistory:
         units = []
         for values, run, rounding in zip(self.recorded, own, roundings, strict=False):
             size = max(float(np.max(np.abs(values))), float(np.max(np.abs(run))))
-            units.append((last_digits(values) if rounding is None else rounding) + ARITHMETIC * size)
+            unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
+            units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
         return np.array(units)
 
 
