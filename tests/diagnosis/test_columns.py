@@ -260,7 +260,7 @@ def test_numbers_of_contacts_are_those_that_are_stated() -> None:
 
 @pytest.mark.long
 def test_no_verdict_on_random_columns_is_wrong() -> None:
-    trials = [one for one in map(trial, range(200, 236)) if one is not None]
+    trials = [one for one in map(trial, range(198, 234, 5)) if one is not None]
     counts = Counter(one.verdict for one in trials)
     assert counts[WRONG] == 0, [(one.seed, one.what, one.answer.sentence) for one in trials if one.verdict == WRONG]
     single = [one for one in trials if one.made[0].id != "outside" and len(one.made) == 1 and "noise" not in one.what]

@@ -47,6 +47,8 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 if TYPE_CHECKING:
     from dda.column.contacts import ColumnContactResult
@@ -623,10 +625,11 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         sentence = sentences.sentence(subject)
     else:
         sentence = f"{sentences.not_explained(subject, nearest, left, stages)[:-1]}; {_first_rows(search)}."
-    curves = {"the file": search.history.recorded, "dda": search.own, "best": columns}
-    ranking = [row_of("dda", t.alpha, t.delta, t.discount, own_misfit, None)]
+    (judged_solver, *_) = by_role(Role.JUDGED)
+    curves = {"the file": search.history.recorded, judged_solver: search.own, "best": columns}
+    ranking = [row_of(judged_solver, t.alpha, t.delta, t.discount, own_misfit, None)]
     if cause is not None:
-        ranking.insert(0, row_of("dda", *scheme.values(), misfit, None))
+        ranking.insert(0, row_of(judged_solver, *scheme.values(), misfit, None))
     return Answer(
         sentence=sentence,
         causes=ids if explained else [UNEXPLAINED],
