@@ -545,8 +545,8 @@ def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[Colu
     run = ColumnHistory(reading.scene_of(scene), reading).result(ColumnChange(), len(stepping.steps))
     if run is None:
         raise InputError("dda cannot run it at the steps of the history", source=scene.name)
-    own = (run.columns[name][stepping.rows] for name in (DISPLACEMENT, PRESSURE))
-    readings = slips(foreign, stepping, *own, furthest=math.inf)
+    displacement, pressure = (run.columns[name][stepping.rows] for name in (DISPLACEMENT, PRESSURE))
+    readings = slips(foreign, stepping, displacement, pressure, furthest=math.inf)
     return [ColumnSearch.of(ColumnHistory(one.scene_of(scene), one)) for one in readings]
 
 
@@ -596,7 +596,7 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     left = 0.0 if explained else float(f"{min(misfit / own_misfit, 1.0) if own_misfit else 1.0:.4g}")
     departure = None if not ids and explained else _departure(search)
     t = scene.time
-    scheme = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount}
+    scheme: dict[str, float | None] = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount}
     words = words_of_slips(reading.corrected)
     if cause is not None:
         values = cause.change.values
@@ -611,7 +611,9 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         slipped = list(verdict.slipped.history.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
     subject = sentences.Subject(
-        cause.words if cause and cause.id == "scheme" else sentences.scheme_words(*scheme.values()),
+        cause.words
+        if cause and cause.id == "scheme"
+        else sentences.scheme_words(scheme["alpha"], scheme["delta"], scheme["gg"]),
         words,
         departure,
         sentences.remaining(misfit),
@@ -629,7 +631,7 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     curves = {"the file": search.history.recorded, judged_solver: search.own, "best": columns}
     ranking = [row_of(judged_solver, t.alpha, t.delta, t.discount, own_misfit, None)]
     if cause is not None:
-        ranking.insert(0, row_of(judged_solver, *scheme.values(), misfit, None))
+        ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     return Answer(
         sentence=sentence,
         causes=ids if explained else [UNEXPLAINED],
