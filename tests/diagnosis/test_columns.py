@@ -82,7 +82,6 @@ def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
                 (DROPPED, {"time__start": "zero"}, "start", None),
                 (DROPPED, {"time__alpha": 0.5, "time__delta": 1.0}, "scheme", None),
                 (SHEARED, {"column__stiffness": 1e6}, "springs-factor", 1e-3),
-                (SHEARED, {"column__strength": 1e-6}, "no-friction", None),
                 (SHEARED, {"input__duration": 0.02}, "duration-factor", 2 / 3),
             ]
         ),
