@@ -59,19 +59,21 @@ class ColumnOptions:
     Raises
     ------
     ValueError
-        If the limit of solves is no positive integer.
+        If the limit of solves, or how often steps are repeated, is no positive integer.
     """
 
     solve_limit: int | None = None  # solves of the open-close iteration that end the run; None: as many as it takes
     settled: bool = False  # start at rest under the weight alone, not unstrained with all gaps
     states: bool = False  # keep the states of all contacts at every step
     energies: bool = False  # keep energies, momentum and extremes of the contacts at every step
+    bonded: bool = False  # contacts carry tension and never slip, whatever the column's law: a faulty program's
+    repeats: int = 1  # runs of as many steps that will be made: compiling pays the earlier
 
     def __post_init__(self) -> None:
-        """Check the limit."""
-        limit = self.solve_limit
-        if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int) or limit < 1):
-            raise ValueError(f"solve_limit: must be a positive integer, got {limit!r}")
+        """Check the numbers."""
+        for name, number in (("solve_limit", self.solve_limit), ("repeats", self.repeats)):
+            if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
+                raise ValueError(f"{name}: must be a positive integer, got {number!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +150,7 @@ def solve_contact_column(
     instants = len(drive.pressure)
     n = len(column.heights)
     observed = observed_columns(column, columns, heights)
-    numbers, blocks, joints = step_equations(column, scheme, options.solve_limit)
+    numbers, blocks, joints = step_equations(column, scheme, options.solve_limit, options.bonded)
     state = start_state(column, scheme, drive, options.settled, numbers, blocks, joints)
     values = np.zeros((instants, len(columns)))
     states = np.zeros((instants if options.states else 0, n), dtype=np.int8)
@@ -160,7 +162,7 @@ def solve_contact_column(
         (),
         (numbers, blocks, joints, state, _room_for_state(n), _room(n), _steps_of(drive), observed),
         (values, states, solves, switches, record),
-        instants * (PLAIN_STEP + n * PLAIN_BLOCK) * (PLAIN_ENERGIES if options.energies else 1.0),
+        instants * (PLAIN_STEP + n * PLAIN_BLOCK) * (PLAIN_ENERGIES if options.energies else 1.0) * options.repeats,
     )
     rows = slice(1, reached + 1)
     early = () if ended == FOUND else (f"{COLUMN_OUTCOMES[ended]} at step {reached + 1}",)
@@ -205,7 +207,7 @@ def _springs_from(column: Column, first: int) -> list[Spring]:
 
 
 def step_equations(
-    column: Column, scheme: Scheme, solve_limit: int | None = None
+    column: Column, scheme: Scheme, solve_limit: int | None = None, bonded: bool = False
 ) -> tuple[StepNumbers, BlockColumn, JointLaws]:
     """Return the equations of a step as numbers."""
     welded = column.rests_on_base and column.contacts[0] is None
@@ -242,7 +244,10 @@ def step_equations(
         lower[j] = -spring.strength
         upper[j] = spring.strength
         gaps[j] = spring.gap
-        if column.law == "unilateral" and face is not None:
+        if bonded:
+            lower[j] = -math.inf
+            upper[j] = math.inf
+        elif column.law == "unilateral" and face is not None:
             opens[j] = 1
             lower[j] = 0.0
     joints = JointLaws(

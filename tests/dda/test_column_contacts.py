@@ -10,7 +10,7 @@ from oracles.column_cases import CASES, error_of, layers, nothing, stepped_case,
 from oracles.column_checks import check_history, random_column, random_drive, random_scheme, run_all, still
 
 import dda
-from dda.column import contact_step
+from dda.column import contact_step, contacts
 from dda.column.column import Column, Layer, Spring
 from dda.column.contact_step import ColumnWork, JointLaws, find_forces, solve_sticking, update_all
 from dda.column.contacts import ColumnOptions, solve_contact_column, step_equations
@@ -466,6 +466,40 @@ def test_contacts_that_never_slip_are_the_bonded_column(base: str, weights: tupl
         np.testing.assert_allclose(one.columns[name], other.columns[name], rtol=0, atol=1e-9 * largest)
 
 
+@pytest.mark.parametrize("weights", [AVERAGE, CONSTANT])
+def test_contacts_that_are_told_to_hold_tension_are_the_bonded_column(weights: tuple[float, float]) -> None:
+    """The base moves up and down, so that every contact would open."""
+    blocks = [Layer(4.0, 2500.0, 2e9, 0.2, 4), Layer(3.0, 2000.0, 1e9, 0.3, 3)]
+    springs = [Spring(x, 1e9) for x in (0.0, 1.0, 2.0, 4.0, 5.0)]
+    t = 2e-4 * np.arange(401)
+    w = 400.0
+    drive = Drive(1e-3 * (1 - np.cos(w * t)), 1e-3 * w * np.sin(w * t), 1e-3 * w * w * np.cos(w * t), 0 * t)
+    names = ["displacement", "contact_pressure", "stress_1"]
+    scheme = Scheme(*weights, 0.999, 2e-4)
+    opens = Column(blocks, law="unilateral", joints=springs)
+    one = solve_contact_column(opens, scheme, drive, names, [2.5], ColumnOptions(bonded=True))
+    other = solve_column(Column(blocks, joints=springs), scheme, drive, names, [2.5])
+    assert one.step_switches.sum() == 0
+    assert solve_contact_column(opens, scheme, drive, names, [2.5]).step_switches.sum() > 0
+    for name in names:
+        largest = np.abs(other.columns[name]).max()
+        np.testing.assert_allclose(one.columns[name], other.columns[name], rtol=0, atol=1e-9 * largest)
+
+
+def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch: pytest.MonkeyPatch) -> None:
+    seconds = []
+
+    def timed(*arguments: object) -> object:
+        seconds.append(arguments[4])
+        return compiled.run_loop(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(contacts, "run_loop", timed)
+    for repeats in (1, 50):
+        column = unilateral(layers([1.0], [2500.0], [1e9], [0.0]), [1e9], [0.0])
+        solve_contact_column(column, Scheme(0.5, 1.0, 1.0, 1e-3), still(1), options=ColumnOptions(repeats=repeats))
+    assert seconds[1] == 50 * seconds[0]
+
+
 def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does() -> None:
     t = 1e-4 * np.arange(301)
     w = 200.0
@@ -731,6 +765,7 @@ BLOCK = Layer(1.0, 2500.0, 1e9)
         ("impedance", lambda: Column([BLOCK], law="unilateral", impedance=1e6, unsupported=True)),
         ("joints", lambda: Column([BLOCK], law="unilateral", impedance=1e6, joints=[Spring(0.0, 1e9)])),
         ("solve_limit", lambda: ColumnOptions(solve_limit=0)),
+        ("repeats", lambda: ColumnOptions(repeats=0)),
         ("law", lambda: solve_contact_column(Column([BLOCK]), Scheme(0.5, 1.0, 1.0, 1e-3), still(1))),
         (
             "stiffness",

@@ -176,7 +176,7 @@ def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:
     with pytest.raises(InputError, match="site: damping takes scenes of a block only"):
         damping(site)
-    with pytest.raises(InputError, match="site: compare takes scenes of a block only"):
+    with pytest.raises(InputError, match="site: compare takes scenes of a block, or of a column whose"):
         compare(site, Foreign(np.array([0.1]), {}))
     with pytest.raises(InputError, match="site: load: is needed for what is asked, got a scene of a column"):
         _ = site.load

@@ -44,8 +44,8 @@ def compare(
 ) -> None:
     """Judge another program's history: same model and scheme, or where and how it departs, and why.
 
-    The scene states what the program was asked to compute; the history's own time step is used. Exit status: 0 the
-    scene's own history, 1 another one, 2 bad input.
+    The scene states what the program was asked to compute: a block, or a column whose contacts open or slip. The
+    history's own time step is used. Exit status: 0 the scene's own history, 1 another one, 2 bad input.
 
     Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
     --scale displacement=-1e-3[/bold]

@@ -12,6 +12,7 @@ import numpy as np
 from validation.diagnosis import causes, evidence, families, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
+from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
@@ -71,8 +72,11 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    features.refuse_column(scene, "compare")
+    features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if scene.column is not None:
+        features.refuse_sweep(scene)
+        return compare_column(scene, foreign, tolerance)
     if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):

@@ -17,6 +17,7 @@ from validation.scenes.scene import Scene
 Values = dict[str, Any]
 AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 MORE_BLOCKS = 4
+EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's contacts
 
 
 def springs(scene: Scene, factor: float) -> Values:
@@ -28,13 +29,71 @@ def springs(scene: Scene, factor: float) -> Values:
 
 def friction(scene: Scene, factor: float) -> Values:
     """Return the angle of friction [deg] whose tangent is larger by a factor."""
-    tangent = factor * math.tan(math.radians(scene.contact.friction or 0.0))
-    return {"contact.friction": math.degrees(math.atan(tangent))}
+    return {"contact.friction": steeper(scene.contact.friction or 0.0, factor)}
+
+
+def steeper(angle: float, factor: float) -> float:
+    """Return the angle [deg] whose tangent is larger by a factor."""
+    return math.degrees(math.atan(factor * math.tan(math.radians(angle))))
 
 
 def layers(key: str) -> Callable[[Scene, float], Values]:
     """Return the function that makes a datum of all layers of a column larger by a factor."""
-    return lambda s, f: {"column.layer": [layer | {key: layer[key] * f} for layer in s.definition()["column"]["layer"]]}
+
+    def changed(scene: Scene, factor: float) -> Values:
+        stated = scene.definition()["column"]["layer"]
+        larger = ({key: float(layer[key]) * factor} if layer.get(key) else {} for layer in stated)  # or "inf"
+        return {"column.layer": [layer | changed for layer, changed in zip(stated, larger, strict=True)]}
+
+    return changed
+
+
+def contacts(key: str, place: str = EVERYWHERE) -> Callable[[Scene, float], Values]:
+    """Return the function that makes a datum of a column's contacts larger by a factor.
+
+    Parameters
+    ----------
+    key
+        Its name in ``[column]`` and ``[[column.joint]]``; of a friction angle it is the tangent that is larger.
+    place
+        Where: at all contacts, at those without a joint of their own, or at the height of one [m].
+    """
+
+    def larger(value: float | str, factor: float) -> float:  # plain data have "inf" for rigid contacts
+        return steeper(float(value), factor) if key == "friction" else float(value) * factor
+
+    def changed(scene: Scene, factor: float) -> Values:
+        column = scene.definition()["column"]
+        values: Values = {}
+        if place != WITHOUT_JOINT and column.get("joint"):
+            values["column.joint"] = [
+                joint | {key: larger(joint[key], factor)}
+                if joint.get(key) and place in (EVERYWHERE, f"{joint['height']:g}")
+                else joint
+                for joint in column["joint"]
+            ]
+        if place in (EVERYWHERE, WITHOUT_JOINT) and column.get(key):
+            values[f"column.{key}"] = larger(column[key], factor)
+        if place == EVERYWHERE and key == "stiffness" and column.get("base_stiffness"):
+            values["column.base_stiffness"] = column["base_stiffness"] * factor
+        return values
+
+    return changed
+
+
+def places(scene: Scene, key: str) -> dict[str, str]:
+    """Return where a datum of a column's contacts is stated, with the words for it: everywhere, then one by one."""
+    column = scene.column
+    if column is None:
+        return {}
+    of_base = column.base_stiffness if key == "stiffness" else None
+    alone = {WITHOUT_JOINT: "the contacts without a joint"} if _is_number(getattr(column, key)) else {}
+    heights = [joint.height for joint in column.joint if _is_number(getattr(joint, key))]
+    alone |= {f"{height:g}": f"the contact at {height:g} m" for height in heights[:MOST_JOINTS]}
+    if len(alone) + (of_base is not None) > 1:
+        return {EVERYWHERE: "all contacts", **alone}
+    only = "all contacts" if not column.joint else "the contacts without a joint"
+    return alone if WITHOUT_JOINT not in alone else {WITHOUT_JOINT: only}
 
 
 def sized(scene: Scene, wider: float, higher: float) -> Values:
@@ -65,8 +124,10 @@ class Number:
 def numbers(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of a scene that may be wrong by a factor, none that is zero or absent."""
     if scene.column is not None:
-        yield Number("young-factor", OF_WAVES, layers("young"))
+        if any(math.isfinite(layer.young) for layer in scene.column.layer):
+            yield Number("young-factor", OF_WAVES, layers("young"))
         yield Number("density-factor", "the density", layers("density"))
+        yield from _of_contacts(scene)
         yield from _plain(scene, INPUT)
         if scene.column.impedance is not None:
             yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
@@ -104,6 +165,37 @@ INPUT = {
     "input.frequency": ("frequency-factor", "the input's frequency"),
     "column.base_stiffness": ("base-springs-factor", "the stiffness of the base"),
 }
+OF_CONTACTS = {  # key of a column's contacts to the id of its factor, and its name
+    "stiffness": ("springs-factor", "the stiffness"),
+    "gap": ("gap-factor", "the gap"),
+    "strength": ("strength-factor", "the strength"),
+    "friction": ("friction-factor", "tan(phi) of friction, or the weight above,"),
+}
+INPUT_OF_CONTACTS = {  # what a bonded column shows as a factor of all its columns, or of their time
+    "input.velocity": ("load-factor", "the velocity of the input"),
+    "input.duration": ("duration-factor", "the input's duration"),
+}
+MOST_JOINTS = 8  # whose numbers are tried one by one: with more, hardly one stands out
+
+
+def _of_contacts(scene: Scene) -> Iterator[Number]:
+    """Yield the numbers of contacts that open or slip, and what moves them: starting velocities and weight."""
+    column = scene.column
+    if column is None or column.law == "bonded":
+        return
+    if any(layer.velocity for layer in column.layer):
+        yield Number("velocity-factor", "the starting velocity", layers("velocity"))
+    if column.gravity and column.law == "unilateral":  # in shear gravity is in the strengths by friction alone
+        gravity = column.gravity
+        yield Number("gravity-factor", "gravity", lambda s, f: {"column.gravity": gravity * f})
+    yield from _plain(scene, INPUT_OF_CONTACTS)
+    for key, (cause, name) in OF_CONTACTS.items():
+        for place, words in places(scene, key).items():
+            yield Number(cause, f"{name} of {words}", contacts(key, place))
+
+
+def _is_number(value: float | None) -> bool:
+    return bool(value) and math.isfinite(value or 0.0)
 
 
 def _plain(scene: Scene, keys: Mapping[str, tuple[str, str]]) -> Iterator[Number]:

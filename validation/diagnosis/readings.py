@@ -16,6 +16,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
+FURTHEST = 1e3  # times its first row, beyond which the history of a scene of one block is unstable
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
 
 
@@ -80,15 +81,23 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
     return readings
 
 
-def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
-    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest."""
+def slips(
+    foreign: Foreign, stepping: Stepping, reference: Array, contact: Array, furthest: float = FURTHEST
+) -> list[Reading]:
+    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
+
+    Parameters
+    ----------
+    furthest
+        Times its first row, beyond which the scene's own history counts as unbounded.
+    """
     time = (Slip("unit", "time", stepping.factor),) if stepping.factor != 1 else ()
     readings = []
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):
-        first = _factors(foreign.pressure, contact)[0]
+        first = _factors(foreign.pressure, contact, furthest)[0]
         of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
-    for (sign, factor), (turned, scale) in product(_factors(foreign.displacement, reference), of_pressure):
+    for (sign, factor), (turned, scale) in product(_factors(foreign.displacement, reference, furthest), of_pressure):
         pressure, rounding, corrected = foreign.pressure, foreign.pressure_rounding, list(time)
         corrected += _column_slips(DISPLACEMENT, sign, factor)
         if pressure is not None:
@@ -113,10 +122,11 @@ def _plain_second(readings: list[Reading]) -> list[Reading]:
     return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
 
 
-def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
+def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:
     """Return the sign and the powers of ten by which values may be off, the likeliest first."""
     with np.errstate(all="ignore"):
-        bounded = np.clip(np.nan_to_num(reference), -1e3 * abs(reference[0] or 1.0), 1e3 * abs(reference[0] or 1.0))
+        most = furthest * abs(reference[0] or 1.0)
+        bounded = np.clip(np.nan_to_num(reference), -most, most)
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]

@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from validation.metrics.contact import SHIFT
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
-
-SHIFT = 1e-12  # relative change of the springs, well above the rounding of any code
 
 
 def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:

@@ -13,6 +13,7 @@ from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import Array
 from validation.runs.row import Value
 
+SHIFT = 1e-12  # relative change of springs or density that stands for another code, well above the rounding of any
 AGREED = 1e-6  # of the maximum: what two correct codes of one model keep as long as rounding is not amplified
 Part = Callable[[ContactRecord], Value]
 

@@ -173,3 +173,19 @@ def refuse_column(scene: Scene, what: str) -> None:
     """
     if scene.column is not None:
         raise InputError(f"{what} takes scenes of a block only", source=scene.name, value="one with a column")
+
+
+def refuse_bonded_column(scene: Scene, what: str) -> None:
+    """Refuse a scene with a column whose springs are bonded, where a block or a moving column has an answer.
+
+    Raises
+    ------
+    InputError
+        The scene has such a column.
+    """
+    if scene.column is not None and not OF_MOVING_COLUMN & {*of(scene)}:
+        raise InputError(
+            f"{what} takes scenes of a block, or of a column whose contacts open or slip, only",
+            source=scene.name,
+            value="one with a bonded column",
+        )

@@ -38,8 +38,9 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
         histories_by_name[name] = History(time, {DISPLACEMENT: values, **pressure})
     drawn = (DISPLACEMENT, PRESSURE) if answer.pressures else (DISPLACEMENT,)
+    point = "centroid" if scene.column is None else "top"
     panel = HistoryPanel(
-        "displacement of the centroid" + (", contact pressure" if answer.pressures else ""),
+        f"displacement of the {point}" + (", contact pressure" if answer.pressures else ""),
         histories_by_name,
         {},
         next(iter(answer.curves)),

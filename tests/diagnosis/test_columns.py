@@ -1,0 +1,267 @@
+"""Histories beside scenes with a column whose contacts open or slip: right or silent, never wrong."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.column_histories import ALIKE, RIGHT, SILENT, WRONG, history, noisy, random_scene, trial, written
+
+from validation.diagnosis import columns
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.columns import ColumnChange, ColumnHistory, ColumnSearch, of_scene
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.numbers import numbers, places
+from validation.diagnosis.reading import Foreign, steppings
+from validation.diagnosis.readings import Reading
+from validation.errors import InputError
+from validation.scenes.scene import Scene, parse_scene
+
+DIGITS = 8
+
+
+def scene_of(column: dict[str, Any], layer: dict[str, Any], time: dict[str, Any], **tables: Any) -> Scene:
+    data = {
+        "column": {"layer": [{"thickness": 3.0, "density": 2500.0, "young": 1e9, "blocks": 3} | layer], **column},
+        "time": {"alpha": 0.25, "delta": 0.5, "start": "consistent"} | time,
+        "run": {"solvers": ["dda"], "columns": ["displacement", "contact_pressure"]},
+        **tables,
+    }
+    return parse_scene(data, "stack")
+
+
+DROPPED = scene_of(
+    {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 5e-4, "gravity": 9.81}
+    | {"joint": [{"height": 0.0, "stiffness": 1e9, "gap": 2e-3}]},
+    {"young": math.inf, "velocity": -1.0},
+    {"step": 8e-5, "steps": 200},
+)
+SHEARED = scene_of(
+    {"motion": "shear", "law": "frictional", "stiffness": 1e9, "strength": 2e4},
+    {},
+    {"step": 5e-4, "steps": 160},
+    input={"at": "base", "shape": "half-sine", "velocity": 0.2, "duration": 0.03},
+)
+
+
+def judged(scene: Scene, digits: int = DIGITS, pressure: bool = True, **values: Any) -> Answer:
+    foreign = history(scene, {key.replace("__", "."): value for key, value in values.items()}, digits)
+    return compare(scene, foreign if pressure else replace(foreign, pressure=None))
+
+
+# ---- what is named ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scene", [DROPPED, SHEARED])
+def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
+    answer = judged(scene)
+    assert answer.causes == []
+    assert not answer.departs
+    assert answer.departure is None
+    assert answer.misfit < 1e-6
+    assert all(stage.agrees for stage in answer.evidence)
+
+
+@pytest.mark.parametrize(
+    ("scene", "values", "cause", "number"),
+    [
+        (DROPPED, {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
+        (DROPPED, {"column__gravity": 0.0}, "gravity-factor", 0.0),
+        (SHEARED, {"column__strength": 1.5e4}, "strength-factor", 0.75),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in [
+                (DROPPED, {"column__gap": 6e-4}, "gap-factor", 1.2),
+                (DROPPED, {"column__gap": 0.0}, "gap-factor", 0.0),
+                (DROPPED, {"time__gg": 0.99}, "gg", 0.99),
+                (DROPPED, {"time__start": "zero"}, "start", None),
+                (DROPPED, {"time__alpha": 0.5, "time__delta": 1.0}, "scheme", None),
+                (SHEARED, {"column__stiffness": 1e6}, "springs-factor", 1e-3),
+                (SHEARED, {"input__duration": 0.02}, "duration-factor", 2 / 3),
+            ]
+        ),
+    ],
+)
+def test_one_thing_changed_is_named_with_its_number(
+    scene: Scene, values: dict[str, Any], cause: str, number: float | None
+) -> None:
+    answer = judged(scene, **values)
+    assert answer.causes == [cause]
+    assert answer.departs
+    assert answer.values.get(cause) == (number if number is None else pytest.approx(number, rel=1e-5))
+    assert answer.departure is not None
+    assert answer.misfit < 1e-6
+
+
+def test_a_change_of_one_contact_alone_says_where() -> None:
+    answer = judged(DROPPED, column__joint=[{"height": 0.0, "stiffness": 7e8, "gap": 2e-3}])
+    assert answer.causes == ["springs-factor"]
+    assert answer.values == {"springs-factor": pytest.approx(0.7)}
+    assert "the contact at 0 m" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    ("scene", "change", "cause"),
+    [
+        (SHEARED, ColumnChange(bonded=True), "no-slip"),
+        pytest.param(DROPPED, ColumnChange(bonded=True), "contact-locked", marks=pytest.mark.long),
+        pytest.param(
+            SHEARED, ColumnChange({"column.stiffness": math.inf}, bonded=True), "contact-welded", marks=pytest.mark.long
+        ),
+    ],
+)
+def test_contacts_that_hold_are_named(scene: Scene, change: ColumnChange, cause: str) -> None:
+    run = beside(scene, history(scene, {}, DIGITS)).run(change, scene.time.steps)
+    assert run is not None
+    time = scene.time.step * np.arange(1, scene.time.steps + 1)
+    answer = compare(scene, Foreign(time, *(written(column, DIGITS) for column in run)))
+    if scene is SHEARED and cause == "no-slip":  # a strength that is never reached gives the same rows
+        assert {one["causes"][0] for one in answer.alike} == {"no-slip", "strength-factor"}
+    else:
+        assert answer.causes == [cause]
+
+
+def beside(scene: Scene, foreign: Foreign) -> ColumnHistory:
+    reading = Reading(steppings(foreign, scene.time.step)[0], foreign.displacement, foreign.pressure, ())
+    return ColumnHistory(reading.scene_of(scene), reading)
+
+
+# ---- what is not -----------------------------------------------------------------------------------------------------
+
+
+def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told() -> None:
+    answer = judged(DROPPED, column__gap=6e-4, column__stiffness=0.9e9)
+    assert answer.causes == ["unexplained"]
+    assert answer.values == {}
+    landed = int(2e-3 / DROPPED.time.step)  # up to which nothing but the weight acts
+    assert answer.departure is not None
+    assert answer.departure.step > landed
+    assert f"the first {answer.departure.step - 1} rows agree" in answer.sentence
+    assert 0 < answer.unexplained <= 1
+
+
+def test_noise_is_not_explained() -> None:
+    foreign = noisy(history(DROPPED, {"column.stiffness": 0.8e9}, DIGITS), np.random.default_rng(0), 1e-3)
+    assert compare(DROPPED, foreign).causes == ["unexplained"]
+
+
+def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
+    """Displacements of rigid blocks depend on stiffness over density alone."""
+    joint = {"height": 0.0, "stiffness": 0.8e9, "gap": 2e-3}
+    answer = judged(DROPPED, pressure=False, column__stiffness=0.8e9, column__joint=[joint])
+    assert answer.causes == ["unexplained"]
+    factors = {one["causes"][0]: one["values"][one["causes"][0]] for one in answer.alike}
+    assert factors == {"springs-factor": pytest.approx(0.8), "density-factor": pytest.approx(1.25)}
+
+
+def test_a_reversed_input_in_shear_has_the_rows_of_a_reversed_sign() -> None:
+    answer = judged(SHEARED, input__velocity=-0.2)
+    assert answer.causes == ["unexplained"]
+    assert sorted(one["causes"][0] for one in answer.alike) == ["load-factor", "sign"]
+
+
+def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a shift of 1e-4 for 1e-12 the horizon lies inside the run; what comes behind it may be anything."""
+    monkeypatch.setattr(columns, "SHIFT", 1e-4)
+    foreign = history(DROPPED, {}, DIGITS)
+    search = ColumnSearch.of(beside(DROPPED, foreign))
+    assert 0 < search.rows < DROPPED.time.steps
+    foreign.displacement[search.rows :] *= 2.0
+    answer = compare(DROPPED, foreign)
+    assert answer.causes == []
+    (stage,) = (stage for stage in answer.evidence if stage.name == "horizon")
+    assert stage.agrees is None
+    assert stage.numbers["rows"] == search.rows
+
+
+# ---- reading ---------------------------------------------------------------------------------------------------------
+
+
+def test_units_are_read_and_named() -> None:
+    foreign = history(DROPPED, {}, DIGITS)
+    answer = compare(DROPPED, replace(foreign, displacement=1e3 * foreign.displacement))
+    assert answer.causes == ["unit"]
+    assert [(slip.column, slip.factor) for slip in answer.slips] == [("displacement", 1e3)]
+
+
+@pytest.mark.parametrize("every", [1, 5])
+def test_a_program_s_own_steps_and_rows_for_some_steps_are_taken(every: int) -> None:
+    finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
+    answer = compare(DROPPED, history(DROPPED, finer if every == 1 else {}, DIGITS, every))
+    assert answer.causes == []
+    assert len(answer.notes) == 1
+
+
+def test_several_steps_in_one_are_named() -> None:
+    finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
+    answer = compare(DROPPED, history(DROPPED, finer, DIGITS, 2))
+    assert answer.causes == ["substeps"]
+    assert answer.values == {"substeps": 2.0}
+
+
+def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so() -> None:
+    """Six rigid blocks that touch, thrown on their base, need seven solves in the step of the impact."""
+    thrown = scene_of(
+        {"motion": "pressure", "law": "unilateral", "stiffness": 1e9}
+        | {"joint": [{"height": 0.0, "stiffness": 1e9, "gap": 2.05e-3}]},
+        {"thickness": 6.0, "blocks": 6, "young": math.inf, "velocity": -1.0},
+        {"step": 1e-4, "steps": 40},
+    )
+    foreign = history(thrown, {"time.steps": 20}, DIGITS)
+    (note,) = compare(thrown, foreign).notes
+    assert "step 20 of 40" in note
+    assert "a limit of 6 ends a run there" in note
+    assert compare(thrown, history(thrown, {"time.steps": 15}, DIGITS)).notes == ()
+
+
+def test_times_that_are_not_uniform_are_refused() -> None:
+    foreign = history(DROPPED, {}, DIGITS)
+    with pytest.raises(InputError, match="not uniform"):
+        compare(DROPPED, replace(foreign, time=foreign.time**1.01))
+
+
+# ---- candidates ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["dropped", "weight", "spall", "shaken", "slips", "site"])
+def test_every_candidate_is_in_the_catalogue_and_runs(kind: str) -> None:
+    scene = random_scene(kind, np.random.default_rng(0)).with_values({"time.steps": 10})
+    candidates = list(of_scene(scene))
+    assert {candidate.id for candidate in candidates} <= set(CAUSES)
+    record = beside(scene, Foreign(scene.time.step * np.arange(1.0, 11.0), np.ones(10), np.ones(10)))
+    for candidate in candidates:
+        start = candidate.starts[0] if candidate.starts else 0.0
+        assert record.run(candidate.changed(start), 10) is not None, candidate.id
+
+
+def test_numbers_of_contacts_are_those_that_are_stated() -> None:
+    assert places(DROPPED, "stiffness") == {
+        "everywhere": "all contacts",
+        "without a joint": "the contacts without a joint",
+        "0": "the contact at 0 m",
+    }
+    assert places(SHEARED, "strength") == {"without a joint": "all contacts"}
+    assert places(SHEARED, "gap") == {}
+    by_name = {number.name: number for number in numbers(DROPPED)}
+    assert "the modulus of the waves, by Young's modulus or Poisson's ratio," not in by_name  # of rigid blocks
+    halved = DROPPED.with_values(by_name["the stiffness of all contacts"].changed(DROPPED, 0.5)).column
+    assert halved is not None
+    assert {contact.stiffness for contact in halved.contacts} == {5e8}
+
+
+# ---- at random -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.long
+def test_no_verdict_on_random_columns_is_wrong() -> None:
+    trials = [one for one in map(trial, range(198, 234, 5)) if one is not None]
+    counts = Counter(one.verdict for one in trials)
+    assert counts[WRONG] == 0, [(one.seed, one.what, one.answer.sentence) for one in trials if one.verdict == WRONG]
+    single = [one for one in trials if one.made[0].id != "outside" and len(one.made) == 1 and "noise" not in one.what]
+    assert sum(one.verdict in (RIGHT, ALIKE) for one in single) > 0.8 * len(single)
+    assert counts[SILENT] > 0
