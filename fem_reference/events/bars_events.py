@@ -7,7 +7,6 @@ digits, or the pieces grow too many, the motion ends at a named horizon.
 
 from __future__ import annotations
 
-import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.bars_march import CLOSED, OPEN, Joint, JointPiece, Wave, WavePiece, nodes_of
 from fem_reference.events.bars_model import BarsProblem
-from fem_reference.events.enclosure import bits_of, precision
+from fem_reference.events.enclosure import bits_of, check_request, precision
 from fem_reference.events.exponential_sum import ExponentialSum
 from fem_reference.events.switches import (
     LostDigitsError,
@@ -227,10 +226,7 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     array([[0.],
            [1.]])
     """
-    if not (math.isfinite(end) and end > 0):
-        raise ValueError(f"end: must be positive and finite, got {end!r}")
-    if digits < 30:
-        raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    check_request(end, digits)
     until = 0.0
     motion = _solved(problem, float(end), digits, limit)
     while motion.digits < MOST_DIGITS:

@@ -27,7 +27,7 @@ from fem_reference.events.block_flow import to_floats
 from fem_reference.events.block_march import March, Node
 from fem_reference.events.block_model import OPEN, RIGHT, BlockModel, BlockProblem, Course
 from fem_reference.events.block_switching import Flows
-from fem_reference.events.enclosure import bits_of, precision, radius_of
+from fem_reference.events.enclosure import bits_of, check_request, precision, radius_of
 from fem_reference.events.switches import ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -204,10 +204,7 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     NoContactStateError
         If no state of the corners agrees with the motion that follows from it.
     """
-    if not (np.isfinite(end) and end > 0):
-        raise ValueError(f"end: must be positive and finite, got {end!r}")
-    if digits < 30:
-        raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    check_request(end, digits)
 
     def motion_in(digits: int) -> BlockMotion:
         with precision(bits_of(digits)):

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_length
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
-from fem_reference.events.enclosure import bits_of, precision
+from fem_reference.events.enclosure import bits_of, check_request, precision
 from fem_reference.events.switches import LostDigitsError, ProvenMotion
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -306,10 +306,7 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
     NoContactStateError
         If no state of the joints agrees with the motion that follows from it.
     """
-    if not (np.isfinite(end) and end > 0):
-        raise ValueError(f"end: must be positive and finite, got {end!r}")
-    if digits < 30:
-        raise ValueError(f"digits: must be at least 30, got {digits!r}")
+    check_request(end, digits)
 
     def motion_in(digits: int) -> ColumnMotion:
         with precision(bits_of(digits)):

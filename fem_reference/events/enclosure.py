@@ -9,6 +9,7 @@ exactly one root lies in the ball that is returned.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from flint import arb, arb_poly, ctx
 BITS_A_DIGIT = 3.3219281
 GUARD_BITS = 24  # beyond the digits that are asked for
 NEWTON_STEPS = 200
+LEAST_DIGITS = 30
 
 
 @contextmanager
@@ -34,6 +36,20 @@ def precision(bits: int) -> Iterator[None]:
 def bits_of(digits: float) -> int:
     """The bits in which so many decimal digits are computed."""
     return int(digits * BITS_A_DIGIT) + GUARD_BITS
+
+
+def check_request(end: float, digits: int) -> None:
+    """Raise for a last instant or a number of digits that no motion is computed for.
+
+    Raises
+    ------
+    ValueError
+        If `end` is not positive and finite, or `digits` is below `LEAST_DIGITS`.
+    """
+    if not (math.isfinite(end) and end > 0):
+        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    if digits < LEAST_DIGITS:
+        raise ValueError(f"digits: must be at least {LEAST_DIGITS}, got {digits!r}")
 
 
 def ball(radius: arb | float) -> arb:

@@ -29,6 +29,7 @@ from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.studies.columns import known, study
+from validation.studies.waves.measure import column_of
 from validation.theory import columns
 
 DDA = "dda"
@@ -109,7 +110,7 @@ def drops(groups: Groups, directory: Path) -> Blocks:
 
 def space_time(scene: Scene, history: History, title: str) -> SpaceTime:
     """Return the blocks of a column whose middles are observed first, and all of whose contacts follow."""
-    column = study.section(scene)
+    column = column_of(scene)
     faces = np.array(column.faces)
     blocks = len(faces) - 1
     start = -np.cumsum([contact.gap for contact in column.contacts])  # drawn with open gaps: the lowest one is largest
@@ -186,7 +187,7 @@ def _pieces(groups: Groups, rows: DerivedRows, delta: float) -> Iterator[ChartLi
         yield ChartLine("bars", np.arange(1.0, len(bars) + 1), np.array(bars), "black", width=1.6)
     for case in cases_of(groups, study.SPALL_BLOCKS):
         speeds = velocities(rows.get((case.name, f"{DDA} {study.PIECES}"), {}))
-        blocks = study.section(case.scene).layer[0].blocks
+        blocks = column_of(case.scene).layer[0].blocks
         if case.scene.time.delta == delta and speeds:
             each = blocks // len(speeds)
             numbers = np.arange(1.0, len(speeds) + 1)
@@ -243,7 +244,7 @@ def rest_table(groups: Groups, rows: DerivedRows) -> Table:
     lines = []
     for case in cases_of(groups, study.SETTLE):
         t = case.scene.time
-        column = study.section(case.scene)
+        column = column_of(case.scene)
         layer = column.layer[0]
         mass = layer.density * layer.thickness / layer.blocks
         omega = columns.lowest_frequency(column.contacts[0].stiffness, mass, layer.blocks)

@@ -17,11 +17,11 @@ from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
-from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import OTHER, about, cases, fitted_order, near
 from validation.studies.columns import known
 from validation.studies.declaration import Study
+from validation.studies.waves.measure import column_of
 from validation.theory import columns
 
 DDA = "dda"
@@ -38,19 +38,6 @@ STEPS = (0.1, 0.5, 2.0, 10.0)  # these times their step
 CRADLE = "columns-cradle"
 OTHERS = ("columns-spall", "columns-weight", "columns-mass-ratio", "columns-shaken", "columns-slips", CRADLE)
 WHY_KNOWN = "an independent program; band: half a unit of its last digit, and 1e-12 of the value for rounding"
-
-
-def section(scene: Scene) -> ColumnSection:
-    """Return the column of a scene of this study.
-
-    Raises
-    ------
-    ValueError
-        The scene has none.
-    """
-    if scene.column is None:
-        raise ValueError(f"{scene.name}: must have a column, got a block")
-    return scene.column
 
 
 def jointed() -> Iterator[tuple[float, Scene]]:
@@ -134,7 +121,7 @@ def pieces(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]
     history = finished.history(scene.name, solver)
     if history is None:
         return {}
-    column = section(scene)
+    column = column_of(scene)
     layer = column.layer[0]
     middles = [name for name in history.columns if name.startswith("displacement_")]
     speed = math.sqrt(column.modulus(layer) / layer.density)
@@ -156,11 +143,11 @@ def parts(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
     history = finished.history(scene.name, solver)
     if history is None:
         return {}
-    below, above = section(scene).heights
+    below, above = column_of(scene).heights
     drive = scene.input
     frequency, size = drive.frequency or 1.0, drive.velocity or 1.0
-    layer = section(scene).layer[0]
-    speed = math.sqrt(section(scene).modulus(layer) / layer.density)
+    layer = column_of(scene).layer[0]
+    speed = math.sqrt(column_of(scene).modulus(layer) / layer.density)
     end = (2 * layer.thickness - above) / speed  # when the top's echo arrives above the joint
     window = (history.time > end - 1.05 / frequency) & (history.time <= end - 0.05 / frequency)
     incident = size * np.sin(2 * np.pi * frequency * (history.time[window] - below / speed))
@@ -190,7 +177,7 @@ def rest(scene: Scene, finished: Finished) -> Mapping[str, Value]:
 
 def settlement(scene: Scene) -> float:
     """Return the displacement of the top of a stack of rigid blocks at rest [m]."""
-    column = section(scene)
+    column = column_of(scene)
     weights = [
         layer.density * column.gravity * layer.thickness / layer.blocks
         for layer in column.layer
@@ -246,7 +233,7 @@ def order_gates() -> Iterator[Gate]:
 def solve_gates() -> Iterator[Gate]:
     """Yield the gates on the solves of the open-close iteration."""
     for case in cases(DOMINO):
-        most = columns.greatest_solves(len(section(case).contacts))
+        most = columns.greatest_solves(len(column_of(case).contacts))
         why = "rigid blocks that touch close one contact in each solve: N + 1 solves, at every step and scheme"
         yield Gate(case.name, (DDA,), "contact.most_solves", most, most, why)
     why_mean = (
@@ -259,7 +246,7 @@ def solve_gates() -> Iterator[Gate]:
                 index = STEPS.index(round(case.time.step * STIFF, 3))
                 band = near(table[case.time.delta][index], 0.15)
                 yield Gate(case.name, (DDA,), "contact.mean_solves", *band, why_mean, OTHER)
-            most = columns.greatest_solves(len(section(case).contacts))
+            most = columns.greatest_solves(len(column_of(case).contacts))
             why_most = "proven: at most N + 1 for rigid blocks, whatever step, delta and gg; one contact needs two"
             yield Gate(case.name, (DDA,), "contact.most_solves", 2, most, why_most)
 
@@ -278,7 +265,7 @@ def spall_gates() -> Iterator[Gate]:
     )
     why_damped = "order 0.9 under (1/2, 1): an independent program is 3.2 % of the displacement low with 64 a piece"
     for case in cases(SPALL_BLOCKS):
-        finest = section(case).layer[0].blocks == 64 * len(known.BAR_PIECES)
+        finest = column_of(case).layer[0].blocks == 64 * len(known.BAR_PIECES)
         if finest and case.time.delta == 0.5:
             yield Gate(case.name, (f"{DDA} {PIECES}",), "piece 6", *about(top, 1e-3), why_fine, OTHER)
         elif finest:
