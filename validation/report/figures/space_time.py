@@ -78,10 +78,7 @@ def _draw(figure: Figure, axes: Axes, column: SpaceTime) -> None:
         )
         for edge in edges:
             axes.plot(time, edge, color="black", lw=0.25)
-    axes.set(xlabel="time [ms]", title=column.title)
-    axes.annotate(
-        f"displacements × {column.magnification:g}", (0.02, 0.97), xycoords="axes fraction", va="top", fontsize=6
-    )
+    axes.set(xlabel="time [ms]", title=f"{column.title}, displacements × {column.magnification:g}")
     box = axes.get_position()
     width = BAR / 25.4 / figure.get_figwidth()
     bar = figure.colorbar(mesh, cax=figure.add_axes((box.x1 + 0.6 * width, box.y0, width, box.height)))

@@ -47,11 +47,16 @@ def _samples(scene: str, solver: str, table: dict[float, dict[str, str]]) -> tup
     )
 
 
+def ends(first: str, last: str) -> str:
+    """Return the numbers of the first and the last of ten blocks or contacts."""
+    return f"{first} {'- ' * 8}{last}"
+
+
 # number of the first height of a scene whose force or slip is asked for: those of the blocks' middles come before
 FIRST = {
     ("columns-drop-average", "force"): 6,
     ("columns-spall", "force"): 7,
-    ("columns-weight", "force"): 3,
+    ("columns-weight", "force"): 11,
     ("columns-slips", "slip"): 3,
 }
 FINEST_DROP = "columns-drop-average[time.step=1e-05,time.steps=6000]"
@@ -104,9 +109,15 @@ KNOWN: tuple[Sample, ...] = (
         "columns-weight",
         EVENTS,
         {
-            0.05: {"displacement": "-0.000241885998784 -0.001340727532211", "force": "241885.99878 30913.124007"},
-            0.1: {"displacement": "-0.0004361966268446 -0.002651420005761", "force": "436196.62684 51758.332095"},
-            0.2: {"displacement": "-0.00010796642793093 0.00013837720125446"},
+            0.05: {
+                "displacement": ends("-0.000241885998784", "-0.001340727532211"),
+                "force": ends("241885.99878", "30913.124007"),
+            },
+            0.1: {
+                "displacement": ends("-0.0004361966268446", "-0.002651420005761"),
+                "force": ends("436196.62684", "51758.332095"),
+            },
+            0.2: {"displacement": ends("-0.00010796642793093", "0.00013837720125446")},
         },
     ),
     *_samples(
@@ -129,6 +140,7 @@ KNOWN: tuple[Sample, ...] = (
             },
         },
     ),
+    *_samples("columns-joints", BARS, {8.5: {"slip": "-0.21325709881936 -0.13408109261095 -0.37257488314931"}}),
 )
 # Final velocities of the six pieces of a spall: bars, and blocks of one strain exact in time [m/s]
 BAR_PIECES = (0.000920591085702, 0.00151467684352, 0.00216542188847, 0.00292596405491, 0.116243920874, 1.95596132875)

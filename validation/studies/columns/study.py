@@ -36,7 +36,15 @@ SOLVES = {"columns-solves-rest": known.RESTING_SOLVES, "columns-solves-shaken": 
 STIFF = 1264.911064  # 2 sqrt(k/m) of the stacks of rigid blocks [rad/s]
 STEPS = (0.1, 0.5, 2.0, 10.0)  # these times their step
 CRADLE = "columns-cradle"
-OTHERS = ("columns-spall", "columns-weight", "columns-mass-ratio", "columns-shaken", "columns-slips", CRADLE)
+OTHERS = (
+    "columns-spall",
+    "columns-weight",
+    "columns-mass-ratio",
+    "columns-shaken",
+    "columns-slips",
+    "columns-joints",
+    CRADLE,
+)
 WHY_KNOWN = "an independent program; band: half a unit of its last digit, and 1e-12 of the value for rounding"
 
 
