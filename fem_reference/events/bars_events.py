@@ -223,7 +223,7 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     >>> from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
     >>> bars = (Bar(1.0, 1.0, 1.0, velocity=1.0), Bar(1.0, 1.0, 1.0))
     >>> motion = solve(BarsProblem(bars, (None, BarJoint("unilateral"))), 3.0)
-    >>> [abs(round(float(v), 9)) for v in motion.at([3.0]).mean_velocity]
+    >>> [abs(round(float(v), 9)) for v in motion.at([3.0]).mean_velocity[:, 0]]
     [0.0, 1.0]
     """
     check_request(end, digits)
