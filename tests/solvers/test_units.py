@@ -10,7 +10,7 @@ from validation.runs.history import Array
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
-from validation.solvers.user import UNITS, _run_of_columns
+from validation.solvers.user import UNITS, _run_of_columns, factor
 
 COLUMNS = ("displacement", "contact_pressure")
 SI = {  # how much of it makes one s, one m, one Pa: written down here once more
@@ -23,6 +23,12 @@ SI = {  # how much of it makes one s, one m, one Pa: written down here once more
 ASIDE = ("horizontal_displacement", "rotation")
 SIDEWAYS = {"load.traction": 1e5, "load.eccentricity": 0.2, "run.columns": ["displacement", *ASIDE]}
 NAMES = [(column, unit) for column, units in SI.items() for unit in units]
+AT_HEIGHTS = {  # of columns on contacts, as the answers to problems hold them
+    "velocity": {"mm/s": 1000.0, "cm/s": 100.0, "km/s": 1 / 1000.0},
+    "force": SI["contact_pressure"],
+    "gap": SI["displacement"],
+    "slip": SI["displacement"],
+}
 VARIANTS = {  # the unit must be seen on any scene, and under a solver that is off by some percent or damped otherwise
     "paper": {},
     "long steps": {"time.step": 0.01, "contact.stiffness": 1e10},
@@ -38,7 +44,18 @@ def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str,
 
 
 def test_every_unit_of_the_table_is_tested() -> None:
-    assert {(column, unit) for column, units in UNITS.items() for unit in units.values()} == set(NAMES)
+    assert {(column, unit) for column, units in UNITS.items() for unit in units.values()} == set(NAMES) | {
+        (column, unit) for column, units in AT_HEIGHTS.items() for unit in units
+    }
+
+
+@pytest.mark.parametrize("column", AT_HEIGHTS)
+def test_another_unit_at_a_height_is_named(scene: Scene, column: str) -> None:
+    expected = np.sin(np.linspace(0.1, 9.0, 50))
+    for unit, times in AT_HEIGHTS[column].items():
+        told = factor(column, 1.1 * times * expected, expected, scene)
+        assert told is not None and told.endswith(f"{unit}?")
+    assert factor(column, 1.1 * expected, expected, scene) is None
 
 
 @pytest.mark.parametrize(
