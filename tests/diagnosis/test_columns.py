@@ -98,6 +98,7 @@ def test_one_thing_changed_is_named_with_its_number(
     assert answer.misfit < 1e-6
 
 
+@pytest.mark.long
 def test_a_change_of_one_contact_alone_says_where() -> None:
     answer = judged(DROPPED, column__joint=[{"height": 0.0, "stiffness": 7e8, "gap": 2e-3}])
     assert answer.causes == ["springs-factor"]
@@ -150,6 +151,7 @@ def test_noise_is_not_explained() -> None:
     assert compare(DROPPED, foreign).causes == ["unexplained"]
 
 
+@pytest.mark.long
 def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
     """Displacements of rigid blocks depend on stiffness over density alone."""
     joint = {"height": 0.0, "stiffness": 0.8e9, "gap": 2e-3}
@@ -197,6 +199,7 @@ def test_a_program_s_own_steps_and_rows_for_some_steps_are_taken(every: int) -> 
     assert len(answer.notes) == 1
 
 
+@pytest.mark.long
 def test_several_steps_in_one_are_named() -> None:
     finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
     answer = compare(DROPPED, history(DROPPED, finer, DIGITS, 2))

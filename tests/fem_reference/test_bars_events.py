@@ -216,7 +216,7 @@ def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, n
     )
 
 
-@pytest.mark.parametrize("seed", RANDOM)
+@pytest.mark.parametrize("seed", [*RANDOM[:3], *(pytest.param(seed, marks=pytest.mark.long) for seed in RANDOM[3:])])
 def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     problem, end = random_problem(seed)
     motion = solve(problem, end)
@@ -235,7 +235,7 @@ def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
 
 
-@pytest.mark.parametrize("seed", RANDOM[:4])
+@pytest.mark.parametrize("seed", [*RANDOM[:3], pytest.param(RANDOM[3], marks=pytest.mark.long)])
 def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
     problem, end = random_problem(seed)
     motion = solve(problem, end)

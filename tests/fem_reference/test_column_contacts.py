@@ -105,7 +105,14 @@ def errors_of_blocks(column: ContactColumn, numbers: tuple[float, float], count:
     return float(np.abs(final - exact).max() / np.abs(exact).max())
 
 
-@pytest.mark.parametrize("column", [DROPPED, SETTLED, SHEARED], ids=["dropped", "settled", "sheared"])
+@pytest.mark.parametrize(
+    "column",
+    [
+        pytest.param(DROPPED, id="dropped"),
+        pytest.param(SETTLED, id="settled", marks=pytest.mark.long),
+        pytest.param(SHEARED, id="sheared", marks=pytest.mark.long),
+    ],
+)
 def test_one_element_a_block_tends_to_the_blocks_of_one_strain(column: ContactColumn) -> None:
     coarse, fine = (errors_of_blocks(column, AVERAGE, count) for count in (1000, 4000))
     assert fine < 3e-4 and math.log(coarse / fine, 4) > 1.7  # of the second order
@@ -153,8 +160,8 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
         (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
         (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
         (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
-        (SPALL, AVERAGE, (4, 16), 1.2, 4e-3),
-        (SPALL, CONSTANT, (4, 16), 0.5, 0.2),
+        pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
+        pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
     ],
     ids=lambda value: "",
 )

@@ -50,7 +50,10 @@ def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
     return wrong
 
 
-@pytest.mark.parametrize("name", COLUMNS)
+LONG = {"A6", "S2"}  # whose motions take seconds
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
 def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
     known, motion = COLUMNS[name], motion_of(name)
     assert misprinted(known, motion) == []
