@@ -127,6 +127,18 @@ def test_contacts_that_hold_are_named(scene: Scene, change: ColumnChange, cause:
         assert answer.causes == [cause]
 
 
+def test_friction_that_is_missing_is_named_and_no_factor_of_almost_nothing() -> None:
+    nothing = {key: 1e-9 * value for key, value in stated_strengths(SHEARED).items()}
+    assert compare(SHEARED, history(SHEARED, nothing, DIGITS)).causes == ["no-friction"]
+
+
+def stated_strengths(scene: Scene) -> dict[str, float]:
+    column = scene.column
+    assert column is not None and not any(joint.strength or joint.friction for joint in column.joint)
+    stated = {"column.strength": column.strength, "column.friction": column.friction}
+    return {key: value for key, value in stated.items() if value is not None}
+
+
 def beside(scene: Scene, foreign: Foreign) -> ColumnHistory:
     reading = Reading(steppings(foreign, scene.time.step)[0], foreign.displacement, foreign.pressure, ())
     return ColumnHistory(reading.scene_of(scene), reading)

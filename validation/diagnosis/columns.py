@@ -61,6 +61,7 @@ LEAST_ROWS = 12  # that depart from the scene's own: fewer tell no cause
 APART = 10.0  # times more than may remain that every other cause must leave somewhere
 NEAR = 0.3  # of what the scene's own run leaves, beyond which a candidate is not pursued to later rows
 PATIENCE = 2  # groups of rows that every candidate is fitted to
+LARGEST = math.log(1e4)  # of a factor that a number may be wrong by; other units are 1e3 and 1e-3
 FARTHEST = 1e12  # times what may remain: a run that fails is no nearer than that
 POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # by which numbers of one product stand for each other
 SAME_NUMBER = 1e-4  # relative: two fits that came to the same number are one
@@ -401,7 +402,9 @@ class ColumnSearch:
             if number + 1 >= PATIENCE:
                 bar = max(NEAR * own, self._near(rows))
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
-        explanations = sorted((self._judged(candidate) for candidate in candidates), key=lambda one: one.ratio)
+        # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
+        sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
+        explanations = sorted((self._judged(candidate) for candidate in sensible), key=lambda one: one.ratio)
         if explanations and explanations[0].ratio <= 1 and explanations[0].candidate.change.starts:
             explanations += self._relatives(changes, explanations, groups[0])
         return sorted(explanations, key=lambda one: one.ratio)
