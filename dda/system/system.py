@@ -263,11 +263,9 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
     """Return the matrix with square blocks on its diagonal, without their zeros."""
-    from scipy.sparse import block_diag, csr_array
+    from scipy.sparse import block_diag, coo_array, csr_array
 
-    matrix = csr_array(block_diag(blocks))
-    matrix.eliminate_zeros()
-    return matrix
+    return csr_array(block_diag([coo_array(block) for block in blocks]))  # whose zeros are not stored
 
 
 def _inverses_of(matrices: Sequence[Array]) -> list[Array]:
