@@ -18,7 +18,7 @@ def column(lift=1e-3, force=2e6, title="two blocks"):
 
 def test_every_block_is_a_band_between_its_faces_with_the_gap_magnified():
     one = column()
-    figure = space_time_figure([one])
+    figure = space_time_figure([one], 46.0)
     lower, upper = (mesh for mesh in figure.axes[0].collections if isinstance(mesh, QuadMesh))
     assert one.magnification == 500.0  # the widest gap, 1 mm, is at most 0.6 of the lowest block's 1 m
     edges = np.asarray(upper.get_coordinates())[..., 1]
@@ -30,7 +30,7 @@ def test_every_block_is_a_band_between_its_faces_with_the_gap_magnified():
 
 @pytest.mark.parametrize(("force", "unit"), [(2e6, "MPa"), (2e3, "kPa")])
 def test_the_bar_of_colours_has_a_unit_that_suits_the_forces(force, unit):
-    figure = space_time_figure([column(force=force), column(force=force)])
+    figure = space_time_figure([column(force=force), column(force=force)], 46.0)
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels.count(f"force [{unit}]") == 2 and labels.count("height [m]") == 1
 

@@ -50,9 +50,8 @@ OTHERS = (
     ("columns-weight", known.EVENTS, "weight put on at once"),
 )
 TIME_CAPTION = (
-    "Left: a pulse on top of six elastic bars at rest under their weight; the uppermost takes nearly all of its "
-    "momentum along. Right: ten rigid blocks whose weight is put on at once do not stay together, the top leaves at "
-    "53 ms. Both exact; colours as above."
+    "Left: a pulse on six elastic bars; the uppermost takes nearly all of its momentum along. Right: ten rigid blocks "
+    "whose weight is put on at once do not stay together, the top leaves at 53 ms. Both exact."
 )
 SOLVES_CAPTION = (
     "The step acts without damping, damping through the number of switches alone. Mean solves a step of twenty rigid "
@@ -91,7 +90,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
         blocks += [solves_figure(groups, directory), solves_table(groups)]
     if groups.get(study.SPALL_BLOCKS):
         blocks += [Heading("Pieces of a spall", 2), Paragraph(SPALL_TEXT), spall_figure(groups, rows, directory)]
-        blocks += over_time(groups, directory, "columns-time.svg", OTHERS, TIME_CAPTION)
+        blocks += over_time(groups, directory, "columns-time.svg", OTHERS, TIME_CAPTION, 36.0)
     tables = (joint_table(rows), slip_table(groups, rows), rest_table(groups, rows))
     blocks += [Heading("Joints that slip, and stacks that rest", 2), Paragraph(SLIP_TEXT)]
     return [*blocks, *(one for one in tables if one.rows)]
@@ -101,7 +100,12 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
 
 
 def over_time(
-    groups: Groups, directory: Path, file: str, drawn_cases: Sequence[tuple[str, str, str]], caption: str
+    groups: Groups,
+    directory: Path,
+    file: str,
+    drawn_cases: Sequence[tuple[str, str, str]],
+    caption: str,
+    height: float = 46.0,
 ) -> Blocks:
     """Return the picture of columns over time, of the finest case of a solver that is exact, else of the coarsest."""
     drawn = []
@@ -111,7 +115,7 @@ def over_time(
         history = None if case is None else case.histories.get(solver)
         if case is not None and history is not None:
             drawn.append(space_time(case.scene, history, title))
-    return [saved(space_time_figure(drawn), directory, file, caption)] if drawn else []
+    return [saved(space_time_figure(drawn, height), directory, file, caption)] if drawn else []
 
 
 def space_time(scene: Scene, history: History, title: str) -> SpaceTime:
@@ -184,7 +188,7 @@ def spall_figure(groups: Groups, rows: DerivedRows, directory: Path) -> FigureBl
         panels.append(
             ChartPanel(title, "piece, from the base", "velocity [m/s]", lines, x_range=PIECES, names="upper left")
         )
-    return saved(chart_figure(panels, 36.0, margins=BESIDE), directory, "columns-spall.svg", SPALL_CAPTION)
+    return saved(chart_figure(panels, 32.0, margins=BESIDE), directory, "columns-spall.svg", SPALL_CAPTION)
 
 
 def _pieces(groups: Groups, rows: DerivedRows, delta: float) -> Iterator[ChartLine]:
@@ -218,8 +222,7 @@ def joint_table(rows: DerivedRows) -> Table:
     each = ("exact", "bars", "dda")
     heads = ("Strength", ("T", *each), ("R", *each), ("A", *each))
     caption = (
-        "A sine at a rigid joint, by its strength over the stress of the wave: square roots of the energies that are "
-        "transmitted, reflected and spent in slip."
+        "A sine at a rigid joint, by its strength over the stress of the wave: shares by amplitude, A that of slip."
     )
     return table(heads, lines if rows else [], caption)
 
@@ -259,7 +262,6 @@ def rest_table(groups: Groups, rows: DerivedRows) -> Table:
         lines.append((*scheme_words(case.scene), f"{predicted:.3f}", cell(measured, 1.0, 4)))
     heads = ("α, δ", "gg", "dt [ms]", ("Rests after [s]", "closed form", "as stepped"))
     caption = (
-        "Ten rigid blocks under their weight, put on at once: time until the top stays within a thousandth of its "
-        "settlement. The closed form is that of a step that is small for the slowest vibration."
+        "Ten rigid blocks under their weight, put on at once: until the top is within a thousandth of its settlement."
     )
     return table(heads, lines, caption)

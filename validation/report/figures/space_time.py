@@ -53,8 +53,8 @@ class SpaceTime:
         return max(1.0, float(power * max(part for part in (1, 2, 5) if part * power <= wanted)))
 
 
-def space_time_figure(columns: Sequence[SpaceTime], height: float = 46.0) -> Figure:
-    """Draw columns side by side, each with a bar of its forces."""
+def space_time_figure(columns: Sequence[SpaceTime], height: float) -> Figure:
+    """Draw columns side by side, so many mm high, each with a bar of its forces."""
     with house_style():
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(columns), MARGINS)
         for axes, column in zip(row, columns, strict=True):
