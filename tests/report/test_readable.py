@@ -20,7 +20,7 @@ from validation.report.typesetting import write_document
 from validation.studies.catalogue import get_study, judged_studies
 
 ROOT = Path(__file__).parents[2]
-SHORT, WHOLE = 20, 42  # pages; the long study `stability`, which is not run here, takes three more
+SHORT, WHOLE = 20, 43  # pages, two of columns; the long study `stability`, which is not run here, takes three more
 SCENES = ("figures-3-4", "figures-5-6", "model-form")
 ANSWERS = {  # question -> what is read on which page
     "which dt for 5 % damping": {1: "for 5 % take dt = 0.584 ms", 2: "for 5 % at p = 1E, dt = 0.584 ms"},
@@ -96,5 +96,5 @@ def test_make_report_has_at_most_twenty_pages(tmp_path: Path, finished_cases: Pa
 
 
 @pytest.mark.long
-def test_everything_has_at_most_forty_five_pages(tmp_path: Path, finished_cases: Path) -> None:
+def test_everything_has_at_most_forty_six_pages(tmp_path: Path, finished_cases: Path) -> None:
     assert len(made(judged_studies(), finished_cases, tmp_path).pages) <= WHOLE
