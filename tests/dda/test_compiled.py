@@ -201,7 +201,7 @@ def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeyp
             self.function(*self.args)
 
     monkeypatch.setattr(threading, "Timer", Elapsed)
-    caplog.set_level(logging.WARNING, logger=compiled.logger.name)  # which `run --quiet` of another test has raised
+    caplog.set_level(logging.WARNING, logger=compiled.logger.name)  # whatever other tests have made of it
     ran()
     assert [record.getMessage() for record in caplog.records] == ["compiling the loop over steps, once an install"]
     monkeypatch.setattr(compiled, "loops", {})

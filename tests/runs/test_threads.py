@@ -23,7 +23,7 @@ from validation.runs.run import Outcome, Run
 from validation.runs.threads import VARIABLES
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.contract import Solver
-from validation.solvers.logs import solver_logs
+from validation.solvers.logs import errors_only, solver_logs
 from validation.solvers.registry import get_solver, solve
 
 MANY = 3  # threads of this process, whatever the machine has
@@ -116,6 +116,14 @@ def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatc
             assert pool.submit(log_levels).result() == [logging.ERROR] * 2
     finally:
         multiprocessing.set_start_method(before, force=True)
+
+
+def test_errors_alone_are_logged_for_the_time_that_is_asked_for() -> None:
+    before = log_levels()
+    with pytest.raises(KeyboardInterrupt), errors_only():
+        assert log_levels() == [logging.ERROR] * 2
+        raise KeyboardInterrupt
+    assert log_levels() == before != [logging.ERROR] * 2
 
 
 def log_levels() -> list[int]:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import itertools
 import json
-import logging
 import os
 import time
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -124,7 +123,7 @@ def run(
     from validation.gates.changes import read_verdicts
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.solvers.logs import solver_logs
+    from validation.solvers.logs import errors_only
     from validation.solvers.registry import is_solver, solver_names
     from validation.studies.catalogue import STUDIES, resolve
     from validation.studies.field.programs import known
@@ -150,10 +149,8 @@ def run(
     before = None if baseline is None else read_verdicts(baseline)
 
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
-    if quiet:
-        for log in solver_logs():
-            log.setLevel(logging.ERROR)
-    runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
+    with errors_only() if quiet else nullcontext():
+        runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(store.verdicts, names)))
     changes = after_run(records, names, summary, before)
