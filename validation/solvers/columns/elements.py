@@ -67,17 +67,21 @@ class LineColumn(Prepared):
         self.scene = scene
         self.scheme = scheme
         self.ground = ground_of(scene)
-        c = column_of(scene)
-        self.elements = [layer.blocks * scene.fem.per_side for layer in c.layer]
-        self.heights = c.heights
+        section = column_of(scene)
+        self.elements = [layer.blocks * scene.fem.per_side for layer in section.layer]
+        self.heights = section.heights
 
     def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the largest frequency of the elements."""
+        """Return the limit of the scheme at the largest frequency of the elements, all springs closed."""
         from fem_reference.column.frequency import highest_frequency
         from fem_reference.scheme.limits import critical_omega
 
         degree = self.scene.fem.degree
         return StepLimit(critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
+
+    def drive(self) -> Excitation:
+        """Return what drives the column at t = 0 and at every step."""
+        return excitation(self.scene, self.scheme.step * np.arange(self.scene.time.steps + 1.0))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
@@ -86,8 +90,7 @@ class LineColumn(Prepared):
         no_fields("fem with a column", self.scene, fields)
         degree = self.scene.fem.degree
         columns = self.scene.run.columns
-        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
-        drive = excitation(self.scene, instants)
+        drive = self.drive()
         with naming(self.scene):
             result = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
         return to_run(self.scene, result)
@@ -108,29 +111,16 @@ class LineColumn(Prepared):
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
 
 
-class ContactLineColumn(Prepared):
+class ContactLineColumn(LineColumn):
     """A column of line elements whose contacts open or slip; forces are per unit of area."""
 
     result: ColumnContactResult | None = None
 
     def __init__(self, scene: Scene, scheme: Scheme) -> None:
-        self.scene = scene
-        self.scheme = scheme
+        super().__init__(scene, scheme)
         self.column = contact_column_of(scene)
-        c = column_of(scene)
-        self.elements = [layer.blocks * scene.fem.per_side for layer in c.layer]
-        self.heights = c.heights
-
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the largest frequency of the elements, all contacts closed."""
-        from fem_reference.column.frequency import highest_frequency
-        from fem_reference.scheme.limits import critical_omega
-
-        ground = self.column.ground
         springs = [(one.height, one.stiffness) for one in self.column.contacts if np.isfinite(one.stiffness)]
-        closed = replace(ground, joints=tuple(springs))
-        degree = self.scene.fem.degree
-        return StepLimit(critical_omega, lambda: highest_frequency(closed, self.elements, degree))
+        self.ground = replace(self.column.ground, joints=tuple(springs))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
@@ -138,12 +128,15 @@ class ContactLineColumn(Prepared):
 
         no_fields("fem with a column", self.scene, fields)
         names = list(dict.fromkeys((*self.scene.run.columns, PRESSURE)))
-        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
-        drive = excitation(self.scene, instants)
+        drive = self.drive()
         degree = self.scene.fem.degree
         with naming(self.scene):
             self.result = solve_contacts(self.column, self.elements, degree, self.scheme, drive, names, self.heights)
         return opened_run(self.scene, self.result, self.result.columns)
+
+    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+        """Raise: what opens or slips has no frequency response."""
+        raise NotReported("fem: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the changes of the contacts' states between the steps of the history that was run."""
