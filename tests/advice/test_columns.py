@@ -74,5 +74,5 @@ def test_advice_names_the_blocks_that_the_step_can_bear():
     assert any(f"{blocks} blocks in the layers" in sentence for sentence in columns.advised(scene, known))
 
 
-def test_plain_data_hold_no_infinity():
-    assert columns.plain(columns.limits(stack(alpha=0.25, delta=0.5)))["settling"] is None
+def test_a_stack_that_nothing_damps_never_comes_to_rest():
+    assert columns.limits(stack(alpha=0.25, delta=0.5)).settling == math.inf

@@ -65,6 +65,8 @@ def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
 def test_advise_needs_no_target_for_a_column_of_contacts(stack: Path) -> None:
     assert json.loads(typed("advise", stack, "--json").stdout)["solves"] == 8
     assert typed("advise", stack).stdout.startswith("Allow 8 solves")
+    undamped = ("--set", "time.alpha=0.25", "--set", "time.delta=0.5")  # which never comes to rest: no infinity in JSON
+    assert json.loads(typed("advise", stack, *undamped, "--json").stdout)["settling"] is None
     assert "--damping and --fmax" in refused("advise", stack, "--fmax", "10")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from typing import Any
 
 from validation.advice import columns, contact_page
@@ -39,7 +40,7 @@ def answer(scene: Scene, rows: Mapping[str, Row], known: columns.ColumnLimits) -
     """Return everything as plain data."""
     return {
         "scene": scene.name,
-        "limits": columns.plain(known),
+        "limits": asdict(known),
         "runs": {name: contact_page.measured(row) for name, row in rows.items()},
         "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
     }

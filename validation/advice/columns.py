@@ -16,8 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from validation.advice.alarm import Alarm
 from validation.scenes.column import ColumnSection, LayerSection
@@ -89,14 +88,6 @@ def _lowest(column: ColumnSection) -> float | None:
     (stiffness,) = stiffnesses
     (mass,) = masses
     return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
-
-
-def plain(known: ColumnLimits) -> dict[str, Any]:
-    """Return plain data, None where a number is not finite."""
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in asdict(known).items()
-    }
 
 
 def advised(scene: Scene, known: ColumnLimits) -> Iterator[str]:

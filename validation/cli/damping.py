@@ -97,10 +97,13 @@ def advise(
 
 def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
     """Say what a column whose contacts open or slip needs of its steps."""
-    from validation.advice.columns import advised, column_alarms, plain
+    from dataclasses import asdict
+
+    from validation.advice.columns import advised, column_alarms
+    from validation.advice.contact_page import plain
 
     if as_json:
-        echo(json.dumps(plain(known), indent=1, allow_nan=False))
+        echo(json.dumps(plain(asdict(known)), indent=1, allow_nan=False))
         return
     for sentence in advised(case, known):
         echo(broken(sentence))

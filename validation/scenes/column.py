@@ -206,8 +206,10 @@ class ColumnSection(Section):
         contacts = [self._contact(joint.height, joint) for joint in self.springs]
         if self.stiffness is not None:
             lowest = 1 if self.base in ("transmitting", "free") else 0
+            jointed = [joint.height for joint in self.springs]
+            near = NEAR * self.height
             for height in self.faces[lowest:-1]:
-                if all(abs(height - contact.height) > NEAR * self.height for contact in contacts):
+                if all(abs(height - joint) > near for joint in jointed):
                     contacts.append(self._contact(height, self))
         return tuple(sorted(contacts, key=lambda contact: contact.height))
 

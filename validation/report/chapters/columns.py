@@ -28,8 +28,8 @@ from validation.runs.history import History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
+from validation.solvers.columns.names import column_of
 from validation.studies.columns import known, study
-from validation.studies.waves.measure import column_of
 from validation.theory import columns
 
 DDA = "dda"

@@ -18,10 +18,10 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.columns.names import column_of
 from validation.studies.bands import OTHER, about, cases, fitted_order, near
 from validation.studies.columns import known
 from validation.studies.declaration import Study
-from validation.studies.waves.measure import column_of
 from validation.theory import columns
 
 DDA = "dda"

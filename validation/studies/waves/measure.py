@@ -14,23 +14,10 @@ from numpy.typing import ArrayLike
 
 from validation.metrics.transform import Complex, spectrum
 from validation.runs.history import History
-from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene
+from validation.solvers.columns.names import column_of
 from validation.theory import waves
 from validation.theory.stepping import Stepping
-
-
-def column_of(scene: Scene) -> ColumnSection:
-    """Return the column of a scene of this study.
-
-    Raises
-    ------
-    ValueError
-        The scene has none.
-    """
-    if scene.column is None:
-        raise ValueError(f"{scene.name}: must have a column, got a block")
-    return scene.column
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,9 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.columns.names import column_of
 from validation.studies.bands import about, cases, fitted_order, near
-from validation.studies.waves.measure import Guide, column_of, joint_parts
+from validation.studies.waves.measure import Guide, joint_parts
 from validation.theory import waves
 
 EXACT = 1e-10  # of k: what a measured wavenumber must keep
