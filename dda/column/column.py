@@ -10,15 +10,16 @@ The springs are bonded, or contacts: unilateral ones open under pressure, fricti
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dda.model.arrays import Array
+from dda.model.checks import check_finite, check_not_negative, check_positive
+
 Motion = Literal["pressure", "shear"]
 SpringLaw = Literal["bonded", "unilateral", "frictional"]
 NEAR = 1e-9  # of the column's height: how near a joint must be to a face between blocks
@@ -43,14 +44,10 @@ class Layer:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("thickness", "density"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        check_positive(thickness=self.thickness, density=self.density)
         if not self.young > 0:
             raise ValueError(f"young: must be positive, got {self.young!r}")
-        if not math.isfinite(self.velocity):
-            raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
+        check_finite(velocity=self.velocity)
         if not -1 < self.poisson < 0.5:
             raise ValueError(f"poisson: must be above -1 and below 0.5, got {self.poisson!r}")
         if self.blocks < 1:
@@ -77,8 +74,7 @@ class Spring:
             raise ValueError(f"stiffness: must be positive, got {self.stiffness!r}")
         if not self.strength >= 0:
             raise ValueError(f"strength: must not be negative, got {self.strength!r}")
-        if not (math.isfinite(self.gap) and self.gap >= 0):
-            raise ValueError(f"gap: must be finite and not negative, got {self.gap!r}")
+        check_not_negative(gap=self.gap)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,14 +101,13 @@ class Column:
         """Check what the tables cannot."""
         if not self.layers:
             raise ValueError("layers: must be at least one, got none")
-        for field in ("glue", "impedance"):
-            value = getattr(self, field)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        if self.glue is not None:
+            check_positive(glue=self.glue)
+        if self.impedance is not None:
+            check_positive(impedance=self.impedance)
         if len({self.face_of(joint) for joint in self.joints}) < len(self.joints):
             raise ValueError("joints: must not share a height, got two at one")
-        if not (math.isfinite(self.gravity) and self.gravity >= 0):
-            raise ValueError(f"gravity: must be finite and not negative, got {self.gravity!r}")
+        check_not_negative(gravity=self.gravity)
         if self.law == "bonded":
             self._check_bonded()
         else:
@@ -159,10 +154,14 @@ class Column:
         """Whether the base moves as it is prescribed and carries the lowest block, by a spring or welded to it."""
         return self.impedance is None and not self.unsupported
 
+    def of_blocks(self, values: Iterable[float]) -> Array:
+        """Return the value of its layer for every block, from the base upwards."""
+        return np.repeat(list(values), [layer.blocks for layer in self.layers])
+
     @cached_property
     def heights(self) -> Array:
-        """Height of every block [m], from the base upwards."""
-        return np.repeat([x.thickness / x.blocks for x in self.layers], [x.blocks for x in self.layers])
+        """Height of every block [m]."""
+        return self.of_blocks(layer.thickness / layer.blocks for layer in self.layers)
 
     @cached_property
     def faces(self) -> Array:
@@ -177,17 +176,17 @@ class Column:
     @cached_property
     def densities(self) -> Array:
         """Density of every block [kg/m^3]."""
-        return np.repeat([layer.density for layer in self.layers], [layer.blocks for layer in self.layers])
+        return self.of_blocks(layer.density for layer in self.layers)
 
     @cached_property
     def moduli(self) -> Array:
         """Modulus of every block for the motion [Pa]."""
-        return np.repeat([layer.modulus(self.motion) for layer in self.layers], [x.blocks for x in self.layers])
+        return self.of_blocks(layer.modulus(self.motion) for layer in self.layers)
 
     @cached_property
     def velocities(self) -> Array:
         """Velocity of every block at t = 0 [m/s]."""
-        return np.repeat([layer.velocity for layer in self.layers], [layer.blocks for layer in self.layers])
+        return self.of_blocks(layer.velocity for layer in self.layers)
 
     @cached_property
     def contacts(self) -> list[Spring | None]:

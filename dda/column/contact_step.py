@@ -33,7 +33,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from dda.contact.dense import Vector
+from dda.contact.dense import Vector, copy
 from dda.contact.kernel import FOUND, NONE, ROUNDING
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.stepping.driver import OVERFLOW
@@ -156,14 +156,15 @@ def find_forces(
     """
     together = SWEEPS * (n + 1)
     solves = 0
+    slack = 0.0
     while True:
         solve_sticking(joints, first, n, q, force, work)
         solves += 1
-        if solves <= together:
-            wrong = update_all(joints, first, n, q, force, work)
-        else:
-            wrong = update_first(joints, first, n, q, force, work)
-        if wrong == 0:
+        if solves > together:  # blocks which touch in common flight have states that only rounding tells apart
+            slack = 0.0
+            for j in range(n + 1):
+                slack = max(slack, ROUNDING * abs(force[j]))
+        if update_states(joints, first, n, q, force, work, solves <= together, slack) == 0:
             return FOUND, solves
         if solves == limit:
             return LIMIT, solves
@@ -198,8 +199,18 @@ def solve_sticking(joints: JointLaws, first: int, n: int, q: Vector, force: Vect
             force[j] = (right[j] - coupling[j + 1] * force[j + 1]) / pivot[j]
 
 
-def update_all(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork) -> int:
-    """Set all states that disagree with forces and openings, and the forces at bounds; return how many disagreed."""
+def update_states(
+    joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork, together: bool, slack: float
+) -> int:
+    """Set the states that disagree with forces and openings, and the forces at bounds; return how many disagreed.
+
+    Parameters
+    ----------
+    together
+        Set all of them, else the first one alone.
+    slack
+        Force by which one that disagrees does so at least [Pa].
+    """
     coupling = joints.coupling
     tried = work.tried
     wrong = 0
@@ -209,48 +220,22 @@ def update_all(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, 
     for j in range(first, n):
         here = force[j]
         state = tried[j]
+        new = state
         if state == STICK:
-            if not joints.lower[j] < here < joints.upper[j]:
+            if not joints.lower[j] - slack < here < joints.upper[j] + slack:
                 new = bound_state(joints, j, here)
-                if new != STICK:
-                    wrong += 1
-                    set_state(joints, j, new, force, tried)
         else:
             opening = q[j] + joints.diagonal[j] * here + coupling[j] * below + coupling[j + 1] * force[j + 1]
             work.opening[j] = opening
-            if opening != 0 and (opening > 0) == (state == -SLIP):
-                wrong += 1
-                set_state(joints, j, alone(joints, j, here - opening / joints.diagonal[j]), force, tried)
+            if abs(opening) > slack * joints.diagonal[j] and (opening > 0) == (state == -SLIP):
+                new = alone(joints, j, here - opening / joints.diagonal[j])
+        if new != state:
+            wrong += 1
+            set_state(joints, j, new, force, tried)
+            if not together:
+                break
         below = here
     return wrong
-
-
-def update_first(joints: JointLaws, first: int, n: int, q: Vector, force: Vector, work: ColumnWork) -> int:
-    """Set the first state that disagrees by more than rounding; return whether there is one.
-
-    States that only rounding tells apart, as those of blocks which touch in common flight, agree with each other.
-    """
-    coupling = joints.coupling
-    largest = 0.0
-    for j in range(n + 1):
-        largest = max(largest, abs(force[j]))
-    slack = ROUNDING * largest
-    for j in range(first, n):
-        here = force[j]
-        state = work.tried[j]
-        if state == STICK:
-            if here < joints.lower[j] - slack or here > joints.upper[j] + slack:
-                set_state(joints, j, bound_state(joints, j, here), force, work.tried)
-                return 1
-        else:
-            opening = q[j] + joints.diagonal[j] * here + coupling[j + 1] * force[j + 1]
-            if j > 0:
-                opening += coupling[j] * force[j - 1]
-            work.opening[j] = opening
-            if abs(opening) > slack * joints.diagonal[j] and (opening > 0) == (state == -SLIP):
-                set_state(joints, j, alone(joints, j, here - opening / joints.diagonal[j]), force, work.tried)
-                return 1
-    return 0
 
 
 def bound_state(joints: JointLaws, j: int, force: float) -> int:
@@ -550,12 +535,6 @@ def copy_state(numbers: StepNumbers, source: ColumnState, target: ColumnState, s
     if step == 1 or numbers.alpha != numbers.delta / 2:
         copy(source.s, target.s)
         copy(source.se, target.se)
-
-
-def copy(source: Vector, target: Vector) -> None:
-    """Copy a vector."""
-    for i in range(len(source)):
-        target[i] = source[i]
 
 
 def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:

@@ -37,13 +37,13 @@ from dda.column.stepping import DISPLACEMENT, PRESSURE, Drive, column_names
 from dda.contact.dense import zeros
 from dda.contact.kernel import FOUND
 from dda.contact.unilateral import OPEN, SLIP, STICK
-from dda.one_block.solution import Result, step_times
+from dda.model.arrays import Array
+from dda.model.checks import check_count
+from dda.one_block.solution import Result, times_of
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import OUTCOMES
 from dda.stepping.energy import ENERGIES, GIVEN, SUMS
-
-Array = NDArray[np.float64]
 
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 COLUMN_OUTCOMES = OUTCOMES | {LIMIT: "solve limit exceeded"}
@@ -71,9 +71,9 @@ class ColumnOptions:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        for name, number in (("solve_limit", self.solve_limit), ("repeats", self.repeats)):
-            if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
-                raise ValueError(f"{name}: must be a positive integer, got {number!r}")
+        check_count(repeats=self.repeats)
+        if self.solve_limit is not None:
+            check_count(solve_limit=self.solve_limit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,26 +156,25 @@ def solve_contact_column(
     states = np.zeros((instants if options.states else 0, n), dtype=np.int8)
     solves, switches = zeros(instants, instants, dtype=np.int64)
     record = np.zeros((instants if options.energies else 0, RECORDED))
+    forcing = DriveSteps(*(np.array(part, dtype=float) for part in vars(drive).values()))
     ready = perf_counter()
     (reached, ended), _, how = run_loop(
         make_column_steps,
         (),
-        (numbers, blocks, joints, state, _room_for_state(n), _room(n), _steps_of(drive), observed),
+        (numbers, blocks, joints, state, _room_for_state(n), _room(n), forcing, observed),
         (values, states, solves, switches, record),
         instants * (PLAIN_STEP + n * PLAIN_BLOCK) * (PLAIN_ENERGIES if options.energies else 1.0) * options.repeats,
     )
     rows = slice(1, reached + 1)
     early = () if ended == FOUND else (f"{COLUMN_OUTCOMES[ended]} at step {reached + 1}",)
     return ColumnContactResult(
-        time=step_times(scheme, reached),
+        **times_of(scheme, reached, began, ready),
         columns=dict(zip(columns, values[rows].T + 0.0, strict=True)),
         unknowns=n + int(np.count_nonzero(blocks.stiffness)),
         nonzeros=3 * (n - numbers.first) - 2,
         factorisations=0,
         solves=int(solves.sum()),
         notes=(f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}", *early),
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
         outcome=COLUMN_OUTCOMES[ended],
         step_solves=solves[rows],
         step_switches=switches[rows],
@@ -286,11 +285,6 @@ def _room(n: int) -> ColumnWork:
 def _room_for_state(n: int) -> ColumnState:
     room: list[Any] = [*zeros(n, n, n, n, n, n, n, n, n + 1), np.zeros(n, dtype=np.int64)]
     return ColumnState(*room)
-
-
-def _steps_of(drive: Drive) -> DriveSteps:
-    parts = (drive.displacement, drive.velocity, drive.acceleration, drive.pressure)
-    return DriveSteps(*(np.array(part, dtype=float) for part in parts))
 
 
 # ---- start -----------------------------------------------------------------------------------------------------------
@@ -436,9 +430,9 @@ def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[f
     for name in columns:
         if name not in names:
             raise ValueError(f"columns: must be among {', '.join(names)}, got {name!r}")
-    rows = [_observed_column(column, name, heights) for name in columns]
-    kinds, places, weights = zip(*rows, strict=True) if rows else ((), (), ())
-    return Observed(np.array(kinds, dtype=np.int64), np.array(places, dtype=np.int64), np.array(weights, dtype=float))
+    rows = np.array([_observed_column(column, name, heights) for name in columns]).reshape(-1, 3)
+    kinds, places = rows[:, :2].T.astype(np.int64).copy()
+    return Observed(kinds, places, rows[:, 2].copy())
 
 
 def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tuple[int, int, float]:
@@ -457,13 +451,7 @@ def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tup
             return FORCES, block, 0.5
         return STRAIN, block, -modulus / column.heights[block]
     kind = {"force": FORCES, "gap": GAP, "slip": SLIDE}[part]
-    return kind, _contact_at(column, name, height), 0.0
-
-
-def _contact_at(column: Column, name: str, height: float) -> int:
-    """Return the number of the contact at a height."""
     for joint in column.joints:
-        face = column.face_of(joint)
         if abs(joint.height - height) <= NEAR * column.faces[-1]:
-            return face
+            return kind, column.face_of(joint), 0.0
     raise ValueError(f"heights: {name} needs a contact there, got {height!r} m")

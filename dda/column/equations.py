@@ -18,11 +18,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.column.column import Column
+from dda.model.arrays import Array
 
-Array = NDArray[np.float64]
 Face = tuple[int, ...]  # the unknowns that add up to its displacement: the lower face and the opening above it
 WIDTH = 2  # diagonals below the main one: a block couples two displacements and the opening between them
 
@@ -53,14 +52,12 @@ class Bands:
         if i >= j:
             self.rows[i - j, j] += value
 
-    def __matmul__(self, x: Array) -> Array:
-        """Return the product with one vector."""
-        y: Array = self.rows[0] * x
-        for offset in range(1, len(self.rows)):
-            part = self.rows[offset, : len(x) - offset]
-            y[offset:] += part * x[: len(x) - offset]
-            y[: len(x) - offset] += part * x[offset:]
-        return y
+    def first_column(self) -> Array:
+        """Return the first column."""
+        n = self.rows.shape[1]
+        column = np.zeros(n)
+        column[: WIDTH + 1] = self.rows[:n, 0]
+        return column
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +100,8 @@ class Equations:
 def equations(column: Column) -> Equations:
     """Return the equations of a column."""
     lower, upper, openings, size = _numbers(column)
-    M, K = Bands.zeros(size), Bands.zeros(size)
+    M = Bands.zeros(size)
+    K = Bands.zeros(size)
     masses = inertia(column.densities * column.heights)
     springs = stiffness(column.moduli / column.heights)
     for block in range(len(lower)):
@@ -127,7 +125,8 @@ def _numbers(column: Column) -> tuple[list[Face], list[Face], dict[int, int], in
     lower: list[Face] = []
     upper: list[Face] = []
     openings: dict[int, int] = {}
-    base, size = 0, 1
+    base = 0
+    size = 1
     for block, spring in enumerate(column.springs):
         face: Face = (base,)
         if spring is not None:
@@ -135,7 +134,8 @@ def _numbers(column: Column) -> tuple[list[Face], list[Face], dict[int, int], in
             face = (size,) if block == 0 and column.impedance is None else (base, size)
             size += 1
         lower.append(face)
-        base, size = size, size + 1
+        base = size
+        size = size + 1
         upper.append((base,))
     return lower, upper, openings, size
 

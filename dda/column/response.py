@@ -49,9 +49,11 @@ def column_response(
         If gg = 0 has no limit that is exact in time.
     """
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
-    W2, S = chosen(scheme, frequencies, exact), 1j * w if exact else velocity_factor(scheme, w)
+    W2 = chosen(scheme, frequencies, exact)
+    S = 1j * w if exact else velocity_factor(scheme, w)
     system = equations(column)
-    step, rows = Stepper(system, scheme), observers(system, columns, ())
+    step = Stepper(system, scheme)
+    rows = observers(system, columns, ())
     drive = np.zeros((len(w), 4), complex)
     drive[:, :3] = np.stack([np.ones_like(w), 1j * w, -w * w], axis=1) if at == "base" else 0.0
     drive[:, 3] = at == "top"

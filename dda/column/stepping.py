@@ -17,15 +17,16 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.column.column import Column
 from dda.column.equations import WIDTH, Bands, Equations, equations
-from dda.one_block.solution import Result, bound_overflow, step_times
-from dda.scheme.newmark import Scheme
+from dda.model.arrays import Array
+from dda.one_block.solution import Result, bound_overflow, times_of
+from dda.scheme.newmark import Scheme, correctors, dashpot_matrix, predictors
 
-Array = NDArray[np.float64]
-DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"  # of the top [m], on the base [Pa]
+# of the top [m], on the base [Pa]
+DISPLACEMENT = "displacement"
+PRESSURE = "contact_pressure"
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,18 +98,15 @@ def solve_column(
     with np.errstate(all="ignore"):
         histories = stepper.run(drive, observed) + 0.0
         overflow = bound_overflow(histories, 1.0)
-    ended = perf_counter()
     steps = histories.shape[1]
     return Result(
-        time=step_times(scheme, steps),
+        **times_of(scheme, steps, began, ready),
         columns=dict(zip(columns, histories, strict=True)),
         unknowns=stepper.M.rows.shape[1],
         nonzeros=int(np.count_nonzero(stepper.S.rows)),
         factorisations=1,
         solves=steps,
         notes=overflow,
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
     )
 
 
@@ -139,10 +137,11 @@ def observers(system: Equations, columns: Sequence[str], heights: Sequence[float
 def _base_pressure(system: Equations, rows: Observers, number: int) -> None:
     """Write the row of the base's force on the column: the told base's equation, or z (2 v - V) of the half-space."""
     if system.told:
-        first = np.eye(1, system.size)[0]
-        rows.D[number], rows.A[number] = system.K @ first, system.M @ first
+        rows.D[number] = system.K.first_column()
+        rows.A[number] = system.M.first_column()
     else:
-        rows.V[number, 0], rows.drive[number, 1] = -system.dashpot, 2 * system.dashpot
+        rows.V[number, 0] = -system.dashpot
+        rows.drive[number, 1] = 2 * system.dashpot
 
 
 def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
@@ -154,50 +153,44 @@ def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
     return system.row(block, spring, -spring)
 
 
-def effective_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
-    """Return M + delta dt C + alpha dt^2 K by diagonals."""
-    return M + scheme.delta * scheme.step * C + scheme.alpha * scheme.step**2 * K
-
-
-def predictors(scheme: Scheme, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
-    """Return D* and V* of eq. (6) and (7)."""
-    dt = scheme.step
-    displaced = D + scheme.gg * dt * V + dt**2 * (0.5 - scheme.alpha) * A
-    return displaced, scheme.gg * V + dt * (1 - scheme.delta) * A
-
-
 class Stepper:
     """The scheme on the equations of a column; of a base that is told only its effect on the others is left."""
 
     def __init__(self, system: Equations, scheme: Scheme) -> None:
         """Form the matrices of the free unknowns and factorise the one of the step."""
-        self.system, self.scheme = system, scheme
+        self.system = system
+        self.scheme = scheme
         first = int(system.told)
-        self.first, self.M, self.K = first, Bands(system.M.rows[:, first:]), Bands(system.K.rows[:, first:])
+        self.first = first
+        self.M = Bands(system.M.rows[:, first:])
+        self.K = Bands(system.K.rows[:, first:])
         self.C = Bands.zeros(system.size - first)
         self.C.add(0, 0, system.dashpot)
-        self.S = Bands(effective_matrix(scheme, self.M.rows, self.C.rows, self.K.rows))
+        self.S = Bands(dashpot_matrix(scheme, self.M.rows, self.C.rows, self.K.rows))
         self.solve = _factorised(self.S)
         base = np.eye(1, system.size)[0]
         top = system.row(len(system.lower) - 1, 0.0, -1.0)
         dashed = 2 * system.dashpot * base
-        parts = (-(system.K @ base), dashed, -(system.M @ base), top)
+        parts = (-system.K.first_column(), dashed, -system.M.first_column(), top)
         weights = np.array([first, 1 - first, first, 1.0])
         self.push = (np.array(parts).T * weights)[first:]  # (unknowns, 4): load of each part of the drive
 
     def run(self, drive: Drive, rows: Observers) -> Array:
         """Return the observed rows at every step, (rows, steps)."""
-        s, push = self.scheme, self.push
+        s = self.scheme
+        push = self.push
         parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
         by_state = np.hstack([matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A)])
-        K, C = _product(self.K), _product(self.C)
+        K = _product(self.K)
+        C = _product(self.C)
         D = np.zeros(len(push))
-        V, A = np.zeros_like(D), self._start(push @ parts[0])
+        V = np.zeros_like(D)
+        A = self._start(push @ parts[0])
         observed_values = np.empty((len(by_state), len(parts) - 1))
         for n, part in enumerate(parts[1:]):
             D, V = predictors(s, D, V, A)
             A = self.solve(push @ part - C(V) - K(D))
-            D, V = D + s.alpha * s.step**2 * A, V + s.delta * s.step * A
+            D, V = correctors(s, D, V, A)
             observed_values[:, n] = by_state @ np.concatenate((D, V, A))
         return observed_values + self.told(rows) @ parts[1:].T
 

@@ -46,11 +46,16 @@ def quadratic(A: Matrix, x: Vector, n: int) -> float:
     return total
 
 
-def copy_matrix(source: Matrix, target: Matrix, n: int) -> None:
-    """Write the first n rows and columns of a matrix."""
-    for i in range(n):
-        for j in range(n):
-            target[i][j] = source[i][j]
+def copy(source: Vector, target: Vector) -> None:
+    """Write a vector."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+def copy_matrix(source: Matrix, target: Matrix) -> None:
+    """Write a matrix."""
+    for i in range(len(source)):
+        copy(source[i], target[i])
 
 
 def scale_of(diagonal: float) -> float:

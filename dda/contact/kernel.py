@@ -35,16 +35,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.dense import Matrix, Vector, dot, eliminate, scale_of, zeros
+from dda.contact.dense import Matrix, Vector, copy, dot, eliminate, scale_of, zeros
 from dda.contact.unilateral import LAGGED, OPEN, SLIP, STICK, Unilateral
+from dda.model.arrays import Array
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 States = Any  # (n,) array, or a list of ints
 
 Flexible = Any  # `Flexibility`, or what has its fields
 
-FOUND, NONE, SEVERAL = 0, 1, 2
+FOUND = 0
+NONE = 1
+SEVERAL = 2
 FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent contact states"}
 
 ROUNDING = 1e-12  # of the limit, by which |T| of a sticking contact may exceed it
@@ -199,8 +201,7 @@ def find_contacts(
         Room for the equations.
     """
     n = len(before.gap)
-    for i in range(n):
-        work.tried[i] = before.state[i]
+    copy(before.state, work.tried)
     if shear_law is not None:
         if shear_law.lagged:
             return lagged(law, shear_law, before, free, flexible, after, work)
@@ -282,8 +283,7 @@ def one_by_one(
 ) -> tuple[int, int]:
     """Set the first contact that disagrees, alone, until all agree or states come back."""
     n = len(before.gap)
-    for i in range(n):
-        work.saved[i] = work.tried[i]
+    copy(work.tried, work.saved)
     solves = law.limit
     changes = 0
     next_save = 1
@@ -297,8 +297,7 @@ def one_by_one(
             return NONE, solves
         if changes == next_save:  # Brent: of any circle the states of some power of two are met again
             next_save *= 2
-            for i in range(n):
-                work.saved[i] = work.tried[i]
+            copy(work.tried, work.saved)
 
 
 def all_equal(states: States, saved: States, n: int) -> bool:
@@ -382,14 +381,16 @@ def lagged(
     all the more the smaller the step. Dead bands (`Unilateral.band`) are another matter, and make it worse.
     """
     n = len(before.gap)
+    copy(before.state, work.tried)
     for i in range(n):
-        work.tried[i] = before.state[i]
         work.held[i] = shear_limit(shear_law, before.normal[i])
     for solve in range(1, law.limit + 1):
         trial(law, shear_law, before, free, flexible, after, work)
         same = True
         for i in range(n):
-            state = lagged_state(law, shear_law, before, after, i)
+            # its own movement within the step decides whether a contact slips on
+            moved = after.slipped[i] + after.stretch[i] - before.stretch[i]
+            state = agreed_state(law, shear_law, after.state[i], after.gap[i], after.normal[i], after.shear[i], moved)
             if (state == OPEN) != (work.tried[i] == OPEN):
                 same = False
             work.tried[i] = state
@@ -399,12 +400,6 @@ def lagged(
                 restart_reference(before, after, i, work.tried[i])
             return FOUND, solve
     return NONE, law.limit
-
-
-def lagged_state(law: Law, shear_law: ShearLaw, before: Contacts, after: Contacts, i: int) -> int:
-    """Return the state of a contact after a solve; its own movement within the step decides whether it slips on."""
-    moved = after.slipped[i] + after.stretch[i] - before.stretch[i]
-    return agreed_state(law, shear_law, after.state[i], after.gap[i], after.normal[i], after.shear[i], moved)
 
 
 def restart_reference(before: Contacts, after: Contacts, i: int, state: int) -> None:
@@ -560,13 +555,31 @@ def solve_forces(
     if shear_law is not None:
         if shear_law.slips:
             add_friction(shear_law, before, flexible, closed, active, work)
-        for k in range(closing):  # a unit of force in the equation of a closing contact; T makes dN/dbeta of it
-            unit_push(k, paired, closed, active, work)
+        for k in range(closing):  # a unit of force in the shear equation of a closing contact; T makes dN/dbeta of it
+            for row in range(size):
+                work.right[row][1 + k] = 0.0
+            if paired:
+                work.right[2][1 + k] = 0.5
+                work.right[3][1 + k] = -1.0 if work.closing[k] == 0 else 1.0
+            else:
+                for j in range(active):
+                    if work.active[j] == work.closing[k]:
+                        work.right[closed + j][1 + k] = 1.0
     eliminate(work.A, work.right, work.scale, size, 1 + closing)
     for place in range(closed):
-        after.normal[work.closed[place]] = work.right[place][0]
+        i = work.closed[place]
+        after.normal[i] = work.right[place][0]
+        after.shear[i] = 0.0
+        if shear_law is not None and shear_law.slips and abs(work.tried[i]) == SLIP:
+            limit = friction_of(shear_law) * work.right[place][0] + work.held[i]
+            after.shear[i] = 0.0 - limit if work.tried[i] > 0 else limit
     if shear_law is not None:
-        write_shear(shear_law, paired, closed, active, after, work)
+        if paired:
+            after.shear[0] = work.right[2][0] / 2 - work.right[3][0]
+            after.shear[1] = work.right[2][0] / 2 + work.right[3][0]
+        else:
+            for k in range(active):
+                after.shear[work.closed[work.active[k]]] = work.right[closed + k][0]
         for k in range(closing):
             beta = work.beta[work.closing[k]]
             T = after.shear[work.closed[work.closing[k]]]
@@ -655,35 +668,3 @@ def add_friction(
 def friction_of(shear_law: ShearLaw) -> float:
     """Return tan(phi) by which T of a slipping contact follows its N beside `work.held`, which may hold the limit."""
     return 0.0 if shear_law.lagged else shear_law.friction
-
-
-def unit_push(k: int, paired: bool, closed: int, active: int, work: Work) -> None:
-    """Write the right-hand side of a unit of force in the shear equation of a closing contact."""
-    place = work.closing[k]
-    for row in range(closed + active):
-        work.right[row][1 + k] = 0.0
-    if paired:
-        work.right[2][1 + k] = 0.5
-        work.right[3][1 + k] = -1.0 if place == 0 else 1.0
-        return
-    for j in range(active):
-        if work.active[j] == place:
-            work.right[closed + j][1 + k] = 1.0
-
-
-def write_shear(shear_law: ShearLaw, paired: bool, closed: int, active: int, after: Contacts, work: Work) -> None:
-    """Write T of the closed contacts, from their N and the solution of their equations."""
-    right = work.right
-    friction = friction_of(shear_law)
-    for place in range(closed):
-        i = work.closed[place]
-        after.shear[i] = 0.0
-        if shear_law.slips and abs(work.tried[i]) == SLIP:
-            limit = friction * right[place][0] + work.held[i]
-            after.shear[i] = 0.0 - limit if work.tried[i] > 0 else limit
-    if paired:
-        after.shear[0] = right[2][0] / 2 - right[3][0]
-        after.shear[1] = right[2][0] / 2 + right[3][0]
-        return
-    for k in range(active):
-        after.shear[work.closed[work.active[k]]] = right[closed + k][0]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from dda.model.arrays import Array
 from dda.model.block import Block
+from dda.model.checks import check_positive
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,9 @@ class Contact:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("stiffness", "shear_stiffness"):
-            value = getattr(self, field)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        check_positive(stiffness=self.stiffness)
+        if self.shear_stiffness is not None:
+            check_positive(shear_stiffness=self.shear_stiffness)
 
     @property
     def normal(self) -> float:

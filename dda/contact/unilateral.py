@@ -23,8 +23,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-CONSISTENT, LAGGED = "consistent", "lagged"
-OPEN, STICK, SLIP = 0, 1, 2  # of a corner with friction; SLIP towards M to N, -SLIP against it
+from dda.model.checks import check_not_negative
+
+CONSISTENT = "consistent"
+LAGGED = "lagged"
+# of a corner with friction; SLIP towards M to N, -SLIP against it
+OPEN = 0
+STICK = 1
+SLIP = 2
 
 
 @dataclass(frozen=True)
@@ -53,27 +59,19 @@ class Unilateral:
         """Check the ranges."""
         if not self.stiffness > 0:
             raise ValueError(f"stiffness: must be positive, got {self.stiffness!r}")
-        for field in ("shear", "gap"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{field}: must be finite and not negative, got {value!r}")
+        check_not_negative(shear=self.shear, gap=self.gap)
         if len(self.band) != 2 or not all(math.isfinite(width) and width >= 0 for width in self.band):
             raise ValueError(f"band: must be two finite lengths that are not negative, got {self.band!r}")
         if math.isinf(self.stiffness) and self.band[1] > 0:
             raise ValueError(f"band: a rigid stop must open at once (band[1] = 0), got {self.band!r}")
-        self._check_friction()
-
-    def _check_friction(self) -> None:
-        if not (math.isfinite(self.cohesion) and self.cohesion >= 0):
-            raise ValueError(f"cohesion: must be finite and not negative, got {self.cohesion!r}")
+        check_not_negative(cohesion=self.cohesion)
         if self.rules not in (CONSISTENT, LAGGED):
             raise ValueError(f"rules: must be {CONSISTENT} or {LAGGED}, got {self.rules!r}")
         if self.friction is None:
             if self.cohesion or self.rules == LAGGED:
                 raise ValueError(f"friction: must be given with cohesion or {LAGGED} rules, got None")
             return
-        if not (math.isfinite(self.friction) and self.friction >= 0):
-            raise ValueError(f"friction: must be finite and not negative, got {self.friction!r}")
+        check_not_negative(friction=self.friction)
         if self.shear == 0:
             raise ValueError("shear: must be positive with friction, got 0")
         if self.band[1] > 0 and self.rules == CONSISTENT:

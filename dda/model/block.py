@@ -16,6 +16,11 @@ from dda.model.material import Material
 from dda.model.polygon import Section, checked_polygon, section
 
 
+def displacement_rows(x: float, y: float) -> Array:
+    """Return the 2 x 6 matrix of eq. (3) at a place from the centroid [m]."""
+    return np.array([[1.0, 0.0, -y, x, 0.0, y / 2], [0.0, 1.0, x, 0.0, y, x / 2]])
+
+
 @dataclass(frozen=True, eq=False)
 class Block:
     """A homogeneous polygonal block of unit thickness.
@@ -42,6 +47,13 @@ class Block:
     def corners(self) -> Array:
         """The corners as a read-only (n, 2) array [m]."""
         return np.asarray(self.vertices)
+
+    @property
+    def turns(self) -> Array:
+        """Cross product of every edge and the next one, positive where they turn left [m^2]."""
+        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        following = np.roll(edges, -1, axis=0)
+        return np.asarray(edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0])
 
     @cached_property
     def section(self) -> Section:
@@ -83,15 +95,19 @@ class Block:
 
     def T(self, x: float, y: float) -> Array:
         """Return the 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""
-        X, Y = x - self.section.centroid[0], y - self.section.centroid[1]
-        return np.array([[1.0, 0.0, -Y, X, 0.0, Y / 2], [0.0, 1.0, X, 0.0, Y, X / 2]])
+        X = x - self.section.centroid[0]
+        Y = y - self.section.centroid[1]
+        return displacement_rows(X, Y)
 
     def mass(self) -> Array:
         """Return the 6 x 6 inertia matrix, eq. (15), (16) with (3,6) and (6,6) corrected.
 
         Entry (3,6) is rho (s1 - s2)/2 and (6,6) is rho (s1 + s2)/4.
         """
-        s, s1, s2, s3 = self.section.area, self.section.s1, self.section.s2, self.section.s3
+        s = self.section.area
+        s1 = self.section.s1
+        s2 = self.section.s2
+        s3 = self.section.s3
         M = np.zeros((6, 6))
         M[0, 0] = M[1, 1] = s
         M[2:, 2:] = [

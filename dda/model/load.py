@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array
 from dda.model.block import Block
+from dda.model.checks import check_finite, check_not_negative
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,8 @@ class BaseMotion:
 
     def __post_init__(self) -> None:
         """Check the record."""
-        time, moved = np.asarray(self.time, float), np.asarray(self.displacement, float)
+        time = np.asarray(self.time, float)
+        moved = np.asarray(self.displacement, float)
         if time.ndim != 1 or len(time) < 1 or moved.shape != (len(time), 2):
             raise ValueError(f"displacement: must be one (x, y) for each instant, got shape {moved.shape}")
         if not (np.all(np.isfinite(time)) and np.all(np.isfinite(moved))):
@@ -66,14 +68,12 @@ class Load:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        for field in ("pressure", "eccentricity", "traction", "gravity"):
-            value = getattr(self, field)
-            if not math.isfinite(value):
-                raise ValueError(f"{field}: must be finite, got {value!r}")
+        check_finite(
+            pressure=self.pressure, eccentricity=self.eccentricity, traction=self.traction, gravity=self.gravity
+        )
         if not -90 < self.slope < 90:
             raise ValueError(f"slope: must be between -90 and 90 degrees, got {self.slope!r}")
-        if not (math.isfinite(self.ramp) and self.ramp >= 0):
-            raise ValueError(f"ramp: must be finite and not negative, got {self.ramp!r}")
+        check_not_negative(ramp=self.ramp)
 
     @property
     def falling(self) -> tuple[float, float]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from dda.model.checks import check_positive
 
 Hypothesis = Literal["plane stress", "plane strain"]
 
@@ -32,10 +33,7 @@ class Material:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("density", "young"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        check_positive(density=self.density, young=self.young)
         if self.hypothesis not in ("plane stress", "plane strain"):
             raise ValueError(f'hypothesis: must be "plane stress" or "plane strain", got {self.hypothesis!r}')
         strain = self.hypothesis == "plane strain"
@@ -79,5 +77,6 @@ class Material:
 
         Eq. (21) with its missing factor E / (1 - mu^2).
         """
-        C, c = self.constrained_modulus, self.contraction
+        C = self.constrained_modulus
+        c = self.contraction
         return np.array([[C, c * C, 0.0], [c * C, C, 0.0], [0.0, 0.0, self.shear_modulus]])

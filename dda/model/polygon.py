@@ -135,9 +135,14 @@ def _touches_itself(points: Array) -> bool:
     following = np.roll(points, -1, axis=0)
     i, j = np.triu_indices(n, 1)
     apart = (j - i > 1) & ~((i == 0) & (j == n - 1))
-    a, b, c, d = points[i], following[i], points[j], following[j]
-    abc, abd = _orientation(a, b, c), _orientation(a, b, d)
-    cda, cdb = _orientation(c, d, a), _orientation(c, d, b)
+    a = points[i]
+    b = following[i]
+    c = points[j]
+    d = following[j]
+    abc = _orientation(a, b, c)
+    abd = _orientation(a, b, d)
+    cda = _orientation(c, d, a)
+    cdb = _orientation(c, d, b)
     crossing = (abc * abd < 0) & (cda * cdb < 0)
     touching = (abc == 0) & _within(a, b, c) | (abd == 0) & _within(a, b, d)
     touching |= (cda == 0) & _within(c, d, a) | (cdb == 0) & _within(c, d, b)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from dda.contact.kernel import FOUND
 from dda.contact.unilateral import OPEN, SLIP
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, step_times
+from dda.one_block.solution import Result, times_of
 from dda.scheme.newmark import Scheme
 from dda.stepping.driver import OUTCOMES, History
 
@@ -106,13 +105,25 @@ class ContactResult(Result):
         with np.errstate(all="ignore"):
             return self.balance()
 
-    normal_force_m, normal_force_n = at_corner("normal", 0), at_corner("normal", 1)  # N, away from the base [N]
-    shear_force_m, shear_force_n = at_corner("shear", 0), at_corner("shear", 1)  # T, from M to N [N]
-    gap_m, gap_n = at_corner("gap", 0), at_corner("gap", 1)  # w, negative when pressed [m]
-    slide_m, slide_n = at_corner("slide", 0), at_corner("slide", 1)  # s [m]
-    shear_m, shear_n = at_corner("stretch", 0), at_corner("stretch", 1)  # s - r [m]
-    closed_m, closed_n = at_corner("closed", 0), at_corner("closed", 1)
-    state_m, state_n = at_corner("states", 0), at_corner("states", 1)
+    # N, away from the base [N]
+    normal_force_m = at_corner("normal", 0)
+    normal_force_n = at_corner("normal", 1)
+    # T, from M to N [N]
+    shear_force_m = at_corner("shear", 0)
+    shear_force_n = at_corner("shear", 1)
+    # w, negative when pressed [m]
+    gap_m = at_corner("gap", 0)
+    gap_n = at_corner("gap", 1)
+    # s [m]
+    slide_m = at_corner("slide", 0)
+    slide_n = at_corner("slide", 1)
+    # s - r [m]
+    shear_m = at_corner("stretch", 0)
+    shear_n = at_corner("stretch", 1)
+    closed_m = at_corner("closed", 0)
+    closed_n = at_corner("closed", 1)
+    state_m = at_corner("states", 0)
+    state_n = at_corner("states", 1)
 
 
 def run_fields(
@@ -129,13 +140,10 @@ def run_fields(
     """
     steps = len(history.solves) - 1
     early = () if ended == FOUND else (f"{OUTCOMES[ended]} at step {steps + 1}",)
-    began, ready = clock
     return {
-        "time": step_times(scheme, steps),
+        **times_of(scheme, steps, *clock),
         "solves": int(history.solves.sum()),
         "notes": (*notes, *early),
-        "setup_seconds": ready - began,
-        "stepping_seconds": perf_counter() - ready,
         "outcome": OUTCOMES[ended],
         "history": history,
         "step_solves": history.solves[1:],

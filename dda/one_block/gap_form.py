@@ -20,13 +20,13 @@ through the inertia alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.springs import Contact, base_directions
-from dda.model.arrays import Array
+from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
@@ -43,9 +43,6 @@ COLUMNS = (
     "shear_strain",
 )
 D_COLUMNS = ("horizontal_displacement", "displacement", "rotation", "strain_x", "strain_y", "shear_strain")  # of D
-# An integral below this share of its terms is the rounding of a symmetric shape's exact zero:
-# each term carries a few roundings, and a polygon adds a handful of terms.
-_ROUNDING = 64 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +92,8 @@ def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) ->
     start = block.edge(base)[0]
     local = _base_frame(block, tangent, start, a)
     integrals = _without_rounding(area_integrals(local))
-    c, weight = block.material.contraction, block.material.density * load.gravity
+    c = block.material.contraction
+    weight = block.material.density * load.gravity
     Q = _to_block_unknowns(integrals, c, tangent)
     return GapForm(
         UNKNOWNS,
@@ -115,16 +113,11 @@ def _base_frame(block: Block, tangent: Array, start: Array, a: float) -> Array:
     return np.column_stack([(tx * x + ty * y) - a / 2, tx * y - ty * x])
 
 
-def _zero_below(value: float, scale: float) -> float:
-    """Return the value, or exact zero where it is no more than the rounding of its terms."""
-    return 0.0 if abs(value) <= _ROUNDING * scale else value
-
-
 def _without_rounding(i: AreaIntegrals) -> AreaIntegrals:
     """Return the integrals with the zeros of a symmetric shape made exact."""
-    x = _zero_below(i.x, float(np.sqrt(i.area * i.xx)))
-    xy = _zero_below(i.xy, float(np.sqrt(i.xx * i.yy)))
-    return AreaIntegrals(i.area, x, i.y, i.xx, i.yy, xy)
+    scales = np.sqrt([i.area * i.xx, i.xx * i.yy])
+    x, xy = without_rounding([i.x, i.xy], scales).tolist()
+    return replace(i, x=x, xy=xy)
 
 
 def _inertia(i: AreaIntegrals, c: float) -> Array:
@@ -149,7 +142,8 @@ def _inertia(i: AreaIntegrals, c: float) -> Array:
 
 def _stiffness(material: Material, contact: Contact, area: float, a: float) -> Array:
     """Return the diagonal of the stiffness in (U, w, s, ex, e2, gxy)."""
-    pn, ps = contact.normal, contact.shear
+    pn = contact.normal
+    ps = contact.shear
     return np.array(
         [
             2 * ps,
@@ -170,15 +164,16 @@ def _load(local: Array, top: int, tangent: Array, c: float, load: Load) -> Array
     pressed = pressed_part(start, end, load.eccentricity)
     part = ends if load.eccentricity == 0 else tuple(turned.T @ point for point in pressed)
     extent = np.max(np.abs(local), axis=0)
-    down, right = -turned[1], turned[0]
+    down = -turned[1]
+    right = turned[0]
     return _edge(part, extent, load.pressure * down, c) + _edge(ends, extent, load.traction * right, c)
 
 
 def _edge(ends: tuple[Array, ...], extent: Array, traction: Array, c: float) -> Array:
     """Return the load of a uniform traction (local directions) on a straight part of the outline."""
-    x, y = (ends[0] + ends[1]) / 2
+    x, y = without_rounding((ends[0] + ends[1]) / 2, extent)
     force = float(np.hypot(*(ends[1] - ends[0]))) * traction
-    return _loads(1.0, _zero_below(x, extent[0]), _zero_below(y, extent[1]), force, c)
+    return _loads(1.0, x, y, force, c)
 
 
 def _gravity(i: AreaIntegrals, weight: float, falling: tuple[float, float], tangent: Array, c: float) -> Array:
@@ -206,7 +201,8 @@ def _translation(tangent: Array, load: Load) -> Array:
 
 def _to_block_unknowns(i: AreaIntegrals, c: float, tangent: Array) -> Array:
     """Return the 6 x 6 matrix Q of D = Q x, D in global directions about the centroid."""
-    X, Y = i.x / i.area, i.y / i.area
+    X = i.x / i.area
+    Y = i.y / i.area
     tx, ty = tangent
     u = np.array([1.0, 0.0, -Y, X, 0.0, Y])
     v = np.array([0.0, 1.0, X, -c * Y, Y, 0.0])

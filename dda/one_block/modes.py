@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import spectral, viscous
-from dda.scheme.newmark import Scheme, effective_matrix, modal_step, viscosity
+from dda.scheme.newmark import Scheme, correctors, effective_matrix, modal_step, predictors, viscosity
 
 
 @dataclass(frozen=True)
@@ -78,18 +78,20 @@ def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) 
     """
     form = model.gap_form if full else model.gap_form.reduced()
     M, k, _ = _scaled(form, scheme)
-    n, K = len(k), np.diag(k)
+    n = len(k)
+    K = np.diag(k)
     C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * K  # dt C
     D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
-    displacement = D + scheme.gg * V + (0.5 - scheme.alpha) * A
-    velocity = scheme.gg * V + (1 - scheme.delta) * A
+    unit = replace(scheme, step=1.0)
+    displacement, velocity = predictors(unit, D, V, A)
     A1 = -np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement)
-    return np.vstack([displacement + scheme.alpha * A1, velocity + scheme.delta * A1, A1])
+    return np.vstack([*correctors(unit, displacement, velocity, A1), A1])
 
 
 def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
     """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
-    k, F = scheme.step**2 * form.K, scheme.step**2 * form.F
+    k = scheme.step**2 * form.K
+    F = scheme.step**2 * form.F
     diagonal = effective_matrix(scheme, np.diag(form.M), k)
     scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
     return scale[:, None] * form.M * scale, scale * k * scale, scale * F

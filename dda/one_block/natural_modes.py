@@ -68,7 +68,8 @@ def _rotate(A: list[list[float]], V: list[list[float]], i: int, j: int) -> None:
     t = math.copysign(1.0, theta) / (abs(theta) + math.hypot(1.0, theta))
     c = 1 / math.hypot(1.0, t)
     s = t * c
-    a_ii, a_jj = A[i][i] - t * A[i][j], A[j][j] + t * A[i][j]
+    a_ii = A[i][i] - t * A[i][j]
+    a_jj = A[j][j] + t * A[i][j]
     for row in A:
         row[i], row[j] = c * row[i] - s * row[j], s * row[i] + c * row[j]
     for B in (A, V):
@@ -76,5 +77,6 @@ def _rotate(A: list[list[float]], V: list[list[float]], i: int, j: int) -> None:
             [c * x - s * y for x, y in zip(B[i], B[j], strict=True)],
             [s * x + c * y for x, y in zip(B[i], B[j], strict=True)],
         )
-    A[i][i], A[j][j] = a_ii, a_jj
+    A[i][i] = a_ii
+    A[j][j] = a_jj
     A[i][j] = A[j][i] = 0.0

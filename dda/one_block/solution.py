@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from dda.model.arrays import Array
+from dda.model.checks import check_count, check_share
 from dda.model.load import BaseMotion, Load, at_once, load_share
 from dda.one_block.gap_form import COLUMNS, GapForm
 from dda.one_block.natural_modes import ModalForm, modal_form
@@ -88,17 +90,14 @@ def solve(
         if model.load.motion is not None:
             observed += _carried(model.load.motion, scheme, modal, rows, columns, steps)
             overflow = bound_overflow(observed, 1.0)
-    ended = perf_counter()
     return Result(
-        time=step_times(scheme, steps),
+        **times_of(scheme, steps, began, ready),
         columns=dict(zip(columns, observed, strict=True)),
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
         solves=steps if stepped else 0,
         notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked", *overflow),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
     )
 
 
@@ -135,7 +134,8 @@ def solve_adaptive(
     check_request(steps, [name for name in columns if name not in ADAPTIVE_COLUMNS])
     _check_adaptive(model, scheme, floor)
     began = perf_counter()
-    form, size = model.gap_form if full else model.gap_form.reduced(), model.load_size
+    form = model.gap_form if full else model.gap_form.reduced()
+    size = model.load_size
     with np.errstate(all="ignore"):
         modal = modal_form(form)
         ready = perf_counter()
@@ -145,21 +145,18 @@ def solve_adaptive(
     extra_columns = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
     every = dict(zip(COLUMNS, observed, strict=True)) | extra_columns
     return Result(
-        time=step_times(scheme, steps),
+        **times_of(scheme, steps, began, ready),
         columns={name: every[name] for name in columns},
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
         solves=steps,
         notes=(*_savings(form), f"stepped: self-adaptive damping, discount at least {floor:g}", *overflow),
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
     )
 
 
 def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
-    if not 0 <= floor <= 1:
-        raise ValueError(f"floor: must be between 0 and 1, got {floor!r}")
+    check_share(floor=floor)
     at_once(model.load, "self-adaptive damping")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
@@ -203,8 +200,7 @@ def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, b
 
 def check_request(steps: int, columns: Sequence[str]) -> None:
     """Raise ValueError unless steps is a positive integer and every column is known."""
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
-        raise ValueError(f"steps: must be a positive integer, got {steps!r}")
+    check_count(steps=steps)
     for name in columns:
         if name not in COLUMNS:
             raise ValueError(f"columns: must be among {', '.join(COLUMNS)}, got {name!r}")
@@ -214,6 +210,15 @@ def check_damping(scheme: Scheme, moving: bool) -> None:
     """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
     if scheme.damped and moving:
         raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
+
+
+def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str, Any]:
+    """Return the times of a result: of its steps, and what set-up and steps took, the last ones ending now [s]."""
+    return {
+        "time": step_times(scheme, steps),
+        "setup_seconds": ready - began,
+        "stepping_seconds": perf_counter() - ready,
+    }
 
 
 def step_times(scheme: Scheme, steps: int) -> Array:

@@ -14,7 +14,7 @@ from time import perf_counter
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, bound_overflow, check_request, step_times
+from dda.one_block.solution import Result, bound_overflow, check_request, times_of
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme.newmark import Scheme
 
@@ -63,15 +63,13 @@ def solve_textbook(
     observed = np.array([states[:, _STATE[name]] if name in _STATE else still for name in columns])
     notes = bound_overflow(observed, model.load.pressure)
     return Result(
-        time=step_times(scheme, steps),
+        **times_of(scheme, steps, began, ready),
         columns=dict(zip(columns, observed, strict=True)),
         unknowns=3,
         nonzeros=int(np.count_nonzero(recursion.K)),
         factorisations=1,
         solves=steps,
         notes=notes,
-        setup_seconds=ready - began,
-        stepping_seconds=perf_counter() - ready,
     )
 
 
@@ -81,23 +79,20 @@ class _Recursion:
     def __init__(self, model: TwoBlockModel, scheme: Scheme) -> None:
         """Form the matrix of eq. (31) and its inverse."""
         self.scheme = scheme
-        self.q, self.p = model.load.pressure, model.contact.normal
-        extent = np.ptp(model.block.corners, axis=0)
-        self.width, self.height = float(extent[0]), float(extent[1])
-        self.area = self.width * self.height
+        self.q = model.load.pressure
+        self.p = model.contact.normal
+        p = self.p
+        b, h = np.ptp(model.block.corners, axis=0).tolist()
+        self.width = b
+        self.height = h
+        self.area = b * h
         self.C = model.block.material.elasticity()[:2, :2]
-        mass = model.block.material.density * self.area
-        self.M = mass * np.array([1.0, self.width**2 / 12, self.height**2 / 12])
-        self.K = self._matrix(model.contact.shear)
+        self.M = model.block.material.density * self.area * np.array([1.0, b**2 / 12, h**2 / 12])
+        self.K = np.diag(self.M / (scheme.alpha * scheme.step**2))
+        shear = model.contact.shear * b * b / 2
+        self.K += np.array([[2 * p, 0.0, -p * h], [0.0, shear, 0.0], [-p * h, 0.0, p * h * h / 2]])
+        self.K[1:, 1:] += self.area * self.C
         self.inverse = np.linalg.inv(self.K)
-
-    def _matrix(self, shear: float) -> Array:
-        """Return the matrix of eq. (31)."""
-        p, b, h = self.p, self.width, self.height
-        K = np.diag(self.M / (self.scheme.alpha * self.scheme.step**2))
-        K += np.array([[2 * p, 0.0, -p * h], [0.0, shear * b * b / 2, 0.0], [-p * h, 0.0, p * h * h / 2]])
-        K[1:, 1:] += self.area * self.C
-        return K
 
     def _force(self, stretch: float, stress: Array) -> Array:
         """Return load, spring and initial-stress parts of eq. (32); stretch is v_M + v_N [m]."""
@@ -108,24 +103,24 @@ class _Recursion:
 
     def run(self, steps: int) -> Array:
         """Return v, ex, ey and the contact pressure of every step, (steps, 4)."""
-        alpha, dt = self.scheme.alpha, self.scheme.step
-        stretch, stress = 0.0, np.zeros(2)
+        s = self.scheme
+        dt = s.step
+        stretch = 0.0
+        stress = np.zeros(2)
         D, V, A = np.zeros((3, 3))
-        if self.scheme.start == "consistent":
+        if s.start == "consistent":
             A = self._force(0.0, stress) / self.M
         states = np.empty((steps, 4))
         for n in range(steps):
-            inertia = self.scheme.gg * V / (alpha * dt) + (1 / (2 * alpha) - 1) * A
+            inertia = s.gg * V / (s.alpha * dt) + (1 / (2 * s.alpha) - 1) * A
             dD = self.inverse @ (self._force(stretch, stress) + self.M * inertia)
-            V, A = self._velocity(dD, V, A), dD / (alpha * dt**2) - inertia
+            # eq. (7)
+            V = s.delta / (s.alpha * dt) * dD + s.gg * (1 - s.delta / s.alpha) * V
+            V = V + (1 - s.delta / (2 * s.alpha)) * dt * A
+            A = dD / (s.alpha * dt**2) - inertia
             D = D + dD
             stress = stress + self.C @ dD[1:]
             stretch += 2 * dD[0] - self.height * dD[2]
             states[n, :3] = D
             states[n, 3] = -self.p * stretch / self.width
         return states
-
-    def _velocity(self, dD: Array, V: Array, A: Array) -> Array:
-        """Return the velocity at the end of the step, eq. (7)."""
-        alpha, delta, gg, dt = self.scheme.alpha, self.scheme.delta, self.scheme.gg, self.scheme.step
-        return delta / (alpha * dt) * dD + gg * (1 - delta / alpha) * V + (1 - delta / (2 * alpha)) * dt * A

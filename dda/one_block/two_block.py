@@ -55,7 +55,8 @@ class TwoBlockModel(LoadedBlock):
 
         Without a load it is the form under a pressure of 1 Pa.
         """
-        load, size = self.load, self.load_size
+        load = self.load
+        size = self.load_size
         if size:
             unit = replace(
                 load, pressure=load.pressure / size, traction=load.traction / size, gravity=load.gravity / size

@@ -17,6 +17,7 @@ import numpy as np
 
 from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
+from dda.model.checks import check_count, check_finite
 from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
@@ -50,8 +51,7 @@ class UnilateralModel(LoadedBlock):
     def check(self) -> None:
         """Check the numbers and the edges."""
         super().check()
-        if not math.isfinite(self.velocity):
-            raise ValueError(f"velocity: must be finite, got {self.velocity!r}")
+        check_finite(velocity=self.velocity)
         motion = self.load.motion
         if motion is not None and np.any(start := motion.at([0.0])[0]):
             raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
@@ -91,8 +91,7 @@ class UnilateralOptions:
 
 def check_iteration(solve_limit: int, cut: float) -> None:
     """Raise ValueError where the numbers of the open-close iteration are out of range."""
-    if isinstance(solve_limit, bool) or not isinstance(solve_limit, int) or solve_limit < 1:
-        raise ValueError(f"solve_limit: must be a positive integer, got {solve_limit!r}")
+    check_count(solve_limit=solve_limit)
     if not 0 < cut < 1:
         raise ValueError(f"cut: must be between 0 and 1, got {cut!r}")
 

@@ -63,7 +63,8 @@ class UnilateralForm:
 
 def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: bool) -> UnilateralForm:
     """Assemble one block over no-tension corners; `velocity` only tells what moves, `full` keeps all unknowns."""
-    block, load = model.block, model.load
+    block = model.block
+    load = model.load
     tangent, normal, a = base_directions(block, model.base)
     axes = np.array([tangent, normal])
     form = gap_form(block, Contact(1.0), model.base, model.top, load)  # of its springs nothing is used below

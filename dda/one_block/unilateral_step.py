@@ -59,7 +59,9 @@ from dda.scheme.newmark import (
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
-NEWMARK, IMPLICIT, CONSERVING = "newmark", "implicit", "energy-conserving"
+NEWMARK = "newmark"
+IMPLICIT = "implicit"
+CONSERVING = "energy-conserving"
 RULES = (NEWMARK, IMPLICIT, CONSERVING)
 
 
@@ -131,7 +133,9 @@ def block_equations(
     form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
 ) -> tuple[BlockEquations, Shear]:
     """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
-    n, c, q = len(form.unknowns), form.contacts, len(form.B)
+    n = len(form.unknowns)
+    c = form.contacts
+    q = len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
     vectors += zeros(c, (n, n), n, 2, 2, n)
@@ -188,7 +192,7 @@ def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: St
     length.numbers[0] = ratio
     length.numbers[1] = block.gg**ratio
     length.numbers[2] = step
-    copy_matrix(block.M, room.A, n)
+    copy_matrix(block.M, room.A)
     for i in range(n):
         length.k[i] = h2 * block.K[i]
         length.F[i] = h2 * block.load[i]
@@ -207,7 +211,7 @@ def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: St
     if shear_law is not None and q == 4:
         change_slides(length.C_paired, TO_OWN, length.C)
     else:
-        copy_matrix(length.C_paired, length.C, q)
+        copy_matrix(length.C_paired, length.C)
     block.made[0] += 1
 
 

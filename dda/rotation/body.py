@@ -34,7 +34,8 @@ from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
 
-EXACT, FIRST_ORDER = "exact", "first-order"
+EXACT = "exact"
+FIRST_ORDER = "first-order"
 
 
 def turned(angle: float) -> Array:
@@ -168,9 +169,7 @@ def body(block: Block, base: int) -> Body:
     frame = np.array([tangent, normal])
     start = block.edge(base)[0]
     placed = Block((block.corners - start) @ frame.T, block.material)
-    edges = np.roll(placed.corners, -1, axis=0) - placed.corners
-    following = np.roll(edges, -1, axis=0)
-    if np.any(edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0] < 0):
+    if np.any(placed.turns < 0):
         raise ValueError(
             f"vertices: must be those of a convex polygon to roll over a plane, got {block.corners.tolist()}"
         )

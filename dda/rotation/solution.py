@@ -270,7 +270,8 @@ def energies(setting: Setting, states: RollingMotion, history: History) -> dict[
     They are those of `dda.stepping.energy`, but for the algorithmic loss, which is what the others leave of the total:
     at delta = 1 and alpha >= 1/2 none of them is negative, however far the block turns.
     """
-    M, V = setting.body.M, states.V
+    M = setting.body.M
+    V = states.V
     growth = np.ones(len(V)) if setting.rotation == EXACT else np.linalg.det(states.Q)
     moving = growth * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
     turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector, add_rows, copy_matrix, dot, invert, multiply, quadratic, zeros
+from dda.contact.dense import Matrix, Vector, add_rows, copy, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
     NONE,
@@ -159,10 +159,12 @@ class RollingEquations(NamedTuple):
 
 def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     """Return the equations as numbers."""
-    body, loads = setting.body, len(setting.where)
+    body = setting.body
+    loads = len(setting.where)
     corners = len(body.xi)
     where, dead = np.zeros((2, 2, 2))
-    where[:loads], dead[:loads] = setting.where, setting.dead
+    where[:loads] = setting.where
+    dead[:loads] = setting.dead
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
     rows: list[Any] = zeros(*[6] * 12)
     rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
@@ -237,9 +239,9 @@ def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, matrices: Step
             matrices.M[i][j] = body.M[i][j] * growth
             if i > 1 and j > 1:
                 matrices.M[i][j] *= growth
-    copy_matrix(matrices.M, room.A, 6)
+    copy_matrix(matrices.M, room.A)
     invert(room.A, 6, room.scale, matrices.accelerating)
-    copy_matrix(matrices.M, room.A, 6)
+    copy_matrix(matrices.M, room.A)
     for i in range(3):
         for j in range(3):
             matrices.K[i][j] = growth * body.K[i][j]
@@ -286,8 +288,7 @@ def advance(
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
         room.tried[attempt] = pair_number(room.at, near)
-        for i in range(len(body.xi)):
-            room.near[i] = after.contacts.gap[i]
+        copy(after.contacts.gap, room.near)
         near = nearest(body, room.near, math.inf)
         for k in range(attempt + 1):
             if room.tried[k] == pair_number(room.at, near):
@@ -398,8 +399,7 @@ def settle(
         return settle_touching(body, shear_law, body.two, matrices, state, after, near)
     if near == 1 or body.loads > 0:
         return settle_touching(body, shear_law, body.one, matrices, state, after, near)
-    for i in range(6):
-        room.D[i] = room.free[i]
+    copy(room.free, room.D)
     accept(body, body.one, matrices, state, after, near)
     return FOUND, 0
 
@@ -418,8 +418,7 @@ def settle_touching(
     for k in range(near):
         copy_contact(state.contacts, room.at[k], pair.before, k)
         copy_contact(state.contacts, room.at[k], pair.after, k)
-    for i in range(6):
-        room.D[i] = room.guess[i]
+    copy(room.guess, room.D)
     solves = 0
     for _ in range(ROUNDS):
         turn(state.Q, room.D[2], body.exact, room.turn)
@@ -445,7 +444,7 @@ def settle_touching(
             change = abs(room.new[i] - room.D[i]) * (body.size if i > 1 else 1.0)
             if not change <= SETTLED * body.size:
                 settled = False
-            room.D[i] = room.new[i]
+        copy(room.new, room.D)
         if settled:
             accept(body, pair, matrices, state, after, near)
             return FOUND, solves
@@ -480,8 +479,7 @@ def set_free(body: RollingEquations, pair: Touching, state: RollingState) -> Non
     for row in range(rows):
         for column in range(rows):
             C[row][column] = dot(pair.B[row], pair.P[column], 6)
-    for i in range(6):
-        room.push[i] = room.new[i]
+    copy(room.new, room.push)
     add_rows(pair.P, pair.force, rows, 6, room.push)
     move(body, state, room.push, 1.0)
     for k in range(near):
@@ -502,9 +500,8 @@ def set_directions(body: RollingEquations, pair: Touching, state: RollingState) 
     for k in range(near):
         corner = room.at[k]
         force_directions(body, state, body.xi[corner][0], body.xi[corner][1])
-        for i in range(6):
-            pair.B[k][i] = room.up[i]
-            pair.B[near + k][i] = room.across[i]
+        copy(room.up, pair.B[k])
+        copy(room.across, pair.B[near + k])
 
 
 def force_directions(body: RollingEquations, state: RollingState, x: float, y: float) -> None:
@@ -559,15 +556,13 @@ def accept(
         add_rows(pair.B, pair.force, len(pair.force), 6, room.push)
     move(body, state, room.D, 1.0)
     hold(body, matrices, room.q, room.held)
+    copy(room.q, after.q)
+    copy_matrix(room.turn.end, after.Q)
     for i in range(6):
         room.push[i] += room.held[i]
-        after.q[i] = room.q[i]
     for i in range(6):
         after.A[i] = dot(matrices.accelerating[i], room.push, 6)
         after.V[i] = matrices.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * after.A[i])
-    for i in range(2):
-        for j in range(2):
-            after.Q[i][j] = room.turn.end[i][j]
     place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(len(body.xi)):
         contacts.gap[i] = room.after[i][1]

@@ -47,15 +47,21 @@ def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, f
         Least discount [-].
     """
     dt = scheme.step
-    k, F = (dt * frequencies) ** 2, dt * dt * load
+    k = (dt * frequencies) ** 2
+    F = dt * dt * load
     S = effective_matrix(scheme, np.ones_like(k), k)
-    D, P, f = np.zeros_like(k), np.zeros_like(k), initial_acceleration(scheme, F)
-    modes, discount, loss = np.empty((len(k), steps)), np.empty(steps), np.empty(steps)
+    D = np.zeros_like(k)
+    P = np.zeros_like(k)
+    f = initial_acceleration(scheme, F)
+    modes = np.empty((len(k), steps))
+    discount = np.empty(steps)
+    loss = np.empty(steps)
     before = now = 0.0  # dt sqrt(2 T)
     for n in range(steps):
         discount[n] = next_discount(before, now, floor)
         loss[n] = (1 - discount[n] ** 2) * (now / dt) ** 2 / 2
         D, P, f = modal_step(replace(scheme, gg=float(discount[n])), S, k, F, (D, P, f))
         modes[:, n] = D
-        before, now = now, math.hypot(*P.tolist())
+        before = now
+        now = math.hypot(*P.tolist())
     return Adapted(modes, discount, np.cumsum(loss))

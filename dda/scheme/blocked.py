@@ -48,7 +48,10 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 def _grows(scheme: Scheme, omega: float) -> bool:
     """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
-    alpha, delta, gg, k = scheme.alpha, scheme.delta, scheme.gg, omega * omega
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
+    k = omega * omega
     at_minus_one = 2 * (1 + gg) - k * (0.5 + gg * (2 * delta - 0.5) - 2 * alpha * (1 + gg))
     determinant = gg * (1 + (0.5 - delta) * k / (1 + alpha * k))
     return not (at_minus_one > 0 and abs(determinant) <= 1 and k * (delta / 2 - alpha) < 1)
@@ -103,7 +106,8 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
     for i, w in enumerate(frequencies.tolist()):
         at = slice(2 * i, 2 * i + 2)
         table, first[at] = _mode(exact, w, levels)
-        maps[:, at, at], maps[:, at, n] = table[:, :4].reshape(-1, 2, 2), table[:, 4:]
+        maps[:, at, at] = table[:, :4].reshape(-1, 2, 2)
+        maps[:, at, n] = table[:, 4:]
     return maps, first
 
 
@@ -124,7 +128,8 @@ def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, flo
         The scheme of `with_all_digits`.
     """
     step, (u, p) = _one_step(exact, w)
-    b, c = step[1].bit_length(), step[2].bit_length()
+    b = step[1].bit_length()
+    c = step[2].bit_length()
     unit = math.ldexp(1.0, (c - b) // 2) if b and c else 1.0
     scales = np.array([1.0, unit, 1 / unit, 1.0, 1.0, 1 / unit]) / _ONE
     entries = [list(map(float, power)) for power in _squared(step, levels)]
@@ -159,7 +164,8 @@ def _squared(power: Map, levels: int) -> Iterator[Map]:
     for _ in range(levels):
         yield power
         a, b, c, d, e, g = power
-        t, bc = a + d, b * c
+        t = a + d
+        bc = b * c
         power = (
             a * a + bc >> PLACES,
             b * t >> PLACES,

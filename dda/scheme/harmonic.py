@@ -79,7 +79,8 @@ def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Comp
 
     With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
     """
-    W2, omega = chosen(scheme, frequencies, exact), 2 * np.pi * np.asarray(frequencies, float)
+    W2 = chosen(scheme, frequencies, exact)
+    omega = 2 * np.pi * np.asarray(frequencies, float)
     if not scheme.damped:
         return W2, np.ones_like(W2)
     S = 1j * omega if exact else velocity_factor(scheme, omega)

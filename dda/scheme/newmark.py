@@ -18,7 +18,6 @@ does so without a loop over the steps, from the same lines.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice, repeat
@@ -27,6 +26,7 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 
 from dda.model.arrays import Array
+from dda.model.checks import check_not_negative, check_positive, check_share
 
 Start = Literal["zero", "consistent"]
 Real = TypeVar("Real", float, Array)  # one mode, all unknowns at once; `dda.scheme.blocked` puts in decimal numbers
@@ -52,18 +52,10 @@ class Scheme:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("alpha", "delta"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{field}: must be finite and not negative, got {value!r}")
-        if not 0 <= self.gg <= 1:
-            raise ValueError(f"gg: must be between 0 and 1, got {self.gg!r}")
-        if not (math.isfinite(self.step) and self.step > 0):
-            raise ValueError(f"step: must be finite and positive, got {self.step!r}")
-        for field in ("mass_damping", "stiffness_damping"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value >= 0):
-                raise ValueError(f"{field}: must be finite and not negative, got {value!r}")
+        check_not_negative(alpha=self.alpha, delta=self.delta)
+        check_share(gg=self.gg)
+        check_positive(step=self.step)
+        check_not_negative(mass_damping=self.mass_damping, stiffness_damping=self.stiffness_damping)
         if self.start not in ("zero", "consistent"):
             raise ValueError(f'start: must be "zero" or "consistent", got {self.start!r}')
 
@@ -88,6 +80,26 @@ def effective_matrix(scheme: Scheme, M: Real, k: Real) -> Real:
         mass_factor = 1 + scheme.delta * scheme.mass_damping * scheme.step
         return mass_factor * M + (scheme.alpha + scheme.delta * scheme.stiffness_damping / scheme.step) * k
     return M + scheme.alpha * k
+
+
+def dashpot_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
+    """Return the matrix of the accelerations under any damping, M + delta dt C + alpha dt^2 K."""
+    return M + scheme.delta * scheme.step * C + scheme.alpha * scheme.step**2 * K
+
+
+def predictors(scheme: Scheme, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
+    """Return D* and V* of eq. (6) and (7), what is known of the end of a step before its acceleration.
+
+    Of a scheme with the step 1, V and A stand for dt V and dt^2 A.
+    """
+    dt = scheme.step
+    displaced = D + scheme.gg * dt * V + dt**2 * (0.5 - scheme.alpha) * A
+    return displaced, scheme.gg * V + dt * (1 - scheme.delta) * A
+
+
+def correctors(scheme: Scheme, D: Array, V: Array, A1: Array) -> tuple[Array, Array]:
+    """Return D1 and V1 from the predicted ones and the acceleration at the end of the step."""
+    return D + scheme.alpha * scheme.step**2 * A1, V + scheme.delta * scheme.step * A1
 
 
 def initial_acceleration(scheme: Scheme, F: Real) -> Real:
@@ -135,7 +147,8 @@ def viscous_step(scheme: Scheme, k: Real, F: Real, state: tuple[Real, Real, Real
     """
     D, P, f = state
     e = viscosity(scheme, k)
-    velocity, viscous_factor = scheme.gg * P + (1 - scheme.delta) * f, 1 + scheme.delta * e
+    velocity = scheme.gg * P + (1 - scheme.delta) * f
+    viscous_factor = 1 + scheme.delta * e
     balance = viscous_factor * predictor(scheme, P, f) + scheme.alpha * (F - k * D - e * velocity)
     D = D + balance / (viscous_factor + scheme.alpha * k)
     f1 = (F - k * D - e * velocity) / viscous_factor
@@ -201,12 +214,14 @@ def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, mo
     k = (scheme.step * frequencies) ** 2
     S = effective_matrix(scheme, np.ones_like(k), k)
     pushes = np.diff(moved, axis=0) @ translation.T
-    D, P = -(translation @ moved[0]), np.zeros_like(k)
+    D = -(translation @ moved[0])
+    P = np.zeros_like(k)
     f = initial_acceleration(scheme, -k * D)
     histories = np.empty((len(pushes), len(k)))
     for row, push in zip(histories, pushes, strict=True):
         D = D + (momentum_balance(scheme, 0.0 * k, k, D, P, f) - push) / S
         f1 = acceleration_corrector(0.0 * k, k, D)
-        P, f = velocity_corrector(scheme, P, f, f1), f1
+        P = velocity_corrector(scheme, P, f, f1)
+        f = f1
         row[:] = D
     return histories

@@ -51,7 +51,8 @@ def _discriminant(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) ->
 
 def eigenvalues(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> ComplexArray:
     """Return the two eigenvalues, last axis of length two, the larger modulus first."""
-    t, d = trace(omega, alpha, delta, gg), determinant(omega, alpha, delta, gg)
+    t = trace(omega, alpha, delta, gg)
+    d = determinant(omega, alpha, delta, gg)
     disc = _discriminant(omega, alpha, delta, gg)
     root = np.sqrt(np.abs(disc))
     first = (t + np.where(t < 0, -root, root)) / 2
@@ -77,7 +78,8 @@ def _logarithms(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> t
     For a complex pair ln lambda = re +- i half; for positive real roots ln lambda = re +- half.
     The kind is -1 for a complex pair, +1 for positive real roots, NaN where a root is not positive.
     """
-    X, t = _x(omega, alpha), trace(omega, alpha, delta, gg)
+    X = _x(omega, alpha)
+    t = trace(omega, alpha, delta, gg)
     disc = _discriminant(omega, alpha, delta, gg)
     with np.errstate(all="ignore"):
         re = (np.log(gg) + np.log1p((0.5 - delta) * X)) / 2

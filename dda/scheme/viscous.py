@@ -20,7 +20,9 @@ def eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:
     """Return the two eigenvalues of a step of a mode of frequency w [rad/s], the larger modulus first."""
     square = (frequency * scheme.step) ** 2
     e = scheme.step * (scheme.mass_damping + scheme.stiffness_damping * frequency**2)
-    alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
     leading = 1 + alpha * square + delta * e
     trace = (1 + gg - e * (1 - 2 * delta) - square * (0.5 - alpha + gg * (delta - alpha))) / leading
     det = (gg + gg * square * (0.5 - delta + alpha) - e * (1 - delta)) / leading

@@ -38,7 +38,8 @@ WORTHWHILE_KEPT = 0.8  # seconds of plain Python from which a loop is read from 
 WORTHWHILE = 1.0  # the same from which the smallest loop is compiled and kept: 1e5 steps of a block that opens
 WORTHWHILE_ANEW = 30.0  # the same where compiled code cannot be kept
 MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
-PLAIN, COMPILED = "plain Python", "compiled"
+PLAIN = "plain Python"
+COMPILED = "compiled"
 
 loops: dict[tuple[Loop, object], tuple[list[Use], Loop | None]] = {}  # by loop and types
 _jitable: set[FunctionType] = set()
@@ -97,7 +98,8 @@ class Compilable:
     """
 
     def __init__(self, function: Loop, seconds: float, compile_time: float) -> None:
-        self.function, self.records = function, is_worthwhile(function, seconds, compile_time=compile_time)
+        self.function = function
+        self.records = is_worthwhile(function, seconds, compile_time=compile_time)
         self.how = PLAIN
 
     def room(self, value: Any) -> Any:

@@ -23,14 +23,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dda.model.arrays import Array
-from dda.model.block import Block
+from dda.model.arrays import Array, without_rounding
+from dda.model.block import Block, displacement_rows
+from dda.model.checks import check_positive
 
 Point = tuple[float, float]
 
 FIXED = -1  # the body that all fixed parts form
 _SAME_PLACE = 1e-9  # of the system's extent
-_ROUNDING = 64 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -52,10 +52,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for field in ("normal", "shear"):
-            value = getattr(self, field)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{field}: must be finite and positive, got {value!r}")
+        check_positive(normal=self.normal, shear=self.shear)
         if not math.dist(self.start, self.end) > 0:
             raise ValueError(f"end: must differ from start, got {self.end!r}")
 
@@ -120,14 +117,17 @@ def _labels(points: Array, cell: float) -> list[int]:
 
 def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
     """Return the four gaps of a joint of its own: means (t, n) and differences (n, t) of its ends."""
-    start, end, t = np.array(joint.start), np.array(joint.end), joint.tangent
+    start = np.array(joint.start)
+    end = np.array(joint.end)
+    t = joint.tangent
     n = np.array([-t[1], t[0]])
     bodies = {}
     for body, sign in ((joint.first, 1.0), (joint.second, -1.0)):
         mean = _value(blocks, body, (start + end) / 2)
         difference = _gradient(body, end - start)
         bodies[body] = sign * np.array([t @ mean, n @ mean, n @ difference, t @ difference])
-    kn, ks = joint.normal, joint.shear
+    kn = joint.normal
+    ks = joint.shear
     return Gaps(bodies, np.diag([2 * ks, 2 * kn, kn / 2, ks / 2]))
 
 
@@ -138,7 +138,8 @@ def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[i
     tree: list[tuple[int, int]] = []
     most = len(met)
     for j, _ in met:
-        a, b = joints[j].first, joints[j].second
+        a = joints[j].first
+        b = joints[j].second
         (root_a, path_a), (root_b, path_b) = (paths.setdefault(x, (x, np.zeros(most))) for x in (a, b))
         if root_a == root_b:
             continue
@@ -152,7 +153,8 @@ def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[i
         across = (paths[joints[j].first][1] - paths[joints[j].second][1])[:size]
         pairs = np.outer(across, across)[:, None, :, None] * joints[j].stiffness[:, None, :]  # what np.kron multiplies
         kappa += pairs.reshape(kappa.shape)
-    joint, end = joints[met[0][0]], met[0][1]
+    joint = joints[met[0][0]]
+    end = met[0][1]
     point = np.array(joint.end if end else joint.start)
     bodies: dict[int, Array] = {}
     for branch, (a, b) in enumerate(tree):
@@ -168,18 +170,17 @@ def _value(blocks: Sequence[Block], body: int, point: Array) -> Array:
     if body == FIXED:
         return np.eye(2)
     block = blocks[body]
-    x, y = point - np.array(block.section.centroid)
-    extent = np.ptp(block.corners, axis=0)
-    x, y = (0.0 if abs(v) <= _ROUNDING * e else float(v) for v, e in zip((x, y), extent, strict=True))
-    return np.array([[1.0, 0.0, -y, x, 0.0, y / 2], [0.0, 1.0, x, 0.0, y, x / 2]])
+    x, y = without_rounding(point - np.array(block.section.centroid), np.ptp(block.corners, axis=0))
+    return displacement_rows(x, y)
 
 
 def _gradient(body: int, along: Array) -> Array:
     """Return the change of a body's displacement over a distance by its unknowns."""
     if body == FIXED:
         return np.zeros((2, 2))
-    x, y = along
-    return np.array([[0.0, 0.0, -y, x, 0.0, y / 2], [0.0, 0.0, x, 0.0, y, x / 2]])
+    rows = displacement_rows(*along)
+    rows[:, :2] = 0.0
+    return rows
 
 
 def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[Joint]:
@@ -202,7 +203,8 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
         near = (owners > i) & (np.maximum(abs((starts - a) @ n), abs((ends - a) @ n)) <= slack)
         for k in np.flatnonzero(near):
             low, high = sorted(((starts[k] - a) @ t, (ends[k] - a) @ t))
-            low, high = max(low, 0.0), min(high, length)
+            low = max(low, 0.0)
+            high = min(high, length)
             if high - low > slack:
                 first, last = (tuple(float(v) for v in a + s * t) for s in (low, high))
                 joints.append(Joint(i, int(owners[k]), first, last, normal, shear))  # type: ignore[arg-type]

@@ -95,7 +95,8 @@ def opening_subdivided(
     normals, tangents = np.zeros((2, len(ends), len(cut.blocks), 6))
     for i, (number, (x, y)) in enumerate(ends):
         T = cut.blocks[number].T(float(x), float(y))
-        normals[i, number], tangents[i, number] = normal @ T, tangent @ T
+        normals[i, number] = normal @ T
+        tangents[i, number] = tangent @ T
     share = supports[0].normal  # a side that is cut evenly has edges of one length
     contact = model.contact
     law = replace(
@@ -152,7 +153,8 @@ class OpeningBody:
         self.opening = opening
         self.scheme = scheme
         points = len(opening.normals)
-        self.points, self.made = points, 0
+        self.points = points
+        self.made = 0
         self.lengths: dict[float, Length] = {}
         self.observers = opening.equations.rows(columns)[0]
         pressure = np.array([name == "contact_pressure" for name in columns], dtype=float)
@@ -180,7 +182,8 @@ class OpeningBody:
 
     def start_state(self) -> SystemState:
         """Return the state at t = 0: unstrained, without contact force, the points at the starting gap."""
-        e, dt = self.opening.equations, self.scheme.step
+        e = self.opening.equations
+        dt = self.scheme.step
         upwards = np.zeros((len(e.mass), 6))
         upwards[:, 1] = dt * self.opening.velocity
         P = np.einsum("nij,nj->ni", e.mass, upwards).ravel()
@@ -210,8 +213,11 @@ def advance(
     """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
     ratio = part.ratio
     length = body.length(ratio)
-    scheme, stepper = length.scheme, length.stepper
-    P, f, mu = ratio * state.P, ratio * ratio * state.f, ratio * ratio * state.mu
+    scheme = length.scheme
+    stepper = length.stepper
+    P = ratio * state.P
+    f = ratio * ratio * state.f
+    mu = ratio * ratio * state.mu
     internal = stepper.k @ state.D + stepper.Bt @ mu
     dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - internal), length.still)
     moved = length.rows @ dD
@@ -255,7 +261,8 @@ def account(
         body.law, shear_law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums
     )
     sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
-    R0, R1 = state.f / dt2, after.f / dt2
+    R0 = state.f / dt2
+    R1 = after.f / dt2
     internal = body.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
     pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
     sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (body.F - internal + pressed - R0))
@@ -306,7 +313,8 @@ def solve_opening_system(
     began = perf_counter()
     body = OpeningBody(opening, scheme, options.solve_limit, columns, steps, options.energies)
     nonzeros = body.length(1.0).stepper.factor.nonzeros
-    requested, points = len(columns), body.points
+    requested = len(columns)
+    points = body.points
     history = history_of(steps, requested + 2 + points + 3 * options.energies, points, options.energies)
     base = base_record(opening.motion and opening.motion.along(opening.axes))
     ready = perf_counter()

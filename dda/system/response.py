@@ -41,16 +41,19 @@ class _Space:
 
     def __init__(self, equations: Equations, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
         """Begin with the static response (D, joint forces)."""
-        self.equations, self.rows = equations, rows
+        self.equations = equations
+        self.rows = rows
         self.M: csr_array = equations.blockwise(equations.mass)
         D, force = static
         inertia = self.M @ D
         self.size = float(np.sqrt(D @ inertia))
         scale = 1 / self.size if self.size > 0 else 0.0
         capacity = min(LARGEST, len(D)) + 1
-        self.vectors, self.inertias = np.empty((capacity, len(D))), np.empty((capacity, len(D)))
+        self.vectors = np.empty((capacity, len(D)))
+        self.inertias = np.empty((capacity, len(D)))
         self.observed = np.empty((capacity, len(rows[0])))
-        self.vectors[0], self.inertias[0] = scale * D, scale * inertia
+        self.vectors[0] = scale * D
+        self.inertias[0] = scale * inertia
         self.observed[0] = scale * (rows[0] @ D + rows[1] @ force)
         self.diagonal: list[float] = []
         self.beside: list[float] = []
@@ -74,7 +77,8 @@ class _Space:
         self.beside.append(size)
         self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(D)
         if not self.closed:
-            self.vectors[j + 1], self.inertias[j + 1] = D / size, inertia / size
+            self.vectors[j + 1] = D / size
+            self.inertias[j + 1] = inertia / size
             self.observed[j + 1] = observed / size
 
     def grown(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
@@ -98,7 +102,8 @@ class _Space:
         residual = 0.0 if self.closed else np.abs(W2) * self.beside[-1] * last
         small = RESOLVED * np.minimum(self.size, np.sqrt(np.sum(np.abs(y) ** 2, axis=0)))
         rows = self.observed[:m].T @ turned
-        amplitudes, terms = rows @ y, np.abs(rows) @ np.abs(y)
+        amplitudes = rows @ y
+        terms = np.abs(rows) @ np.abs(y)
         lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(amplitudes), axis=0)
         return amplitudes, np.asarray(residual <= small), np.asarray(lost)
 
@@ -123,10 +128,13 @@ def system_response(
     equations = system.reached
     rows = equations.rows(columns)
     if along is None:
-        F, push = equations.F * system.load_size, np.zeros(len(equations.pressure))
+        F = equations.F * system.load_size
+        push = np.zeros(len(equations.pressure))
     else:
-        F, push = 0 * equations.F, equations.G @ along
-    amplitudes, resolved = np.zeros((len(columns), len(W2)), complex), np.zeros(len(W2), bool)
+        F = 0 * equations.F
+        push = equations.G @ along
+    amplitudes = np.zeros((len(columns), len(W2)), complex)
+    resolved = np.zeros(len(W2), bool)
     dynamic = _Dynamic(equations, F, push)
     if not dynamic.narrow:
         amplitudes, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
@@ -142,23 +150,21 @@ class _Dynamic:
     """
 
     def __init__(self, equations: Equations, F: Array, push: Array) -> None:
-        from scipy.sparse import block_array, coo_array
+        from scipy.sparse import block_array
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
         self.modulus = float(np.max(np.abs(equations.elastic)))
-        Ke, C = equations.blockwise(equations.elastic) / self.modulus, -self.modulus * equations.C
-        still = block_array([[Ke, equations.B.T], [equations.B, C]], format="coo")
-        M = coo_array(equations.blockwise(equations.mass) / self.modulus)
-        self.order = reverse_cuthill_mckee((abs(still) + abs(still).T).tocsr(), symmetric_mode=True)
-        place, size = np.argsort(self.order), len(self.order)
-        flat, entry = np.unique(
-            np.concatenate([place[part.row] * size + place[part.col] for part in (still, M)]), return_inverse=True
-        )
-        self.row, self.col = np.divmod(flat, size)
-        self.K = np.bincount(entry, np.concatenate([still.data, 0 * M.data]))
-        self.M = np.bincount(entry, np.concatenate([0 * still.data, M.data]))
+        Ke = equations.blockwise(equations.elastic) / self.modulus
+        K = block_array([[Ke, equations.B.T], [equations.B, -self.modulus * equations.C]], format="csr")
+        M = equations.blockwise(equations.mass) / self.modulus
+        M.resize(K.shape)  # the forces have no inertia
+        self.order = reverse_cuthill_mckee(abs(K) + abs(K).T, symmetric_mode=True)
+        self.K = K[self.order][:, self.order]
+        self.M = M[self.order][:, self.order]
+        pattern = (abs(self.K) + abs(self.M)).tocoo()
+        self.width = int(np.max(np.abs(pattern.row - pattern.col), initial=0))
         self.right = np.concatenate([F / self.modulus, push])[self.order].astype(complex)
-        self.count, self.width = len(F), int(np.max(np.abs(self.row - self.col), initial=0))
+        self.count = len(F)
 
     @property
     def narrow(self) -> bool:
@@ -167,24 +173,19 @@ class _Dynamic:
 
     def observed(self, rows: tuple[Array, Array], W2: complex) -> Complex:
         """Return the observed amplitudes, infinite at a resonance that nothing damps."""
-        try:
-            values = np.empty_like(self.right)
-            values[self.order] = self._by_band(W2) if self.narrow else self._sparse(W2)
-        except (np.linalg.LinAlgError, RuntimeError):
-            return np.full(len(rows[0]), np.inf, complex)
-        return np.asarray(rows[0] @ values[: self.count] + self.modulus * (rows[1] @ values[self.count :]))
-
-    def _by_band(self, W2: complex) -> Complex:
         from scipy.linalg import solve_banded
-
-        band = np.zeros((2 * self.width + 1, len(self.right)), complex)
-        band[self.width + self.row - self.col, self.col] = self.K - W2 * self.M
-        return np.asarray(solve_banded((self.width, self.width), band, self.right, check_finite=False))
-
-    def _sparse(self, W2: complex) -> Complex:
-        from scipy.sparse import coo_array
         from scipy.sparse.linalg import splu
 
-        size = len(self.right)
-        matrix = coo_array((self.K - W2 * self.M, (self.row, self.col)), shape=(size, size))
-        return np.asarray(splu(matrix.tocsc()).solve(self.right))
+        matrix = (self.K - W2 * self.M).tocoo()
+        values = np.empty_like(self.right)
+        try:
+            if self.narrow:
+                band = np.zeros((2 * self.width + 1, len(values)), complex)
+                band[self.width + matrix.row - matrix.col, matrix.col] = matrix.data
+                solution = solve_banded((self.width, self.width), band, self.right, check_finite=False)
+            else:
+                solution = splu(matrix.tocsc()).solve(self.right)
+        except (np.linalg.LinAlgError, RuntimeError):
+            return np.full(len(rows[0]), np.inf, complex)
+        values[self.order] = solution
+        return np.asarray(rows[0] @ values[: self.count] + self.modulus * (rows[1] @ values[self.count :]))

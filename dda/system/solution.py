@@ -23,8 +23,8 @@ import numpy as np
 
 from dda.model.arrays import Array
 from dda.one_block.modes import Mode, scalar_eigenvalues
-from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, step_times
-from dda.scheme.newmark import Scheme, effective_matrix, predictor, velocity_corrector
+from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
+from dda.scheme.newmark import Scheme, effective_matrix, predictor, predictors, velocity_corrector
 from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 
 if TYPE_CHECKING:
@@ -44,14 +44,19 @@ class Stepper:
 
     def __init__(self, equations: Equations, scheme: Scheme) -> None:
         """Form the matrices and factorise the one of the joint forces."""
-        self.equations, self.scheme = equations, scheme
-        k, B = scheme.step**2 * equations.elastic, equations.B
+        self.equations = equations
+        self.scheme = scheme
+        k = scheme.step**2 * equations.elastic
+        B = equations.B
         S = effective_matrix(scheme, equations.mass, k)
-        self.k, self.B, self.Bt = equations.blockwise(k), B, B.T.tocsr()
+        self.k = equations.blockwise(k)
+        self.B = B
+        self.Bt = B.T.tocsr()
         self.inverse = equations.blockwise(inverses(S))
         self.BS = (B @ self.inverse).tocsr()
         self.BSt = self.BS.T.tocsr()
-        self.S, self.C = equations.blockwise(S), equations.C / scheme.step**2
+        self.S = equations.blockwise(S)
+        self.C = equations.C / scheme.step**2
         flexibility = joint_flexibility(scheme, self.C, B, self.inverse)
         self.factor = factor(flexibility) if B.shape[0] else Factor(np.copy, 0)
         stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
@@ -67,7 +72,8 @@ class Stepper:
         for _ in range(self.corrections):
             residual = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
             correction = self._solve(residual, push - self.B @ dD + self.C @ dmu)
-            dD, dmu = dD + correction[0], dmu + correction[1]
+            dD = dD + correction[0]
+            dmu = dmu + correction[1]
         return dD, dmu
 
     def _solve(self, r: Array, push: Array) -> tuple[Array, Array]:
@@ -76,25 +82,31 @@ class Stepper:
 
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and lambda at every step, (rows, steps)."""
-        e, s = self.equations, self.scheme
-        F, pushes = s.step**2 * e.F, np.diff(moved, axis=0) @ e.G.T
-        by_D, by_mu = rows[0], rows[1] / s.step**2
-        D, P = np.zeros_like(F), np.zeros_like(F)
+        e = self.equations
+        s = self.scheme
+        F = s.step**2 * e.F
+        pushes = np.diff(moved, axis=0) @ e.G.T
+        by_D = rows[0]
+        by_mu = rows[1] / s.step**2
+        D = np.zeros_like(F)
+        P = np.zeros_like(F)
         mu = -(s.step**2 * (e.kappa @ (e.G @ moved[0])))
         internal = self.Bt @ mu
         f = F - internal if s.start == "consistent" else 0 * F
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
             dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - internal), pushes[n])
-            D, mu = D + dD, mu + dmu
+            D = D + dD
+            mu = mu + dmu
             internal = self.k @ D + self.Bt @ mu
             f1 = F - internal
-            P, f = velocity_corrector(s, P, f, f1), f1
+            P = velocity_corrector(s, P, f, f1)
+            f = f1
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 
 
-class _ViscousStepper:
+class _ViscousStepper(Stepper):
     """The scheme with C = a0 M + a1 K, in the displacement G = D + a1 V that the damped springs resist.
 
     With v = dt V, q = dt^2 A, m = 1 + delta a0 dt and beta = alpha + delta a1 / dt the end of a step obeys
@@ -106,31 +118,39 @@ class _ViscousStepper:
 
     def __init__(self, equations: Equations, scheme: Scheme) -> None:
         """Form the matrices of the undamped step that stands for the damped one."""
-        self.equations, self.scheme = equations, scheme
-        self.lag, self.drag = scheme.stiffness_damping / scheme.step, scheme.mass_damping * scheme.step
-        self.held, self.beta = 1 + scheme.delta * self.drag, scheme.alpha + scheme.delta * self.lag
-        plain = replace(scheme, alpha=self.beta / self.held, mass_damping=0.0, stiffness_damping=0.0)
-        self.step = Stepper(equations, plain)
-        self.factor, self.corrections = self.step.factor, self.step.corrections
+        self.damped_scheme = scheme
+        self.lag = scheme.stiffness_damping / scheme.step
+        self.drag = scheme.mass_damping * scheme.step
+        self.mass_factor = 1 + scheme.delta * self.drag
+        self.beta = scheme.alpha + scheme.delta * self.lag
+        alpha = self.beta / self.mass_factor
+        super().__init__(equations, replace(scheme, alpha=alpha, mass_damping=0.0, stiffness_damping=0.0))
         self.M = equations.blockwise(equations.mass)
-        self.inverse = equations.blockwise(inverses(equations.mass))
+        self.inverse_mass = equations.blockwise(inverses(equations.mass))
 
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and of the springs' own forces at every step, (rows, steps)."""
-        e, s, step = self.equations, self.scheme, self.step
-        F, still = s.step**2 * e.F, np.zeros(len(e.pressure))
+        e = self.equations
+        s = replace(self.damped_scheme, step=1.0)  # of v and q
+        F = self.scheme.step**2 * e.F
+        still = np.zeros(len(e.pressure))
         observed_by = rows[0] + (e.B.T @ (e.kappa @ rows[1].T)).T
-        D, v, G = np.zeros_like(F), np.zeros_like(F), np.zeros_like(F)
-        q, mu = self.inverse @ F if s.start == "consistent" else 0 * F, still
+        D, v, G = np.zeros((3, len(F)))
+        q = self.inverse_mass @ F if s.start == "consistent" else 0 * F
+        mu = still
         observed = np.empty((len(observed_by), steps))
         for n in range(steps):
-            D, v = D + s.gg * v + (0.5 - s.alpha) * q, s.gg * v + (1 - s.delta) * q  # D*, v*
-            ahead, drag = D + self.lag * v, self.drag * (self.M @ v)
-            internal = step.k @ G + step.Bt @ mu
-            dG, dmu = step.increments(self.M @ (ahead - G) + step.scheme.alpha * (F - drag - internal), still)
-            G, mu = G + dG, mu + dmu
-            q = self.inverse @ (F - drag - step.k @ G - step.Bt @ mu) / self.held
-            D = D + (s.alpha / self.beta * (G - ahead) if self.beta else 0 * D)
+            D, v = predictors(s, D, v, q)
+            ahead = D + self.lag * v
+            drag = self.drag * (self.M @ v)
+            internal = self.k @ G + self.Bt @ mu
+            r = self.M @ (ahead - G) + self.scheme.alpha * (F - drag - internal)
+            dG, dmu = self.increments(r, still)
+            G = G + dG
+            mu = mu + dmu
+            q = self.inverse_mass @ (F - drag - self.k @ G - self.Bt @ mu) / self.mass_factor
+            if self.beta:  # alpha q as a difference of what the springs feel: stiff ones keep their digits
+                D = D + s.alpha / self.beta * (G - ahead)
             v = v + s.delta * q
             observed[:, n] = observed_by @ D
         return observed
@@ -170,23 +190,24 @@ def solve_system(
     with np.errstate(all="ignore"):
         observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))
         observed *= system.load_size
-    ended = perf_counter()
+        observed += 0.0
+        overflow = bound_overflow(observed, system.load_size)
     return Result(
-        time=step_times(scheme, steps),
-        columns=dict(zip(columns, observed + 0.0, strict=True)),
+        **times_of(scheme, steps, began, ready),
+        columns=dict(zip(columns, observed, strict=True)),
         unknowns=len(equations.F),
         nonzeros=stepper.factor.nonzeros,
         factorisations=1,
         solves=steps * (1 + stepper.corrections),
-        notes=_savings(system, equations) + bound_overflow(observed, system.load_size),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
+        notes=_savings(system, equations) + overflow,
     )
 
 
 def _moved(system: BlockSystem, instants: Array) -> Array:
     """Return the displacement of what is fixed over the size of the loads, (instants, 2)."""
-    return np.zeros((len(instants), 2)) if system.motion is None else system.motion.at(instants) / system.load_size
+    if system.motion is None:
+        return np.zeros((len(instants), 2))
+    return system.motion.at(instants) / system.load_size
 
 
 def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:
@@ -239,11 +260,12 @@ def _pushed(system: BlockSystem, equations: Equations) -> Array:
     """Return the load that shares refer to: the constant one, else M R of the moving base, else a weight."""
     if np.any(equations.F):
         return equations.F
-    ways = (False, False) if system.motion is None else np.any(np.asarray(system.motion.displacement) != 0, axis=0)
-    component = equations.kept % 6
-    rigid = sum((1.0 * (component == i) for i in (0, 1) if ways[i]), 0.0 * component)
-    pushed: Array = equations.blockwise(equations.mass) @ (rigid if np.any(rigid) else 1.0 * (component == 1))
-    return pushed
+    axes = np.zeros(6)
+    if system.motion is not None:
+        axes[:2] = np.any(np.asarray(system.motion.displacement) != 0, axis=0)
+    if not np.any(axes):
+        axes[1] = 1.0
+    return np.asarray(equations.blockwise(equations.mass) @ axes[equations.kept % 6])
 
 
 def _lowest(
@@ -256,7 +278,8 @@ def _lowest(
     from scipy.linalg import eigh
     from scipy.sparse.linalg import LinearOperator, eigsh
 
-    M, n = equations.blockwise(equations.mass), len(equations.F)
+    M = equations.blockwise(equations.mass)
+    n = len(equations.F)
     still = np.zeros(len(equations.pressure))
 
     def flexibility(right: Array) -> Array:
@@ -266,7 +289,8 @@ def _lowest(
         root = np.linalg.cholesky(M.toarray())
         values, vectors = eigh(root.T @ np.array([flexibility(column) for column in root.T]).T)
         order = np.argsort(-values)[:count]
-        squares, shapes = 1 / values[order], np.linalg.solve(root.T, vectors[:, order])
+        squares = 1 / values[order]
+        shapes = np.linalg.solve(root.T, vectors[:, order])
     else:
         inverse = LinearOperator((n, n), matvec=flexibility, dtype=float)
         start = np.random.default_rng(0).standard_normal(n)

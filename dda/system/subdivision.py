@@ -12,6 +12,7 @@ import numpy as np
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
+from dda.model.checks import check_positive
 from dda.model.load import at_once, pressed_part
 from dda.one_block.two_block import TwoBlockModel
 from dda.system.joints import FIXED, Joint
@@ -41,38 +42,43 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         If the block is not a convex quadrilateral, or a number is out of range.
     """
     _check(model, columns, rows, glue, pattern)
+    load = model.load
+    contact = model.contact
     place = _corner_map(model, columns, rows)
     cells = _cells(columns, rows, pattern)
-    material = model.block.material
-    blocks = [Block([place(corner) for corner in cell], material) for cell in cells]
     _, normal, a = base_directions(model.block, model.base)
-    edges = {
-        (cell[i], cell[(i + 1) % len(cell)]): number for number, cell in enumerate(cells) for i in range(len(cell))
-    }
-    joints = [
-        Joint(number, edges[end, start], place(start), place(end), glue, glue)
-        for (start, end), number in edges.items()
-        if (end, start) in edges and number < edges[end, start]
-    ]
-    supports, loads = [], []
+    pressed = pressed_part(*model.block.edge(model.top), load.eccentricity)
+    edges: dict[tuple[Corner, Corner], int] = {}
+    for number, cell in enumerate(cells):
+        for i, start in enumerate(cell):
+            edges[start, cell[(i + 1) % len(cell)]] = number
+    joints: list[Joint] = []
+    supports: list[Joint] = []
+    loads: list[SurfaceLoad] = []
     for (start, end), number in edges.items():
         ends = place(start), place(end)
+        neighbour = edges.get((end, start), FIXED)
+        if number < neighbour:
+            joints.append(Joint(number, neighbour, *ends, glue, glue))
         if start[1] == end[1] == 0:
             share = base_share(math.dist(*ends), a)
-            supports.append(Joint(number, FIXED, *ends, model.contact.normal * share, model.contact.shear * share))
+            supports.append(Joint(number, FIXED, *ends, contact.normal * share, contact.shear * share))
         if _on_side(start, end, (model.top - model.base) % 4, columns, rows):
-            loads += _surface_loads(model, number, ends)
-    centroid = model.block.section.centroid
+            if load.traction:
+                loads.append(SurfaceLoad(number, *ends, (load.traction, 0.0)))
+            part = ends if load.eccentricity == 0 else _overlap(np.array(ends), pressed)
+            if part and load.pressure:
+                loads.append(SurfaceLoad(number, *part, (0.0, -load.pressure)))
     return BlockSystem(
-        blocks,
-        joints + supports,
-        centroid,
-        a,
-        loads,
-        model.load.gravity,
-        model.load.motion,
+        blocks=[Block([place(corner) for corner in cell], model.block.material) for cell in cells],
+        joints=joints + supports,
+        observed=model.block.section.centroid,
+        base_length=a,
+        loads=loads,
+        gravity=load.gravity,
+        motion=load.motion,
         base_normal=(float(normal[0]), float(normal[1])),
-        slope=model.load.slope,
+        slope=load.slope,
     )
 
 
@@ -86,15 +92,12 @@ def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: 
     for field, count in (("columns", columns), ("rows", rows)):
         if count < 1:
             raise ValueError(f"{field}: must be at least 1, got {count!r}")
-    if not (math.isfinite(glue) and glue > 0):
-        raise ValueError(f"glue: must be finite and positive, got {glue!r}")
+    check_positive(glue=glue)
     if pattern not in ("squares", "triangles"):
         raise ValueError(f"pattern: must be 'squares' or 'triangles', got {pattern!r}")
-    corners = model.block.corners
-    side = np.roll(corners, -1, axis=0) - corners
-    after = np.roll(side, -1, axis=0)
-    if len(corners) != 4 or np.any(side[:, 0] * after[:, 1] - side[:, 1] * after[:, 0] <= 0):
-        raise ValueError(f"vertices: only convex quadrilaterals are cut into sub-blocks, got {len(corners)} corners")
+    turns = model.block.turns
+    if len(turns) != 4 or np.any(turns <= 0):
+        raise ValueError(f"vertices: only convex quadrilaterals are cut into sub-blocks, got {len(turns)} corners")
 
 
 def _corner_map(model: TwoBlockModel, columns: int, rows: int) -> Callable[[Corner], Point]:
@@ -118,7 +121,10 @@ def _cells(columns: int, rows: int, pattern: Pattern) -> list[tuple[Corner, ...]
     cells: list[tuple[Corner, ...]] = []
     for j in range(rows):
         for i in range(columns):
-            a, b, c, d = (i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)
+            a = (i, j)
+            b = (i + 1, j)
+            c = (i + 1, j + 1)
+            d = (i, j + 1)
             cells += [(a, b, c, d)] if pattern == "squares" else [(a, b, c), (a, c, d)]
     return cells
 
@@ -129,27 +135,15 @@ def _on_side(start: Corner, end: Corner, side: int, columns: int, rows: int) -> 
     return start[axis] == end[axis] == value
 
 
-def _surface_loads(model: TwoBlockModel, number: int, ends: tuple[Point, Point]) -> list[SurfaceLoad]:
-    """Return traction and pressure on one sub-block's part of the top edge."""
-    start, end = np.array(ends[0]), np.array(ends[1])
-    loads = []
-    if model.load.traction:
-        loads.append(SurfaceLoad(number, ends[0], ends[1], (model.load.traction, 0.0)))
-    part: tuple[Point, Point] | None = ends
-    if model.load.eccentricity != 0:
-        part = _overlap(start, end, *pressed_part(*model.block.edge(model.top), model.load.eccentricity))
-    if part and model.load.pressure:
-        loads.append(SurfaceLoad(number, *part, (0.0, -model.load.pressure)))
-    return loads
-
-
-def _overlap(start: Array, end: Array, low: Array, high: Array) -> tuple[Point, Point] | None:
-    """Return the part of the edge start-end between two points of its line, or None."""
-    side = end - start
+def _overlap(ends: Array, pressed: tuple[Array, Array]) -> tuple[Point, Point] | None:
+    """Return the part of an edge between two points of its line, or None."""
+    start = ends[0]
+    side = ends[1] - start
     length2 = float(side @ side)
-    first, last = sorted(float((p - start) @ side) / length2 for p in (low, high))
-    first, last = max(first, 0.0), min(last, 1.0)
+    first, last = sorted(float((p - start) @ side) / length2 for p in pressed)
+    first = max(first, 0.0)
+    last = min(last, 1.0)
     if not last > first:
         return None
-    (x1, y1), (x2, y2) = start + first * side, start + last * side
+    (x1, y1), (x2, y2) = (start + share * side for share in (first, last))
     return (float(x1), float(y1)), (float(x2), float(y2))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block
 from dda.model.load import BaseMotion, falling
 from dda.one_block.gap_form import D_COLUMNS
@@ -24,8 +24,6 @@ from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
-
-_ROUNDING = 64 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -55,19 +53,18 @@ class BlockSystem:
     loads: Sequence[SurfaceLoad] = ()
     gravity: float = 0.0  # downwards [m/s^2]
     motion: BaseMotion | None = None  # of all that is fixed
-    fixed: frozenset[int] = frozenset()  # blocks that do not move by themselves
     base_normal: tuple[float, float] = (0.0, 1.0)  # unit normal of the supports, into the blocks
     slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
         """Check that every block that is named exists."""
         joined = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
-        joined |= {load.block for load in self.loads} | set(self.fixed)
+        joined |= {load.block for load in self.loads}
         unknown = [b for b in joined if not 0 <= b < len(self.blocks)]
         if unknown:
             raise ValueError(f"joints: must name blocks from 0 to {len(self.blocks) - 1}, got {unknown[0]!r}")
         if not self._blocks_at_point:
-            raise ValueError(f"observed: must lie in a block that moves, got {self.observed!r}")
+            raise ValueError(f"observed: must lie in a block, got {self.observed!r}")
 
     @cached_property
     def load_size(self) -> float:
@@ -79,24 +76,19 @@ class BlockSystem:
     @cached_property
     def equations(self) -> Equations:
         """The equations in all six unknowns of every block that moves."""
-        moving = [i for i in range(len(self.blocks)) if i not in self.fixed]
-        place = dict(zip(moving, range(len(moving)), strict=True)) | dict.fromkeys((*self.fixed, FIXED), FIXED)
-        blocks = [self.blocks[i] for i in moving]
-        joints = [replace(j, first=place[j.first], second=place[j.second]) for j in self.joints]
-        joints = [j for j in joints if j.first != j.second]
-        B, G, kappa, C = _springs(blocks, joints)
+        B, G, kappa, C = _springs(self.blocks, self.joints)
         size = self.load_size or 1.0
         return Equations(
-            mass=np.array([_without_rounding(block.mass()) for block in blocks]).reshape(-1, 6, 6),
-            elastic=np.array([block.elastic() for block in blocks]).reshape(-1, 6, 6),
+            mass=np.array([_without_rounding(block.mass()) for block in self.blocks]),
+            elastic=np.array([block.elastic() for block in self.blocks]),
             B=B,
             G=G if self.motion is not None else 0 * G,
             kappa=kappa,
             C=C,
-            F=self._load(blocks, place) / size,
-            observers=self._observers(len(blocks), place),
+            F=self._load() / size,
+            observers=self._observers(),
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
-            kept=np.arange(6 * len(blocks)),
+            kept=np.arange(6 * len(self.blocks)),
         )
 
     @cached_property
@@ -104,30 +96,30 @@ class BlockSystem:
         """The equations without the unknowns and gaps that no load can reach."""
         return self.equations.reduced()
 
-    def _load(self, blocks: Sequence[Block], place: dict[int, int]) -> Array:
+    def _load(self) -> Array:
         """Return surface loads and weights, six for each block."""
-        F = np.zeros((len(blocks), 6))
-        for i, block in enumerate(blocks):
+        F = np.zeros((len(self.blocks), 6))
+        for i, block in enumerate(self.blocks):
             F[i, :2] = block.material.density * block.section.area * self.gravity * np.array(falling(self.slope))
         for load in self.loads:
-            i = place[load.block]
-            if i != FIXED:
-                start, end = np.array(load.start), np.array(load.end)
-                F[i] += _without_noise(blocks[i], blocks[i].segment_load(start, end, load.traction))
+            block = self.blocks[load.block]
+            acting = block.segment_load(np.array(load.start), np.array(load.end), load.traction)
+            lever = np.minimum(_levers(block), 1.0)
+            F[load.block] += without_rounding(acting, np.max(np.abs(acting)) * lever)
         return F.ravel()
 
     @cached_property
     def _blocks_at_point(self) -> list[int]:
-        found = [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(self.observed))]
-        return [i for i in found if i not in self.fixed]
+        return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(self.observed))]
 
-    def _observers(self, count: int, place: dict[int, int]) -> dict[str, Array]:
+    def _observers(self) -> dict[str, Array]:
         """Return the rows of the displacements, rotation and strains at the observed point."""
-        rows = np.zeros((6, count, 6))
+        rows = np.zeros((6, len(self.blocks), 6))
         share = 1 / len(self._blocks_at_point)
         for i in self._blocks_at_point:
-            rows[:2, place[i]] = share * _without_noise(self.blocks[i], self.blocks[i].T(*self.observed))
-            rows[2:, place[i], 2:] = share * np.eye(4)
+            block = self.blocks[i]
+            rows[:2, i] = share * without_rounding(block.T(*self.observed), _levers(block))
+            rows[2:, i, 2:] = share * np.eye(4)
         return dict(zip(D_COLUMNS, rows.reshape(6, -1), strict=True))
 
 
@@ -148,8 +140,12 @@ class Equations:
 
     def blockwise(self, matrices: Array) -> csr_array:
         """Return a matrix of 6 x 6 blocks as a sparse one in the kept unknowns."""
-        full = _sparse_blocks(matrices)
-        return full if len(self.kept) == full.shape[0] else full[self.kept][:, self.kept]
+        from scipy.sparse import csr_array
+
+        block, i, k = np.nonzero(matrices)
+        size = 6 * len(matrices)
+        full = csr_array((matrices[block, i, k], (6 * block + i, 6 * block + k)), shape=(size, size))
+        return full if len(self.kept) == size else full[self.kept][:, self.kept]
 
     @cached_property
     def at_rest(self) -> Callable[[Array, Array], tuple[Array, Array]]:
@@ -187,11 +183,14 @@ class Equations:
 
     def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
         """Return the rows of some columns by D and by lambda."""
-        nothing, none = np.zeros(len(self.F)), np.zeros(len(self.pressure))
-        by_D = [self.observers.get(name, nothing) for name in columns]
-        by_force = [self.pressure if name == "contact_pressure" else none for name in columns]
-        shape = len(columns), len(self.F)
-        return np.array(by_D).reshape(shape), np.array(by_force).reshape(len(columns), len(self.pressure))
+        by_D = np.zeros((len(columns), len(self.F)))
+        by_force = np.zeros((len(columns), len(self.pressure)))
+        for i, name in enumerate(columns):
+            if name == "contact_pressure":
+                by_force[i] = self.pressure
+            else:
+                by_D[i] = self.observers[name]
+        return by_D, by_force
 
 
 @dataclass
@@ -238,11 +237,13 @@ def saddle(Ke: csr_array, B: csr_array, C: csr_array, modulus: float) -> Callabl
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
     """Return B, G, kappa and its inverse."""
-    from scipy.sparse import coo_array, csr_array
+    from scipy.sparse import csr_array
 
     groups = gap_groups(blocks, joints)
     total = sum(len(group.stiffness) for group in groups)
-    G, entries, first = np.zeros((total, 2)), [], 0
+    G = np.zeros((total, 2))
+    entries: list[tuple[Array, NDArray[np.intp], NDArray[np.intp]]] = []
+    first = 0
     for group in groups:
         last = first + len(group.stiffness)
         for body, rows in group.bodies.items():
@@ -252,13 +253,12 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
                 i, k = np.nonzero(rows)
                 entries.append((rows[i, k], first + i, 6 * body + k))
         first = last
-    data, i, k = (np.concatenate(part) for part in zip(*entries, strict=True)) if entries else np.zeros((3, 0), int)
-    B = csr_array(coo_array((data, (i, k)), shape=(total, 6 * len(blocks))))
     if not groups:
-        empty = csr_array((0, 0))
-        return B, G, empty, empty
+        return csr_array((0, 6 * len(blocks))), G, csr_array((0, 0)), csr_array((0, 0))
+    data, i, k = (np.concatenate(part) for part in zip(*entries, strict=True))
+    B = csr_array((data, (i, k)), shape=(total, 6 * len(blocks)))
     stiffness = [group.stiffness for group in groups]
-    return B, G, _block_diagonal(stiffness), _block_diagonal(_inverses_of(stiffness))
+    return B, G, _block_diagonal(stiffness), _block_diagonal([inverses(kappa[None])[0] for kappa in stiffness])
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
@@ -268,51 +268,29 @@ def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
     return csr_array(block_diag([coo_array(block) for block in blocks]))  # whose zeros are not stored
 
 
-def _inverses_of(matrices: Sequence[Array]) -> list[Array]:
-    """Return the inverses of positive definite matrices of several sizes, all of one size at a time."""
-    found: dict[int, Array] = {}
-    for size in {len(matrix) for matrix in matrices}:
-        same = [n for n, matrix in enumerate(matrices) if len(matrix) == size]
-        found |= dict(zip(same, inverses(np.array([matrices[n] for n in same])), strict=True))
-    return [found[n] for n in range(len(matrices))]
-
-
 def inverses(matrices: Array) -> Array:
     """Return the inverses of positive definite matrices, scaled so that widely spread diagonals keep their digits."""
     root = np.sqrt(np.einsum("nii->ni", matrices))
     scale = root[:, :, None] * root[:, None, :]
-    inverse: Array = np.linalg.inv(matrices / scale) / scale
-    return inverse
-
-
-def _sparse_blocks(matrices: Array) -> csr_array:
-    from scipy.sparse import coo_array, csr_array
-
-    block, i, k = np.nonzero(matrices)
-    size = 6 * len(matrices)
-    return csr_array(coo_array((matrices[block, i, k], (6 * block + i, 6 * block + k)), shape=(size, size)))
+    return np.asarray(np.linalg.inv(matrices / scale) / scale)
 
 
 def _without_rounding(M: Array) -> Array:
     """Return a positive definite matrix with the zeros of a symmetric shape made exact."""
     root = np.sqrt(np.diag(M))
-    cleaned: Array = np.where(abs(M) <= _ROUNDING * np.outer(root, root), 0.0, M)
-    return cleaned
+    return without_rounding(M, np.outer(root, root))
 
 
-def _without_noise(block: Block, rows: Array) -> Array:
-    """Return rows by the unknowns with the zeros of a symmetric place made exact: a lever is never that short."""
-    lever = np.array([1.0, 1.0, *[float(np.max(np.ptp(block.corners, axis=0)))] * 4])
-    size = np.max(np.abs(rows), initial=0.0) if rows.ndim == 1 else 1.0
-    scale = size * (lever if rows.ndim == 2 else np.minimum(lever, 1.0))
-    cleaned: Array = np.where(abs(rows) <= _ROUNDING * scale, 0.0, rows)
-    return cleaned
+def _levers(block: Block) -> Array:
+    """Return the size of the displacement of a block's points by its unknowns, by which a symmetric place has zeros."""
+    return np.array([1.0, 1.0, *[float(np.max(np.ptp(block.corners, axis=0)))] * 4])
 
 
 def _holds(corners: Array, point: Array) -> bool:
     """Tell whether a polygon holds a point, its boundary included."""
     slack = 1e-9 * float(np.max(np.ptp(corners, axis=0)))
-    a, b = corners - point, np.roll(corners, -1, axis=0) - point
+    a = corners - point
+    b = np.roll(corners, -1, axis=0) - point
     side = b - a
     along = np.clip(-np.sum(a * side, axis=1) / np.sum(side * side, axis=1), 0, 1)
     if np.min(np.hypot(*(a + along[:, None] * side).T)) <= slack:

@@ -38,7 +38,7 @@ def both(m, scheme, steps):
 DATA = [(1e-6, 1e-7, 0.9), (1.0, 1e-3, 1.0), (3.0, 7e-4, 0.0), (1.0, 1.0, 1.0)]  # p / E, step, gg
 
 
-@pytest.mark.parametrize(("data", "scheme", "start"), thinned(product(DATA, SCHEMES[:4], ["zero", "consistent"]), 5))
+@pytest.mark.parametrize(("data", "scheme", "start"), thinned(product(DATA, SCHEMES[:4], ["zero", "consistent"]), 11))
 def test_no_digit_is_lost_that_steps_keep(data, scheme, start):
     (ratio, step, gg), (alpha, delta) = data, scheme
     m, scheme, steps = model(ratio), Scheme(alpha, delta, gg, step, start), 400

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from faults.steps import stepping_by
-from oracles.unilateral_checks import DT, apart, checked, mirrored, random_model, run, size, sums
+from oracles.unilateral_checks import DT, apart, checked, random_model, run, size, sums
 
 import dda.one_block.unilateral as unilateral
 import dda.one_block.unilateral_step as step
@@ -41,28 +41,21 @@ OTHER = UnilateralModel(
 TRAVEL = 2.0 / np.sqrt(1e9 / 2700.0)  # a/c of PAPER [s]
 
 
-@pytest.mark.parametrize(("seed", "scheme"), thinned(product(SEEDS, SCHEMES), 5))
+@pytest.mark.parametrize(("seed", "scheme"), thinned(product(SEEDS, SCHEMES), 11))
 def test_complementarity_momentum_and_energy_hold_to_rounding(seed, scheme):
     alpha, delta, gg, start = scheme
     result = checked(random_model(seed), Scheme(alpha, delta, gg, DT, start))
     assert seed % 3 != 1 or len(result.notes) > 1  # symmetric scenes keep one contact
 
 
-@pytest.mark.parametrize("p", [1e14, 1e18, 1e22, np.inf])
-@pytest.mark.parametrize("seed", [3, 5, 11])
+@pytest.mark.parametrize(("seed", "p"), thinned(product([3, 5, 11], [1e14, 1e18, 1e22, np.inf]), 5))
 def test_a_stiff_normal_spring_beside_glued_shear_keeps_the_invariants(seed, p):
     model = random_model(seed, glued=True)
     result = checked(replace(model, contact=replace(model.contact, stiffness=p)), Scheme(0.5, 1.0, 1.0, DT), 200)
     assert np.max(np.diff(sums(result)[0])) <= 1e-13 * size(result)
 
 
-def test_the_random_scenes_open_and_close():
-    results = [run(random_model(seed)) for seed in SEEDS]
-    switches = [np.count_nonzero(np.diff(r.closed_m)) + np.count_nonzero(np.diff(r.closed_n)) for r in results]
-    assert np.count_nonzero(np.array(switches) > 1) > len(switches) / 2
-
-
-@pytest.mark.parametrize("seeds", thinned([range(5), range(5, 17)], 2))
+@pytest.mark.parametrize("seeds", thinned([range(2), range(2, 17)], 2))
 @pytest.mark.parametrize(("alpha", "glued", "gg"), [(0.5, False, 1.0), (0.5, True, 1.0), (0.75, True, 0.95)])
 def test_no_step_gains_energy_at_delta_one(alpha, glued, gg, seeds):
     steps = 0
@@ -82,30 +75,6 @@ def test_no_step_gains_energy_at_delta_one(alpha, glued, gg, seeds):
 def test_average_acceleration_gains_energy_by_opening():
     gains = [np.min(np.diff(run(random_model(s), 0.25, 0.5, energies=True).energies["switching"])) for s in SEEDS[:4]]
     assert np.min(gains) < 0  # the theorem above is one of delta = 1, not of the bookkeeping
-
-
-@pytest.mark.parametrize("seed", thinned(SEEDS, 5))
-def test_doubled_loads_double_everything_and_keep_the_switches(seed):
-    model = random_model(seed)
-    one = run(model)
-    contact = replace(model.contact, gap=2 * model.contact.gap)
-    loads = {name: 2 * getattr(model, name) for name in ("pressure", "traction", "gravity", "velocity")}
-    two = run(replace(model, contact=contact, **loads))
-    for name in ("normal_force_m", "shear_force_n", "gap_n", "shear_m", "velocity"):
-        assert np.array_equal(2 * getattr(one, name), getattr(two, name)), name
-    assert np.array_equal(one.closed_m, two.closed_m) and np.array_equal(one.step_solves, two.step_solves)
-
-
-@pytest.mark.parametrize("seed", thinned(SEEDS, 5))
-def test_the_mirror_image_exchanges_the_corners(seed):
-    """To the rounding that a few hundred steps with a few switches amplify."""
-    model = random_model(seed)
-    left, right = run(model), run(mirrored(model))
-    for one, other in (("m", "n"), ("n", "m")):
-        assert apart(getattr(right, f"normal_force_{other}"), getattr(left, f"normal_force_{one}")) <= 1e-9
-    assert apart(right.columns["displacement"], left.columns["displacement"]) <= 1e-9
-    assert apart(right.gap_n, left.gap_m) <= 1e-9
-    assert np.max(np.abs(left.shear_force_m + right.shear_force_n)) <= 1e-9 * np.max(left.normal_force_m)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -155,7 +124,7 @@ def test_the_first_step_opens_below_the_closed_formula(alpha, delta, p):
 @pytest.mark.parametrize(("scheme", "p"), thinned(product(SCHEMES, [1e9, 1e11, 1e15, np.inf]), 5))
 def test_frictionless_contacts_take_two_and_three_solves_at_most(scheme, p):
     alpha, delta, gg, start = scheme
-    for dt in (1e-4, 1e-3, 1e-2):
+    for dt in (1e-4, 1e-2):
         for e, most in ((0.0, 2), (0.4, 3)):
             model = replace(PAPER, contact=Unilateral(p), eccentricity=e)
             result = solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), 300)
@@ -199,8 +168,8 @@ def test_a_dropped_block_falls_freely_until_the_gap_closes(p):
 
 @pytest.mark.parametrize(("gg", "delta"), [(1.0, 0.5), (0.97, 1.0)])
 def test_an_explicit_scheme_keeps_the_invariants(gg, delta):
-    for seed in (3, 7, 11):
-        checked(random_model(seed), Scheme(0.0, delta, gg, 2e-6), 1000)
+    for seed in (3, 11):
+        checked(random_model(seed), Scheme(0.0, delta, gg, 2e-6), 500)
 
 
 def test_gg_in_flight_is_a_drag_by_the_closed_formula():

@@ -95,6 +95,7 @@ def orders(problem, scheme, counts, end):
 
 GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
 ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
+COUNTS = [500, 1000, 2000]  # steps
 # Schemes, exact motions and their order; a step hits a switch anywhere, which scatters a fitted order by a few tenths.
 ORDERS = [
     (PAPER, (0.5, 1.0, "zero"), 1.0, 0.1),
@@ -106,11 +107,11 @@ ORDERS = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "scheme", "order", "scatter"), thinned(ORDERS, 2))
+@pytest.mark.parametrize(("problem", "scheme", "order", "scatter"), thinned(ORDERS, 6))
 def test_the_order_in_dt_through_switches(problem, scheme, order, scatter):
-    fitted, errors = orders(problem, scheme, [500, 1000, 2000, 4000], 0.03)
+    fitted, errors = orders(problem, scheme, COUNTS, 0.03)
     assert abs(fitted - order) < scatter, errors
-    assert errors[-1] < (3e-5 if order == 2 else 2e-2)
+    assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)
 
 
 def late_errors(problem, phase, counts):
@@ -125,6 +126,7 @@ def late_errors(problem, phase, counts):
     return np.array(errors)
 
 
+@pytest.mark.long
 def test_glued_shear_lowers_average_acceleration_to_first_order():
     """Opening takes a finite shear force away, at the end of its step instead of within: an error of first order.
 
@@ -137,7 +139,8 @@ def test_glued_shear_lowers_average_acceleration_to_first_order():
     assert abs(late - early)[-1] > abs(middle[-1])
 
 
-@pytest.mark.parametrize(("p", "expected"), [(1e9, 21), pytest.param(1e10, 83, marks=pytest.mark.long)])
+@pytest.mark.parametrize(("p", "expected"), [(1e9, 21), (1e10, 83)])
+@pytest.mark.long
 def test_switches_in_two_tenths_of_a_second_are_those_of_the_exact_block_as_dt_shrinks(p, expected):
     """At 10 microseconds (1/2, 1) sees all 21 switches at p = 1E and loses a part of the 108 at p = 10E."""
     result = solve_unilateral(model_of(replace(PAPER, stiffness=p)), Scheme(0.5, 1.0, 1.0, 1e-5), 20000)

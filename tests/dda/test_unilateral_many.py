@@ -8,7 +8,7 @@ from oracles.unilateral_checks import apart, checked, mirrored, random_model, si
 
 from dda import Contact, Scheme, TwoBlockModel, UnilateralOptions, solve, solve_unilateral
 
-MANY, FEW, LEAST = 500, 40, 12  # scenes of the short set: LEAST where each is stepped four times and more
+MANY, FEW, LEAST = 500, 20, 4  # scenes of the short set: LEAST where each is stepped four times and more
 STEPS = 50
 NAMES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "gap_m", "gap_n", "velocity")
 ENERGIES = UnilateralOptions(energies=True)

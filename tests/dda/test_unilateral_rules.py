@@ -1,9 +1,11 @@
 """Two other rules of contact: the force of the end of the step alone, and the force that keeps the energy."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.unilateral_checks import random_model, size, sums
 
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
@@ -25,8 +27,7 @@ def average(dt, gg=1.0, start="zero"):
 # ---- energy ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("p", [1e9, 1e11, 1e13, 1e16])
-@pytest.mark.parametrize("dt", [2e-3, 3e-4, 2e-5])
+@pytest.mark.parametrize(("p", "dt"), thinned(product([1e9, 1e11, 1e13, 1e16], [2e-3, 3e-4, 2e-5]), 5))
 def test_the_papers_block_keeps_its_energy_at_every_stiffness_and_step(p, dt):
     result = solve_unilateral(replace(PAPER, contact=Unilateral(p)), average(dt), 250, options=CONSERVING)
     total, lost = sums(result)
@@ -97,7 +98,7 @@ LONG = pytest.mark.long
 )
 @pytest.mark.parametrize(("options", "order", "scatter"), [(CONSERVING, 2.0, 0.15), (IMPLICIT, 1.0, 0.1)])
 def test_the_order_in_dt_through_switches(problem, options, order, scatter):
-    end, errors, counts = 0.03, [], [200, 400, 800, 1600]
+    end, errors, counts = 0.03, [], [200, 400, 800]
     motion = exact_motion(problem, end)
     block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, problem.poisson))
     model = UnilateralModel(block, Unilateral(1e9), 5e6, eccentricity=problem.eccentricity)
@@ -107,7 +108,7 @@ def test_the_order_in_dt_through_switches(problem, options, order, scatter):
         v = motion.at(np.minimum(result.time, end)).displacement[1]
         errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
     assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - order) < scatter, errors
-    assert errors[-1] < (2e-4 if order == 2 else 3e-2)
+    assert errors[-1] < (8e-4 if order == 2 else 6e-2)
 
 
 # ---- the forces ------------------------------------------------------------------------------------------------------

@@ -163,7 +163,7 @@ RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 # Columns
 COLUMN_INERTIA = Seam(column_equations, column_equations.inertia)
 COLUMN_STIFFNESS = Seam(column_equations, column_equations.stiffness)
-COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.effective_matrix)
+COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.dashpot_matrix)
 COLUMN_PREDICTORS = Seam(column_stepping, column_stepping.predictors)
 COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
 COLUMN_SPRINGS = Seam(column_equations, column_equations.opening_stiffness)

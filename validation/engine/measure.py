@@ -61,7 +61,7 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver = case.make_solver()
     scene = case.scene
-    prepared, run = attempt(solver, scene, case.full)
+    prepared, run = attempt(solver, scene, case.full, contact_record=_reads_contact_record(case))
     run = _repeated(checked(run, scene), solver, case)
     failed: list[str] = []
     metrics: dict[str, Value] = {}
@@ -114,7 +114,9 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
 
 
 @np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of
-def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None) -> tuple[Prepared | None, Run]:
+def attempt(
+    solver: Solver, scene: Scene, full: bool, fields: Path | None = None, contact_record: bool = False
+) -> tuple[Prepared | None, Run]:
     """Prepare and run a scene, and turn the solver's errors into outcomes.
 
     Parameters
@@ -125,6 +127,8 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         Switch the numerical savings off.
     fields
         File for displacement and stress fields; none is written where None.
+    contact_record
+        Keep what metrics of contact are measured from, energies included.
 
     Returns
     -------
@@ -138,6 +142,7 @@ def attempt(solver: Solver, scene: Scene, full: bool, fields: Path | None = None
         narrowed_scene, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         prepared = solver.prepare(narrowed_scene, full)
+        prepared.keeps_contact_record = contact_record
         run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
@@ -214,6 +219,11 @@ def _measures(case: Case, run: Run) -> set[str]:
         if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
             measures |= {"horizon"}
     return measures if "history" in measures else measures - {"modes"}
+
+
+def _reads_contact_record(case: Case) -> bool:
+    """Tell whether a metric that a run of the case may have is one of its contacts."""
+    return any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only))
 
 
 def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:

@@ -57,6 +57,8 @@ class Prepared:
 
     scene: Scene
 
+    keeps_contact_record = False  # whether `contact_record` will be asked for; set before `run`
+
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene; `fields` names a file for displacement and stress fields.
 

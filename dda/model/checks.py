@@ -1,0 +1,38 @@
+"""What numbers must be: a refusal names field, rule and value in one line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+
+def _check(rule: str, holds: Callable[[Any], bool], values: Mapping[str, Any]) -> None:
+    for field, value in values.items():
+        if not holds(value):
+            raise ValueError(f"{field}: must be {rule}, got {value!r}")
+
+
+def check_finite(**values: float) -> None:
+    """Raise ValueError for infinity and NaN."""
+    _check("finite", math.isfinite, values)
+
+
+def check_positive(**values: float) -> None:
+    """Raise ValueError unless all values are finite and positive."""
+    _check("finite and positive", lambda value: math.isfinite(value) and value > 0, values)
+
+
+def check_not_negative(**values: float) -> None:
+    """Raise ValueError unless all values are finite and not negative."""
+    _check("finite and not negative", lambda value: math.isfinite(value) and value >= 0, values)
+
+
+def check_share(**values: float) -> None:
+    """Raise ValueError unless all values are between 0 and 1, these included."""
+    _check("between 0 and 1", lambda value: 0 <= value <= 1, values)
+
+
+def check_count(**values: int) -> None:
+    """Raise ValueError unless all values are positive integers."""
+    _check("a positive integer", lambda n: isinstance(n, int) and not isinstance(n, bool) and n > 0, values)
