@@ -232,8 +232,6 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
     "column-events": OF_CONTACTS,
     "bars-events": OF_CONTACTS[-2:],
     "dda-60": ("locked",),
-    "fem-60": ("locked",),
-    "bar-60": ("locked",),
 }
 
 
@@ -246,10 +244,6 @@ def pairs(solver: str) -> list[Any]:
 EVERY = pytest.mark.parametrize(("solver", "name"), list(itertools.chain.from_iterable(map(pairs, BUILT_IN))))
 
 
-WITHOUT_SAVINGS = [  # of sixty digits a whole mesh takes long
-    pytest.param(*param.values, id=param.id, marks=[*param.marks, *[pytest.mark.long] * (param.values[0] == "fem-60")])
-    for param in EVERY.args[1]
-]
 LINEAR = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] not in NOT_LINEAR]
 
 OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if "column" not in SCENES[param.values[1]]]
@@ -289,7 +283,7 @@ def test_asked_again_for_one_column_it_gives_the_same(solver: str, name: str, tm
         assert_same(alone, {column: columns[column]}, 1e-12)
 
 
-@pytest.mark.parametrize(("solver", "name"), WITHOUT_SAVINGS)
+@EVERY
 def test_without_savings_it_gives_the_same(solver: str, name: str, tmp_path: Path) -> None:
     scene = asked(solver, made(name, tmp_path))
     assert_same(solved(solver, scene, full=True), solved(solver, scene), 1e-8)

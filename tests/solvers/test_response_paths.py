@@ -160,7 +160,7 @@ def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:
 
 
 def test_refusals_name_solver_scene_and_rule() -> None:
-    for solver in ("fenicsx", "dda-textbook", "dda-60", "bar-60"):
+    for solver in ("fenicsx", "dda-textbook", "dda-60"):
         with pytest.raises(InputError, match=r"figures-3-4: solver .*no frequency response"):
             response(BLOCK, 1.0, solver)
     with pytest.raises(InputError, match=r"frequencies: must be finite and not negative, got -1"):

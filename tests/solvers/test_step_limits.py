@@ -53,7 +53,6 @@ SCENES = {
     "locked": ("dda", {}),
     "sixty digits": ("dda-60", {}),
     "mesh": ("fem", {}),
-    "sixty digits of a mesh": ("fem-60", {}),
     "adaptive": ("dda", {"damping": {"kinetic": "adaptive", "floor": 0.5}}),
     "opening": ("dda", {"contact": OPEN}),
     "frictionless": ("dda", {"contact": {**OPEN, "shear_stiffness": 0.0}}),
