@@ -18,7 +18,7 @@ from validation.scenes.drive import read_record
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.events import KINDS, Motion
+from validation.solvers.events import KINDS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
@@ -135,8 +135,7 @@ class BarsOfColumn(Motion):
 
     def bounds(self) -> Iterable[str]:
         """Yield how far the switches are known."""
-        digits = self.motion.digits
-        yield f"the same switches in {digits // 2} and in {digits} digits"
+        yield digits_of_switches(self.motion)
 
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return the columns that the scene asks for."""
