@@ -56,7 +56,8 @@ class Sine:
     def series(self, start: arb, length: float, count: int) -> list[arb]:
         """Coefficients of the first powers of (t - start) / length."""
         angle = self.rate * (start - arb(self.origin))
-        sine, cosine = angle.sin(), angle.cos()
+        sine = angle.sin()
+        cosine = angle.cos()
         turns = [sine, cosine, -sine, -cosine]
         step = self.rate * arb(length)
         power = self.amplitude
@@ -90,7 +91,8 @@ class Ricker:
         """Coefficients of the first powers of (t - start) / length."""
         f = arb(self.pulse_frequency)
         late = start - 2 / f
-        before, ctx.cap = ctx.cap, count
+        before = ctx.cap
+        ctx.cap = count
         try:
             delay = arb_series([late, arb(length)], prec=count)
             b = delay * (arb.pi() * f)

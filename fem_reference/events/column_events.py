@@ -188,17 +188,23 @@ class ColumnMotion(ProvenMotion):
         radius: Array,
     ) -> ColumnHistory:
         """Put what the unknowns do into faces and joints."""
-        model, problem = self.model, self.problem
+        model = self.model
+        problem = self.problem
         stretch, reference, travel = joints
         shape = len(problem.blocks), len(t)
         # the last row is where `BASE` points to
         u, v, a = (np.vstack([part, of_base]) for part, of_base in zip(motion, base, strict=True))
         feet, tops = ([face[side] for face in model.faces] for side in (0, 1))
-        foot, top, foot_velocity, top_velocity = u[feet], u[tops], v[feet], v[tops]
+        foot = u[feet]
+        top = u[tops]
+        foot_velocity = v[feet]
+        top_velocity = v[tops]
         force, y, y_rate, slip, joint_states = (np.zeros(shape) for _ in range(5))
-        springs, friction = np.zeros(len(t)), np.zeros(len(t))
+        springs = np.zeros(len(t))
+        friction = np.zeros(len(t))
         for c, contact in enumerate(model.contacts):
-            k, j = float(contact.stiffness), contact.joint
+            k = float(contact.stiffness)
+            j = contact.joint
             y[j] = stretch[c]
             y_rate[j] = v[contact.above] - v[contact.below]
             slip[j] = reference[c]

@@ -22,7 +22,10 @@ from fem_reference.events.enclosure import Fall, Local, ball, first_fall
 from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
-OPEN, CLOSED, STICKS, SLIPS = 0, 1, 1, 2
+OPEN = 0
+CLOSED = 1
+STICKS = 1
+SLIPS = 2
 """States of a contact; `SLIPS` towards +, -`SLIPS` towards -."""
 ANGLE = 6.0
 """Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
