@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.bars_by_grid import bars_on_grid
 
 from fem_reference.events import bars_events
@@ -216,7 +217,7 @@ def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, n
     )
 
 
-@pytest.mark.parametrize("seed", [*RANDOM[:3], *(pytest.param(seed, marks=pytest.mark.long) for seed in RANDOM[3:])])
+@pytest.mark.parametrize("seed", thinned(RANDOM, 6))
 def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     problem, end = random_problem(seed)
     motion = solve(problem, end)
@@ -235,7 +236,7 @@ def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
 
 
-@pytest.mark.parametrize("seed", [*RANDOM[:3], pytest.param(RANDOM[3], marks=pytest.mark.long)])
+@pytest.mark.parametrize("seed", thinned(RANDOM[:4], 4))
 def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
     problem, end = random_problem(seed)
     motion = solve(problem, end)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from fem_reference.column import contacts
 from fem_reference.column.contacts import (
@@ -105,6 +106,7 @@ def errors_of_blocks(column: ContactColumn, numbers: tuple[float, float], count:
     return float(np.abs(final - exact).max() / np.abs(exact).max())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "column",
     [
@@ -155,14 +157,17 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
 
 @pytest.mark.parametrize(
     ("column", "numbers", "counts", "order", "band"),
-    [
-        (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
-        (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
-        (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
-        (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
-        pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
-        pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
-    ],
+    thinned(
+        [
+            (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
+            (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
+            (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
+            (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
+            pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
+            pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
+        ],
+        4,
+    ),
     ids=lambda value: "",
 )
 def test_finer_elements_tend_to_the_exact_bars(

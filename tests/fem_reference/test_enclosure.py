@@ -344,6 +344,7 @@ def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(mo
     assert 0 < caught.value.time < 1.0
 
 
+@pytest.mark.long
 def test_what_would_take_too_many_steps_is_given_up_early() -> None:
     """At p = 1e24 N/m the millisecond has 27 million radians; the block rests, and no switch shortens it."""
     resting = replace(PAPER, stiffness=1e24, pressure=0.0, gravity=9.81)
