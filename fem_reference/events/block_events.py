@@ -192,8 +192,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     end
         Last instant [s].
     digits
-        Decimal digits of the computation, at least 30; twice as many are taken, up to `MOST_DIGITS`, where the instants
-        of the switches are not enclosed to `PROMISED`.
+        Decimal digits of the computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
+        the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
 
@@ -222,4 +222,4 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         nodes = tuple(march.nodes)
         return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows)
 
-    return with_enough_digits(motion_in, digits, MOST_DIGITS, PROMISED * end)
+    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

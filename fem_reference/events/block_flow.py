@@ -322,24 +322,42 @@ class Flow:
                 margin[i] = -1.0
             elif place:
                 terms[i] = np.append(terms[i, place:], np.zeros(place))
-        doubtful = np.arange(len(terms))
-        forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
-        doubtful = doubtful[~(forms > margin)]
-        if not len(doubtful):
-            return 1.0, 0.0, []
-        terms = terms[doubtful]
-        margin = margin[doubtful, None]
-        low = 0.0
-        width = 1.0
-        for _ in range(CUTS):
-            forms = (terms @ bernstein(CELLS)).reshape(len(terms), CELLS, FLOAT_TERMS).min(axis=2)
-            failing = np.flatnonzero(~(forms > margin).all(axis=0))
-            if not len(failing):
-                return low + width, 0.0, []
-            width /= CELLS
-            low += failing[0] * width
-            terms = terms @ cell_shift(CELLS, int(failing[0]))
-        return low, width, doubtful.tolist()
+        return first_doubt(terms, margin)
+
+
+def first_doubt(terms: Array, margin: Array) -> tuple[float, float, list[int]]:
+    """Where Bernstein's forms prove polynomials on [0, 1] to be positive.
+
+    Parameters
+    ----------
+    terms
+        Coefficients of their powers, shape (functions, `FLOAT_TERMS`).
+    margin
+        What each may be wrong by, shape (functions,).
+
+    Returns
+    -------
+    share, width, doubtful
+        The end of the part throughout which all are positive; the length of the next part, in which that cannot be
+        proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
+    """
+    forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
+    doubtful = np.flatnonzero(~(forms > margin))
+    if not len(doubtful):
+        return 1.0, 0.0, []
+    terms = terms[doubtful]
+    margins = margin[doubtful, None]
+    low = 0.0
+    width = 1.0
+    for _ in range(CUTS):
+        forms = (terms @ bernstein(CELLS)).reshape(len(terms), CELLS, FLOAT_TERMS).min(axis=2)
+        failing = np.flatnonzero(~(forms > margins).all(axis=0))
+        if not len(failing):
+            return low + width, 0.0, []
+        width /= CELLS
+        low += failing[0] * width
+        terms = terms @ cell_shift(CELLS, int(failing[0]))
+    return low, width, doubtful.tolist()
 
 
 def to_floats(matrix: arb_mat) -> Array:

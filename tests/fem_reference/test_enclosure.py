@@ -357,7 +357,7 @@ def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch
     stiff = replace(PAPER, stiffness=1e11)
     assert solve(stiff, 0.02, digits=30).digits == 30
     monkeypatch.setattr(block_events, "PROMISED", 1e-40)
-    assert solve(stiff, 0.02, digits=30).digits == 60
+    assert solve(stiff, 0.02, digits=30).digits > 30
     monkeypatch.setattr(block_events, "MOST_DIGITS", 30)
     with pytest.raises(LostDigitsError) as caught:
         solve(stiff, 0.02, digits=30)
