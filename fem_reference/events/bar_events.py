@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 from fem_reference.events import bars_events
 from fem_reference.events.bars_events import BarsMotion
 from fem_reference.events.bars_march import CLOSED, OPEN, JointPiece
-from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem, DrivePiece
+from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
+from fem_reference.events.column_drive import constant
 from fem_reference.events.switches import Switch
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -135,8 +136,7 @@ def solve(problem: BarProblem, end: float, limit: int = 10_000) -> BarMotion:
     """
     bar = Bar(problem.height, problem.density, problem.young, problem.velocity)
     spring = BarJoint("unilateral", problem.base_stiffness / problem.width, problem.gap)
-    pressure = DrivePiece(0.0, (problem.pressure,))
-    one_bar = BarsProblem((bar,), (spring,), problem.gravity, top=(pressure,))
+    one_bar = BarsProblem((bar,), (spring,), problem.gravity, top=constant(problem.pressure))
     bars = bars_events.solve(one_bar, end, limit=limit, advances=ADVANCES)
     base = bars.joints[0]
     pieces = [] if base is None else base.pieces

@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 
 from flint import arb, ctx
 
-from fem_reference.events.bars_model import BarJoint, BarsProblem, Drive
+from fem_reference.events.bars_model import BarJoint, BarsProblem, function_of
+from fem_reference.events.column_drive import Drive
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
 
 OPEN = "open"
@@ -273,9 +274,7 @@ def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> 
     def piece(start: arb, function: ExponentialSum) -> WavePiece:
         return WavePiece(start, function * factor if fall is None else (function * factor).plus(fall * start, fall))
 
-    pieces = [piece(arb(0), ExponentialSum(rates))]
-    for part in drive:
-        pieces.append(piece(arb(part.start), part.function(rates)))
+    pieces = [piece(arb(start), function_of(part, arb(start), rates)) for start, part in drive().parts()]
     return Arrival(Wave(pieces, arb("inf")), arb(0))
 
 

@@ -1,6 +1,7 @@
-"""What drives a column: pieces of entire functions, each with its Taylor coefficients and a bound on what follows them.
+"""What drives columns and bars: pieces of entire functions, their Taylor coefficients and a bound on what follows.
 
-A drive is a displacement of the base (or of the wave that comes up through the half-space) or a pressure on the top.
+A drive is a displacement of the base (or of the wave that comes up through the half-space) or a pressure on the top; of
+bars the base's drive is its velocity.
 On each piece it is a polynomial, a sine or a Ricker pulse, so that a step that ends where the piece does has a power
 series with a proven remainder.
 """
@@ -132,6 +133,16 @@ class Course:
         end = self.breaks[index] if index < len(self.breaks) else None
         return self.pieces[index], end
 
+    def parts(self) -> list[tuple[float, Piece]]:
+        """Return the pieces from t = 0 on, each with its beginning [s]."""
+        parts = []
+        start: float | None = 0.0
+        while start is not None:
+            piece, end = self.piece_at(start)
+            parts.append((start, piece))
+            start = end
+        return parts
+
 
 Drive = Callable[[], Course]
 """Makes its course in the precision of the current context."""
@@ -140,6 +151,11 @@ Drive = Callable[[], Course]
 def still() -> Course:
     """Nothing."""
     return Course((), (NOTHING,))
+
+
+def constant(size: float) -> Drive:
+    """A size from t = 0 on."""
+    return lambda: Course((), (Polynomial((size,)),))
 
 
 def half_sine(size: float, duration: float, integral: bool = False) -> Drive:

@@ -25,7 +25,7 @@ from fem_reference.column.contacts import (
 )
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
-from fem_reference.events import bars_events, bars_model
+from fem_reference.events import bars_events, bars_model, column_drive
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -138,10 +138,10 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
     end = {CRADLE: 6.0, TWO_BARS: 8.0, SPALL: 0.04}[column]
     dt = travel / count / 2
     steps = round(end / dt)
-    drive, top = still(steps), ()
+    drive, top = still(steps), column_drive.still
     if column is SPALL:
         drive = still(steps, pressure=half_sine(2e6, 0.004, dt * np.arange(steps + 1)))
-        top = bars_model.half_sine(2e6, 0.004)
+        top = column_drive.half_sine(2e6, 0.004)
     bars = tuple(
         bars_model.Bar(one.thickness, one.density, one.young, velocity)
         for one, velocity in zip(strata, column.velocities, strict=True)
