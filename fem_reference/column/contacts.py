@@ -33,9 +33,12 @@ from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result
 from fem_reference.scheme.newmark import Work
 
-AT_LOWER, INSIDE, AT_UPPER = -1, 0, 1
+AT_LOWER = -1
+INSIDE = 0
+AT_UPPER = 1
 """States of a force: open, or at one of its strengths; closed, or sticking."""
-COMPLETED, UNSOLVED = "completed", "no consistent contact state"
+COMPLETED = "completed"
+UNSOLVED = "no consistent contact state"
 States = NDArray[np.int8]
 TOGETHER = 2
 """Solves for each contact, and three more, in which all states change at once."""
@@ -135,7 +138,8 @@ class ContactProblem:
         n = len(compliance)
         self.diagonal = G[0] + compliance  # G as its diagonal and the entries beside it, shape (2, n)
         self.beside = G[1, : n - 1]
-        self.lower, self.upper = lower, upper
+        self.lower = lower
+        self.upper = upper
 
     def times(self, N: Array) -> Array:
         """(G + 1/k) N."""
@@ -199,7 +203,8 @@ class ContactStepper:
     """The scheme on a column of contacts, its matrix factorised once."""
 
     def __init__(self, column: ContactColumn, elements: Sequence[int], degree: int, scheme: Scheme) -> None:
-        self.column, self.scheme = column, scheme
+        self.column = column
+        self.scheme = scheme
         ground = column.ground
         self.mesh = _separate_runs(column, elements, degree)
         self.work = Work()
@@ -219,7 +224,8 @@ class ContactStepper:
         self.compliance = np.array([1 / contact.stiffness for contact in column.contacts])
         n = len(column.contacts)
         if column.law == "unilateral":
-            self.lower, self.upper = np.zeros(n), np.full(n, np.inf)
+            self.lower = np.zeros(n)
+            self.upper = np.full(n, np.inf)
         else:
             self.upper = np.array([contact.strength for contact in column.contacts])
             self.lower = -self.upper
@@ -248,7 +254,8 @@ class ContactStepper:
 
     def load(self, excitation: Excitation, step: int) -> Array:
         """Forces on the free unknowns at the end of a step [Pa]."""
-        e, model = excitation, self.model
+        e = excitation
+        model = self.model
         F: Array = self.weight[model.free].copy()
         if self.prescribed:
             F -= self._base_columns @ np.array([e.displacement[step], e.acceleration[step]])
@@ -319,7 +326,8 @@ class ContactStepper:
             ends = nodes[run.basis.mesh.t]
             stratum = np.searchsorted(column.ground.tops, ends.mean(axis=0))
             share = run.densities * abs(ends[1] - ends[0])
-            momentum, mass = np.zeros(run.size), np.zeros(run.size)
+            momentum = np.zeros(run.size)
+            mass = np.zeros(run.size)
             for local in run.basis.element_dofs:
                 np.add.at(momentum, local, share * np.asarray(column.velocities)[stratum])
                 np.add.at(mass, local, share)
@@ -328,7 +336,8 @@ class ContactStepper:
 
     def _static(self, base: float) -> tuple[Array, Array]:
         """Displacements of the free unknowns and forces at rest: each contact carries the weight above it."""
-        ground, gravity = self.column.ground, self.column.gravity
+        ground = self.column.ground
+        gravity = self.column.gravity
         bottoms = ground.tops - [stratum.thickness for stratum in ground.strata]
         densities = np.array([stratum.density for stratum in ground.strata])
         moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])

@@ -63,7 +63,8 @@ class Part:
         """Unknowns and values of the row that gives displacement, or minus the stress E* u', at a height."""
         nodes = self.basis.mesh.p[0]
         ends = nodes[self.basis.mesh.t]
-        low, high = ends.min(axis=0), ends.max(axis=0)
+        low = ends.min(axis=0)
+        high = ends.max(axis=0)
         near = NEAR * float(nodes.max())
         inside = np.flatnonzero((low < height - near) & (height <= high + near))  # of two that meet there, the lower
         element = int(inside[0]) if inside.size else int(np.argmin(low))
@@ -147,15 +148,19 @@ def _elements(ground: Ground, elements: Sequence[int]) -> tuple[Array, Array, Ar
 
 def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
     """Put the parts together, with the springs between them."""
-    size, base = parts[-1].first + parts[-1].size, parts[0].end(top=False)
+    size = parts[-1].first + parts[-1].size
+    base = parts[0].end(top=False)
     ordered = [stiffness for _, stiffness in sorted(ground.joints)]
     inner = ordered[len(ordered) - len(parts) + 1 :]
     faces = [(below.end(top=True), above.end(top=False)) for below, above in itertools.pairwise(parts)]
     if not springs:
-        inner, faces = [], []
+        inner = []
+        faces = []
     elif len(ordered) > len(inner):  # a joint below the column: a node of its own below the spring
-        inner, faces = ordered, [(size, base), *faces]
-        base, size = size, size + 1
+        inner = ordered
+        faces = [(size, base), *faces]
+        base = size
+        size = size + 1
     M, K = (csr_array(block_diag([part.matrix(form) for part in parts])) for form in (inertia, elasticity))
     M.resize((size, size))
     K.resize((size, size))
@@ -166,5 +171,6 @@ def _springs(faces: Sequence[tuple[int, int]], stiffness: Sequence[float], size:
     """Matrix of springs between pairs of unknowns."""
     i, j = np.array(faces, dtype=int).reshape(-1, 2).T
     k = np.asarray(stiffness, float)
-    rows, columns = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])
+    rows = np.concatenate([i, j, i, j])
+    columns = np.concatenate([i, j, j, i])
     return csr_array(coo_array((np.concatenate([k, k, -k, -k]), (rows, columns)), shape=(size, size)))

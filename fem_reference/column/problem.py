@@ -11,7 +11,9 @@ import numpy as np
 
 from fem_reference.problem.problem import Array
 
-DISPLACEMENT, PRESSURE = "displacement", "contact_pressure"  # of the surface [m], of the base on the column [Pa]
+# of the surface [m], of the base on the column [Pa]
+DISPLACEMENT = "displacement"
+PRESSURE = "contact_pressure"
 NEAR = 1e-9  # of the height, within which two levels are one
 
 

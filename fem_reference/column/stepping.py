@@ -95,7 +95,8 @@ class Model:
     @classmethod
     def of(cls, mesh: LineMesh, impedance: float | None) -> Model:
         """Return the model of a mesh on its base."""
-        n, b = mesh.size, mesh.base_node
+        n = mesh.size
+        b = mesh.base_node
         C = csr_array(coo_array(([impedance or 0.0], ([b], [b])), shape=(n, n)))
         free = np.flatnonzero(np.arange(n) != (b if impedance is None else n))
         return cls(mesh.M, C, mesh.K, free, b, mesh.top, impedance)
@@ -124,7 +125,8 @@ class Observation:
 
 def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) -> Observation:
     """Return how a column of the history is observed."""
-    none, parts = np.zeros(mesh.size), np.zeros(4)
+    none = np.zeros(mesh.size)
+    parts = np.zeros(4)
     if name == PRESSURE and model.impedance is None:  # the force that holds the base's own equation
         D, A = (matrix[[model.base]].toarray()[0] for matrix in (model.K, model.M))
         return Observation(D, none, A, parts)
@@ -148,14 +150,18 @@ class DampedStepper:
     """The scheme on a model with damping, its matrices of the free unknowns factorised once."""
 
     def __init__(self, model: Model, scheme: Scheme, work: Work) -> None:
-        self.model, self.scheme, self.work = model, scheme, work
+        self.model = model
+        self.scheme = scheme
+        self.work = work
         self.M, self.C, self.K = (matrix[model.free][:, model.free] for matrix in (model.M, model.C, model.K))
         self.carried = csr_array(self.M + scheme.delta * scheme.step * self.C)
         self.solve = work.factor(csr_array(self.carried + scheme.alpha * scheme.step**2 * self.K))
 
     def run(self, excitation: Excitation, rows: Sequence[Observation]) -> Array:
         """Return the observed columns at every step, shape (columns, steps)."""
-        e, free, base = excitation, self.model.free, self.model.base
+        e = excitation
+        free = self.model.free
+        base = self.model.base
         parts = np.column_stack([e.displacement, e.velocity, e.acceleration, e.pressure])
         loads = parts @ self.model.loads().T
         by_D, by_V, by_A = (np.array([getattr(row, part) for row in rows]) for part in "DVA")
@@ -182,7 +188,8 @@ class DampedStepper:
     def advance(self, state: State, F: Array) -> State:
         """One step under the load `F` at its end."""
         s = self.scheme
-        predicted, slowed = predictor(state, s), velocity_predictor(state, s)
+        predicted = predictor(state, s)
+        slowed = velocity_predictor(state, s)
         resisted = F - self.C @ slowed
         increment = self.carried @ (predicted - state.D) + s.alpha * s.step**2 * (resisted - self.K @ state.D)
         D = state.D + self.solve(increment)

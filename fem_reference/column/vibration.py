@@ -55,12 +55,15 @@ def line_response(
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
     drive: Complex = np.zeros((4, len(w)), complex)
     drive[:] = [[0], [0], [0], [1]] if at_top else np.array([np.ones_like(w), 1j * w, -w * w, 0 * w])
-    W2, S = squares(frequencies, scheme, exact), rates(frequencies, scheme, exact)
+    W2 = squares(frequencies, scheme, exact)
+    S = rates(frequencies, scheme, exact)
     D = np.zeros((mesh.size, len(w)), complex)
     D[model.free] = _solutions(model, np.asarray(model.loads() @ drive, complex), W2, S)
-    V, A = S * D, -W2 * D
+    V = S * D
+    A = -W2 * D
     if ground.impedance is None:
-        D[model.base], A[model.base] = drive[0], drive[2]
+        D[model.base] = drive[0]
+        A[model.base] = drive[2]
     observed = [row.D @ D + row.V @ V + row.A @ A + row.excitation @ drive for row in rows]
     return dict(zip(columns, observed, strict=True))
 
@@ -76,7 +79,8 @@ def _solutions(model: Model, loads: Complex, W2: Complex, S: Complex) -> Complex
     for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
         band = np.zeros((2 * width + 1, len(order)), complex)
         for part, factor in ((K, 1.0), (C, s), (M, -w2)):
-            row, col = place[part.row], place[part.col]
+            row = place[part.row]
+            col = place[part.col]
             band[width + row - col, col] += factor * part.data
         try:
             solutions[order, i] = solve_banded((width, width), band, loads[order, i], check_finite=False)

@@ -50,15 +50,22 @@ from numpy.typing import NDArray
 from fem_reference.problem.problem import Array
 
 States = NDArray[np.int8]
-OPEN, STICK, SLIP = 0, 1, 2
+OPEN = 0
+STICK = 1
+SLIP = 2
 """States of a point: open; closed, its shear spring held; closed and sliding towards +x (-SLIP: towards -x)."""
 STATES = (OPEN, STICK, SLIP, -SLIP)
-CONVERGED, NONE, SEVERAL, OVERFLOW, UNSETTLED = 0, 1, 2, 3, 4
+CONVERGED = 0
+NONE = 1
+SEVERAL = 2
+OVERFLOW = 3
+UNSETTLED = 4
 """How a step ends: with its contact, with no consistent set of states, with several, with numbers that overflow;
 where there is no fallback, without an end of the iteration."""
 ENUMERATED = 256
 """Greatest number of sets of states that are all tried: eight points that hold, four that may slide."""
-SINGLY, SINGLY_FRICTIONLESS = 4, 100
+SINGLY = 4
+SINGLY_FRICTIONLESS = 100
 """Greatest number of changes of one point after the other, over the number of points."""
 PASSES = 60
 """Greatest number of corrections of the crossings for given states."""
@@ -68,7 +75,11 @@ ROUNDED = 1e-12
 """Share of the friction by which a sliding point may miss it."""
 ALIKE = 1e-9
 """Difference of forces below which two sets of states are one contact, over the largest force."""
-TIME, BASE, INPUT, LOSSES, STARTED = 0, 1, 3, 4, 8
+TIME = 0
+BASE = 1
+INPUT = 3
+LOSSES = 4
+STARTED = 8
 """Where `ContactState.totals` has its numbers."""
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
@@ -243,8 +254,13 @@ def advance(
     fallback: Fallback | None,
 ) -> tuple[ContactState, Equations, int, int]:
     """One step: the state at its end, equations for the next, number of solutions of the contact, how it has ended."""
-    D, V, A = state.D, state.V, state.A
-    alpha, delta, gg, h = block.alpha, block.delta, block.gg, block.step
+    D = state.D
+    V = state.V
+    A = state.A
+    alpha = block.alpha
+    delta = block.delta
+    gg = block.gg
+    h = block.step
     predicted = D + (gg * h) * V + (h**2 * (0.5 - alpha)) * A
     free_acceleration = block.inverse * (block.F - block.K * predicted)
     change = block.B @ (predicted - D + (alpha * h**2) * free_acceleration)
@@ -615,7 +631,8 @@ def add_block_losses(block: Block, law: Law, state: ContactState, D1: Array, A1:
 
 def observed(block: Block, law: Law, state: ContactState, energies: bool, solves: float) -> Array:
     """All columns of a step, in the order of `UNILATERAL_COLUMNS`; energies are zero where they are not asked for."""
-    D, V = state.D, state.V
+    D = state.D
+    V = state.V
     motion = block.rows @ D
     row = np.zeros(len(UNILATERAL_COLUMNS))
     row[0] = motion[0]

@@ -82,7 +82,9 @@ def column(problem: Problem) -> ContactModel:
     M = problem.density * width * csr_array(line_mass.assemble(basis))
     # With mu = 0 the modulus of a bar, lam + 2 G, is E.
     K = problem.young * width * csr_array(laplace.assemble(basis))
-    y, upwards, none = basis.doflocs[0], np.ones(basis.N), np.zeros(basis.N)
+    y = basis.doflocs[0]
+    upwards = np.ones(basis.N)
+    none = np.zeros(basis.N)
     base, top = (np.eye(1, basis.N, int(np.argmin(np.abs(y - place)))) for place in (0.0, height))
     return ContactModel(
         M=M,
@@ -119,7 +121,8 @@ def whole(problem: Problem) -> ContactModel:
     rule = base_rule(problem, basis.mesh, block_mesh(problem).base)
     rule, weights = merged(problem, basis, rule)
     u, v = elasticity.values(basis, rule.points, rule.cells)
-    n, t = problem.normal, problem.tangent
+    n = problem.normal
+    t = problem.tangent
     share = weights / weights.sum()
     return ContactModel(
         M=assembled.M,

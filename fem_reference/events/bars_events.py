@@ -112,6 +112,23 @@ class BarsMotion:
             rows = np.array([self._joint_row(self.joints[number], arb(float(s))) for s in t]).reshape(len(t), 3)
         return JointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
 
+    def impulse(self, number: int, times: ArrayLike) -> Array:
+        """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
+
+        Raises
+        ------
+        ValueError
+            If an instant is not from 0 to `end`.
+        """
+        t = instants(times, self.end)
+        joint = self.joints[number]
+        if joint is None:
+            return np.zeros_like(t)
+        with precision(bits_of(self.digits)):
+            force = Wave([WavePiece(piece.start, piece.force) for piece in joint.pieces], arb(self.end))
+            integrals = _integrals(force)
+            return np.array([float(_integral(force, integrals, arb(float(s)))) for s in t])
+
     def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
         """A point of a bar, its height above the foot of the bar [m], at instants in any order.
 
@@ -133,19 +150,13 @@ class BarsMotion:
         """The integral of each wave from its first piece on, piece by piece, by the identity of the wave."""
         return {id(wave): _integrals(wave) for wave in (*self.up, *self.down)}
 
-    def _integral(self, wave: Wave, time: arb) -> arb:
-        """Integral of a wave from the start of its first piece [m]."""
-        piece = bisect_right(wave.pieces, time.mid(), key=_start) - 1
-        piece = max(piece, 0)
-        function = self._integrals_of_waves[id(wave)][piece]
-        return function(time - wave.pieces[piece].start)
-
     def _mean_velocity(self, bar: int, time: arb) -> float:
         data = self.problem.bars[bar]
         T = data.travel
         mean = arb(0)
         for wave in (self.up[bar], self.down[bar]):
-            mean += (self._integral(wave, time) - self._integral(wave, time - T)) / T
+            integrals = self._integrals_of_waves[id(wave)]
+            mean += (_integral(wave, integrals, time) - _integral(wave, integrals, time - T)) / T
         return float(mean - self.problem.fall * time)
 
     def _joint_row(self, joint: Joint | None, time: arb) -> tuple[float, float, float]:
@@ -165,7 +176,8 @@ class BarsMotion:
         displacement -= gravity * time * time / 2
         velocities = []
         for wave, delay in ((self.up[bar], x), (self.down[bar], T - x)):
-            displacement += self._integral(wave, time - delay) - self._integral(wave, -delay)
+            integrals = self._integrals_of_waves[id(wave)]
+            displacement += _integral(wave, integrals, time - delay) - _integral(wave, integrals, -delay)
             velocities.append(_value(wave, time - delay))
         up, down = velocities
         stress += (up - down) * data.impedance
@@ -181,6 +193,12 @@ def _value(wave: Wave, time: arb) -> arb:
     return piece.velocity(time - piece.start)
 
 
+def _integral(wave: Wave, integrals: Sequence[ExponentialSum], time: arb) -> arb:
+    """Integral of a wave from the start of its first piece, of the integrals of its pieces."""
+    piece = max(bisect_right(wave.pieces, time.mid(), key=_start) - 1, 0)
+    return integrals[piece](time - wave.pieces[piece].start)
+
+
 def _integrals(wave: Wave) -> list[ExponentialSum]:
     integrals = []
     value = arb(0)
@@ -192,7 +210,9 @@ def _integrals(wave: Wave) -> list[ExponentialSum]:
     return integrals
 
 
-def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000) -> BarsMotion:
+def solve(
+    problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000, advances: int | None = None
+) -> BarsMotion:
     """The exact motion of bars from t = 0 to `end` [s].
 
     Parameters
@@ -206,6 +226,8 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
         computations agree on all switches to `PROMISED`; the last one is returned.
     limit
         Greatest number of switches.
+    advances
+        Greatest number of times that a joint or an end of the column goes on; `ADVANCES` if None.
 
     Raises
     ------
@@ -216,7 +238,7 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     LostDigitsError
         If waves and switches amplify the rounding until computations differ in every number of digits.
     TooMuchWorkError
-        If joints and ends go on more often than `ADVANCES`.
+        If joints and ends go on more often than `advances`.
 
     Examples
     --------
@@ -228,9 +250,10 @@ def solve(problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 1
     """
     check_request(end, digits)
     until = 0.0
-    motion = _solved(problem, float(end), digits, limit)
+    advances = ADVANCES if advances is None else advances
+    motion = _solved(problem, float(end), digits, limit, advances)
     while motion.digits < MOST_DIGITS:
-        finer = _solved(problem, float(end), 2 * motion.digits, limit)
+        finer = _solved(problem, float(end), 2 * motion.digits, limit, advances)
         differing = _agree_until(motion, finer)
         if differing is None:
             return finer
@@ -253,7 +276,7 @@ def _agree_until(motion: BarsMotion, finer: BarsMotion) -> float | None:
     return None
 
 
-def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMotion:
+def _solved(problem: BarsProblem, end: float, digits: int, limit: int, most_advances: int) -> BarsMotion:
     """The motion in so many digits."""
     with precision(bits_of(digits)):
         nodes, up, down = nodes_of(problem, end)
@@ -262,14 +285,15 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int) -> BarsMo
         advances = 0
         while True:
             node = min(nodes, key=lambda node: node.time.mid())
-            if node.time.mid() >= last:
+            finished = node.time.mid() >= last
+            if (finished or advances % 100 == 0) and sum(len(joint.switches) for joint in joints) > limit:
+                raise TooManySwitchesError(float(node.time), f"more than {limit} switches")
+            if finished:
                 break
             node.advance(last)
             advances += 1
-            if advances > ADVANCES:
-                raise TooMuchWorkError(float(node.time), f"the joints go on more than {ADVANCES} times")
-            if advances % 100 == 0 and sum(len(joint.switches) for joint in joints) > limit:
-                raise TooManySwitchesError(float(node.time), f"more than {limit} switches")
+            if advances > most_advances:
+                raise TooMuchWorkError(float(node.time), f"the joints go on more than {most_advances} times")
         by_number = {joint.number: joint for joint in joints}
         numbers = range(len(problem.bars))
         return BarsMotion(

@@ -19,10 +19,15 @@ from dataclasses import dataclass, field
 
 from flint import arb, ctx
 
-from fem_reference.events.bars_model import BarJoint, BarsProblem, Drive
+from fem_reference.events.bars_model import BarJoint, BarsProblem, function_of
+from fem_reference.events.column_drive import Drive
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
 
-OPEN, CLOSED, STICKS, FORWARDS, BACKWARDS = "open", "closed", "sticks", "slips forwards", "slips backwards"
+OPEN = "open"
+CLOSED = "closed"
+STICKS = "sticks"
+FORWARDS = "slips forwards"
+BACKWARDS = "slips backwards"
 """States of a joint; it slips forwards where its upper face moves towards + over the lower one."""
 
 
@@ -148,7 +153,8 @@ class Joint:
     def advance(self, end: arb) -> None:
         """Go on to the next switch, as far as the arrivals are known and stay the same, or to `end`."""
         arrived = [self.above.advance(self.time), self.below.advance(self.time)]
-        above, below = self.above.function(self.time), self.below.function(self.time)
+        above = self.above.function(self.time)
+        below = self.below.function(self.time)
         relative = ((above - below) * 2).plus(-self.mobility * self.static).without_noise()
         unilateral = self.law.law == "unilateral"
         state = self._contact_state(relative) if unilateral else self._friction_state(relative)
@@ -268,9 +274,7 @@ def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> 
     def piece(start: arb, function: ExponentialSum) -> WavePiece:
         return WavePiece(start, function * factor if fall is None else (function * factor).plus(fall * start, fall))
 
-    pieces = [piece(arb(0), ExponentialSum(rates))]
-    for part in drive:
-        pieces.append(piece(arb(part.start), part.function(rates)))
+    pieces = [piece(arb(start), function_of(part, arb(start), rates)) for start, part in drive().parts()]
     return Arrival(Wave(pieces, arb("inf")), arb(0))
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from flint import acb, acb_poly, arb
 
+from fem_reference.events.column_drive import Drive, Piece, Polynomial, Ricker, Sine, still
 from fem_reference.events.exponential_sum import ExponentialSum, Rate, Rates, distinct
 
 
@@ -85,76 +84,30 @@ BONDED = BarJoint("frictional")
 """Faces that always move alike."""
 
 
-@dataclass(frozen=True)
-class DrivePiece:
-    """A drive from an instant on, sum of c_k s^k + a sin(w s) + b cos(w s) of the time s since then."""
+def function_of(piece: Piece, start: arb, rates: Rates) -> ExponentialSum:
+    """A piece of a drive as a function of the time since its start [s].
 
-    start: float  # [s]
-    coefficients: tuple[float, ...] = ()  # c_k, the constant first
-    sine: float = 0.0  # a
-    cosine: float = 0.0  # b
-    turns: float = 0.0  # w = 2 pi turns / duration, which is exact for half a turn in the duration of a pulse
-    duration: float = 1.0  # [s]
-
-    @property
-    def rate(self) -> acb:
-        """The rate i w [1/s]."""
-        return acb(0, 2 * arb.pi() * arb(self.turns) / arb(self.duration))
-
-    @property
-    def size(self) -> float:
-        """Size of the values in a drive whose polynomials do not grow."""
-        return abs(self.coefficients[0] if self.coefficients else 0.0) + abs(self.sine) + abs(self.cosine)
-
-    def function(self, rates: Rates) -> ExponentialSum:
-        """The drive as a function of the time since the start."""
-        function = ExponentialSum.polynomial(rates, [arb(c) for c in self.coefficients])
-        if self.turns:
-            phasor = acb_poly([acb(self.cosine, -self.sine)])  # Re (b - i a)(cos + i sin) = b cos + a sin
-            function += ExponentialSum(rates, {rates.index(self.rate): phasor})
-        return function
+    Raises
+    ------
+    ValueError
+        For a Ricker pulse, which is no sum of exponentials times polynomials.
+    """
+    if isinstance(piece, Ricker):
+        raise ValueError(f"drive: must be made of polynomials and sines, got {piece!r}")
+    if isinstance(piece, Polynomial):
+        return ExponentialSum.polynomial(rates, piece.series(start, 1.0, len(piece.coefficients)))
+    sine, slope = piece.series(start, 1.0, 2)
+    # a sin(w s) + b cos(w s) = Re (b - i a) exp(i w s), with b the sine at the start and a its slope over w
+    phasor = acb_poly([acb(sine - piece.offset, -slope / piece.rate)])
+    vibration = ExponentialSum(rates, {rates.index(acb(0, piece.rate)): phasor})
+    return ExponentialSum.polynomial(rates, [piece.offset]) + vibration
 
 
-Drive = tuple[DrivePiece, ...]
-"""Pieces in the order of time; zero before the first."""
-
-
-def half_sine(size: float, duration: float) -> Drive:
-    """Half a period of a sine, then nothing."""
-    return DrivePiece(0.0, sine=size, turns=0.5, duration=duration), DrivePiece(duration)
-
-
-def triangle(size: float, duration: float) -> Drive:
-    """A steep front that falls to zero along a line, then nothing."""
-    return DrivePiece(0.0, (size, -size / duration)), DrivePiece(duration)
-
-
-def sine(size: float, frequency: float) -> Drive:
-    """A sine from t = 0 on."""
-    return (DrivePiece(0.0, sine=size, turns=frequency),)
-
-
-def cosine(size: float, frequency: float) -> Drive:
-    """A cosine from t = 0 on."""
-    return (DrivePiece(0.0, cosine=size, turns=frequency),)
-
-
-def recorded(instants: Sequence[float], values: Sequence[float]) -> Drive:
-    """A record, linear between its rows and zero before the first and after the last."""
-    pieces = []
-    for (start, value), (end, next_value) in itertools.pairwise(zip(instants, values, strict=True)):
-        pieces.append(DrivePiece(start, (value, (next_value - value) / (end - start))))
-    return (*pieces, DrivePiece(instants[-1]))
-
-
-def accelerated(instants: Sequence[float], accelerations: Sequence[float]) -> Drive:
-    """The velocity of a record of accelerations, which is linear between its rows and zero before and after them."""
-    pieces = []
-    velocity = 0.0
-    for (start, a), (end, next_a) in itertools.pairwise(zip(instants, accelerations, strict=True)):
-        pieces.append(DrivePiece(start, (velocity, a, (next_a - a) / (end - start) / 2)))
-        velocity += (a + next_a) / 2 * (end - start)
-    return (*pieces, DrivePiece(instants[-1], (velocity,)))
+def size_of(piece: Piece) -> float:
+    """Size of the values in a drive whose polynomials do not grow."""
+    if isinstance(piece, Polynomial):
+        return float(abs(arb(piece.coefficients[0])))
+    return 0.0 if isinstance(piece, Ricker) else float(abs(piece.amplitude)) + float(abs(piece.offset))
 
 
 @dataclass(frozen=True)
@@ -171,8 +124,8 @@ class BarsProblem:
     joints: tuple[BarJoint | None, ...]  # at the foot of each bar; the first is None where nothing is below
     gravity: float = 0.0  # downwards [m/s2]
     base_impedance: float = math.inf  # of a half-space below [Pa s/m]; inf: the base's motion is prescribed
-    base: Drive = ()  # velocity of the base, or of the wave that comes up in the half-space [m/s]
-    top: Drive = ()  # pressure on the top, downwards [Pa]
+    base: Drive = still  # velocity of the base, or of the wave that comes up in the half-space [m/s]
+    top: Drive = still  # pressure on the top, downwards [Pa]
     settled: bool = False  # whether the bars begin at rest under their weight, all joints closed, not unstrained
 
     def __post_init__(self) -> None:
@@ -181,10 +134,6 @@ class BarsProblem:
         _require(None not in self.joints[1:], "joints", "must all be given above the base", self.joints)
         _require(math.isfinite(self.gravity), "gravity", "must be a finite number", self.gravity)
         _require(self.base_impedance > 0, "base_impedance", "must be positive", self.base_impedance)
-        for name in ("base", "top"):
-            starts = [piece.start for piece in getattr(self, name)]
-            _require(starts == sorted(set(starts)), name, "must have pieces in the order of time", starts)
-
         _require(not self.settled or self.joints[0] is not None, "settled", "must be False above nothing", self.settled)
 
     @property
@@ -231,10 +180,12 @@ class BarsProblem:
         for number, joint in enumerate(self.joints):
             if joint is not None and math.isfinite(joint.stiffness):
                 values.append(-arb(joint.stiffness) * self.mobility(number))
-        values += [piece.rate for piece in (*self.base, *self.top) if piece.turns]
+        base = [piece for _, piece in self.base().parts()]
+        top = [piece for _, piece in self.top().parts()]
+        values += [acb(0, piece.rate) for piece in (*base, *top) if isinstance(piece, Sine)]
         z = min(float(bar.impedance) for bar in self.bars)
         sizes = [abs(bar.velocity) for bar in self.bars] + [abs(self.gravity) * end]
         sizes += [float(self.static_force(0)) / z]
-        sizes += [piece.size for piece in self.base] + [piece.size / z for piece in self.top]
+        sizes += [size_of(piece) for piece in base] + [size_of(piece) / z for piece in top]
         travel = arb(min(float(bar.travel) for bar in self.bars))
         return Rates(distinct(values), arb(max(sizes) or 1.0), travel, arb(end))

@@ -117,19 +117,23 @@ class BlockMotion(ProvenMotion):
                 if begun[i] != last:
                     last = begun[i]
                     node = self.nodes[last]
-                    time, z = node.start, node.z
-                flow, instant = self.flows[node.states], arb(float(t[i]))
+                    time = node.start
+                    z = node.z
+                flow = self.flows[node.states]
+                instant = arb(float(t[i]))
                 time, z = instant, flow.advance(z, instant - time)
                 reports[:, i] = self._report(node, time, z)
         x, rate, _, radius, slipped, losses, states = np.split(reports, [12, 24, 26, 32, 34, 37])
         released, friction, work = losses
-        p, ps = self.problem.stiffness, self.problem.shear_stiffness
+        p = self.problem.stiffness
+        ps = self.problem.shear_stiffness
         closed = np.asarray(states != OPEN, dtype=float)
         N = -p * x[6:8] if self.problem.locked else closed * np.maximum(0.0, -p * x[6:8])
         T = 0.0 - ps * x[8:10]
         model = self.flows.model
         mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
-        strains, elastic = x[3:6], to_floats(arb_mat(model.elastic))[np.ix_([2, 5, 3], [2, 5, 3])]
+        strains = x[3:6]
+        elastic = to_floats(arb_mat(model.elastic))[np.ix_([2, 5, 3], [2, 5, 3])]
         return BlockHistory(
             time=t,
             displacement=x[:6],
@@ -158,8 +162,10 @@ class BlockMotion(ProvenMotion):
         `Flow.outputs`, radii of the displacements, slips, energies released, lost by friction and gained from the base,
         and the states.
         """
-        flow, base = self.flows[node.states], node.base
-        passed, after = time - node.start, time - node.row_time
+        flow = self.flows[node.states]
+        base = node.base
+        passed = time - node.start
+        after = time - node.row_time
         outputs = (flow.outputs * z).entries()
         for i, (place, rate) in enumerate(((base.x, base.vx), (base.y - self.problem.gap, base.vy))):
             outputs[i] += place + rate * after
@@ -186,8 +192,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     end
         Last instant [s].
     digits
-        Decimal digits of the computation, at least 30; twice as many are taken, up to `MOST_DIGITS`, where the instants
-        of the switches are not enclosed to `PROMISED`.
+        Decimal digits of the computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
+        the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
 
@@ -211,7 +217,9 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
             march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
             march.run(problem.velocity)
         start = march.closed_at_start[0], march.closed_at_start[1]
-        switches, touches, nodes = tuple(march.switches), tuple(march.touches), tuple(march.nodes)
+        switches = tuple(march.switches)
+        touches = tuple(march.touches)
+        nodes = tuple(march.nodes)
         return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows)
 
-    return with_enough_digits(motion_in, digits, MOST_DIGITS, PROMISED * end)
+    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

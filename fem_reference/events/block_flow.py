@@ -77,17 +77,23 @@ class Flow:
 
     def _add_corner(self, c: int) -> None:
         """Add the rows of one corner."""
-        model, state = self.model, self.states[c]
-        gap, slide, stuck = model.gaps[c], model.slides[c], model.stuck[c]
+        model = self.model
+        state = self.states[c]
+        gap = model.gaps[c]
+        slide = model.slides[c]
+        stuck = model.stuck[c]
         limit = gap * (-model.friction * model.p) + row(one=model.cohesion)  # tan(phi) N + C
         if state == OPEN:
-            stretch, watched = row(), [gap]
+            stretch = row()
+            watched = [gap]
         elif state == STICKS:
-            stretch, watched = stuck, [gap * -1]
+            stretch = stuck
+            watched = [gap * -1]
             if model.tan is not None:
                 watched += [model.reserves[c, sign] for sign in (1, -1)]
         else:
-            stretch, watched = limit * (-sigma(state) / model.ps), [gap * -1]
+            stretch = limit * (-sigma(state) / model.ps)
+            watched = [gap * -1]
             # one that slips moves its reference in the direction of its slip
             watched.append((slide - stretch) * self.G * -sigma(state))
         self.stretches.append(stretch)
@@ -112,7 +118,8 @@ class Flow:
         total = arb_mat(H)
         for c, state in enumerate(self.states):
             if state != OPEN:
-                gap, stretch = model.gaps[c], self.stretches[c]
+                gap = model.gaps[c]
+                stretch = self.stretches[c]
                 total = total + gap.transpose() * gap * model.p + stretch.transpose() * stretch * model.ps
         return total
 
@@ -127,7 +134,8 @@ class Flow:
         (u, v, r, ex, ey, gxy), gaps, stretches and slides, the rates of these, and the references.
         """
         half = arb(1) / 2
-        zero, one = arb(0), arb(1)
+        zero = arb(0)
+        one = arb(1)
         rows = [
             row([one, zero, zero, zero, zero, zero]),
             row([zero, one, zero, zero, zero, zero]),
@@ -154,7 +162,8 @@ class Flow:
             One of the functions; None: all.
         """
         if (count, which) not in self._derivatives:
-            lines, size = self._lines, len(self.watched)
+            lines = self._lines
+            size = len(self.watched)
             rows = arb_mat(lines[-size:]) if lines else None
             for k in range(len(lines) // size, count):
                 if rows is None:
@@ -309,25 +318,46 @@ class Flow:
         margin = powers @ (sizes @ blur + errors @ np.abs(readings)).reshape(FLOAT_TERMS, -1)
         for i, place in enumerate(leads):
             if place is None:
-                terms[i], margin[i] = 0.0, -1.0
+                terms[i] = 0.0
+                margin[i] = -1.0
             elif place:
                 terms[i] = np.append(terms[i, place:], np.zeros(place))
-        doubtful = np.arange(len(terms))
-        forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
-        doubtful = doubtful[~(forms > margin)]
-        if not len(doubtful):
-            return 1.0, 0.0, []
-        terms, margin = terms[doubtful], margin[doubtful, None]
-        low, width = 0.0, 1.0
-        for _ in range(CUTS):
-            forms = (terms @ bernstein(CELLS)).reshape(len(terms), CELLS, FLOAT_TERMS).min(axis=2)
-            failing = np.flatnonzero(~(forms > margin).all(axis=0))
-            if not len(failing):
-                return low + width, 0.0, []
-            width /= CELLS
-            low += failing[0] * width
-            terms = terms @ cell_shift(CELLS, int(failing[0]))
-        return low, width, doubtful.tolist()
+        return first_doubt(terms, margin)
+
+
+def first_doubt(terms: Array, margin: Array) -> tuple[float, float, list[int]]:
+    """Where Bernstein's forms prove polynomials on [0, 1] to be positive.
+
+    Parameters
+    ----------
+    terms
+        Coefficients of their powers, shape (functions, `FLOAT_TERMS`).
+    margin
+        What each may be wrong by, shape (functions,).
+
+    Returns
+    -------
+    share, width, doubtful
+        The end of the part throughout which all are positive; the length of the next part, in which that cannot be
+        proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
+    """
+    forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
+    doubtful = np.flatnonzero(~(forms > margin))
+    if not len(doubtful):
+        return 1.0, 0.0, []
+    terms = terms[doubtful]
+    margins = margin[doubtful, None]
+    low = 0.0
+    width = 1.0
+    for _ in range(CUTS):
+        forms = (terms @ bernstein(CELLS)).reshape(len(terms), CELLS, FLOAT_TERMS).min(axis=2)
+        failing = np.flatnonzero(~(forms > margins).all(axis=0))
+        if not len(failing):
+            return low + width, 0.0, []
+        width /= CELLS
+        low += failing[0] * width
+        terms = terms @ cell_shift(CELLS, int(failing[0]))
+    return low, width, doubtful.tolist()
 
 
 def to_floats(matrix: arb_mat) -> Array:
@@ -355,7 +385,8 @@ def key_of(length: arb) -> int:
 
 @cache
 def _term_count(angle: float, bits: int) -> int:
-    logarithm, n = 0.0, 0
+    logarithm = 0.0
+    n = 0
     while logarithm > -bits - 12 or n < 2 * angle + 3:
         n += 1
         logarithm += math.log2(angle / n)

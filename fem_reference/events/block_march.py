@@ -45,7 +45,8 @@ class Spread:
 
     def __init__(self, flows: Flows) -> None:
         # In the metric of the energy of the closed block the motion of most states is nearly a rotation.
-        model, closed = flows.model, flows[STICKS, STICKS]
+        model = flows.model
+        closed = flows[STICKS, STICKS]
         mass = np.array([float(m) for m in model.mass])
         stiffness = mass[:, None] * (1e-4 * closed.rate**2 * np.eye(6) - closed.G_floats[6:12, :6])
         self.metric = np.eye(SIZE)
@@ -53,7 +54,9 @@ class Spread:
         self.metric[6:12, 6:12] = np.diag(np.sqrt(mass))
         self.metric[12:14, 12:14] *= np.sqrt(float(model.ps) + float(model.p) * 1e-4)
         self.inverse = np.linalg.inv(self.metric)
-        self.axes, self.radii, self.box = self.inverse.copy(), np.zeros(SIZE), np.zeros(SIZE)
+        self.axes = self.inverse.copy()
+        self.radii = np.zeros(SIZE)
+        self.box = np.zeros(SIZE)
         self.count = 0
 
     def hull(self) -> Array:
@@ -73,12 +76,14 @@ class Spread:
         scaled = self.metric @ self.axes * self.radii
         lengths = np.sqrt((scaled**2).sum(axis=0))
         largest = lengths.max()
-        Q, R = UNIT, np.zeros((SIZE, SIZE))
+        Q = UNIT
+        R = np.zeros((SIZE, SIZE))
         if largest > 0:
             Q, R = np.linalg.qr(scaled[:, np.argsort(-lengths)] / largest)
         radii = np.abs(R).sum(axis=1) * largest + np.abs(Q.T) @ (np.abs(self.metric) @ self.box)
         self.radii = radii * INFLATION + 1e-11 * radii.sum()
-        self.axes, self.box = self.inverse @ Q, np.zeros(SIZE)
+        self.axes = self.inverse @ Q
+        self.box = np.zeros(SIZE)
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,11 @@ class March:
     """The motion of a block from t = 0 on, node by node."""
 
     def __init__(self, model: BlockModel, course: Course, gap: float, end: float, limit: int) -> None:
-        self.model, self.course, self.gap, self.end, self.limit = model, course, arb(gap), end, limit
+        self.model = model
+        self.course = course
+        self.gap = arb(gap)
+        self.end = end
+        self.limit = limit
         self.flows = Flows(model)
         self.nodes: list[Node] = []
         self.switches: list[Switch] = []
@@ -111,7 +120,9 @@ class March:
         self.misses = 0  # times in succession that a fall was looked for in vain
         self.time = arb(0)
         self.slipped = [arb(0), arb(0)]
-        self.released, self.friction, self.work = arb(0), arb(0), arb(0)
+        self.released = arb(0)
+        self.friction = arb(0)
+        self.work = arb(0)
 
     def run(self, velocity: float | arb) -> None:
         """Find the motion from a velocity of the block at t = 0 [m/s], which may be a ball.
@@ -123,7 +134,8 @@ class March:
         """
         row, self.base = self.course.at_start()
         self.row_time = arb(0)
-        still, slide = [arb(0)] * 4, -self.base.x
+        still = [arb(0)] * 4
+        slide = -self.base.x
         x = [slide, self.gap - self.base.y, *still]
         v = [-self.base.vx, arb(velocity) - self.base.vy, *still]
         self.spread = Spread(self.flows)
@@ -144,8 +156,10 @@ class March:
             self._cross(arb(row_end), row_end - float(self.row_time))
             if last:
                 return
-            before, self.base = self.base, self.course.from_row(following)
-            row, self.row_time = following, arb(row_end)
+            before = self.base
+            self.base = self.course.from_row(following)
+            row = following
+            self.row_time = arb(row_end)
             change = [arb(0)] * SIZE
             change[6:8] = before.vx - self.base.vx, before.vy - self.base.vy
             self._place(self.z + arb_mat(SIZE, 1, change))
@@ -259,7 +273,9 @@ class March:
             What `first_fall` returns; None: a function falls from now on.
         """
         self.misses = 0
-        offset, moved, timing = 0.0, arb(0), None
+        offset = 0.0
+        moved = arb(0)
+        timing = None
         if first is not None:
             fall, function = first
             with precision(4 * ctx.prec):
@@ -281,7 +297,8 @@ class March:
                 P[12 + c] = to_floats(reference)
                 if self.states[c] != OPEN:
                     self.slipped[c] = (self.slipped[c] + entries[12 + c] - self.z[12 + c, 0]).mid()
-        before, states = self.z, self.states
+        before = self.z
+        states = self.states
         hull = self.spread.hull()
         self._place(arb_mat(SIZE, 1, entries))
         rates = np.array([float(x.abs_upper()) for x in (flow.G * before).entries()])
@@ -301,10 +318,14 @@ class March:
         flow, which changes z by `change` times this time; terms of second order in the time are bounded by the sizes
         of z.
         """
-        before, after, into = np.abs(flow.G_floats), np.abs(self.flows[self.states].G_floats), np.abs(P)
-        fast, turned = before @ size, into @ before + after @ into
+        before = np.abs(flow.G_floats)
+        after = np.abs(self.flows[self.states].G_floats)
+        into = np.abs(P)
+        fast = before @ size
+        turned = into @ before + after @ into
         second = (into @ (before @ fast) + 2 * after @ (into @ fast) + after @ (after @ (into @ size))) * offset**2
-        jump, hull = np.abs(change), self.spread.hull()
+        jump = np.abs(change)
+        hull = self.spread.hull()
         M = P
         if timing is None:
             second += 2 * jump * offset

@@ -32,7 +32,10 @@ CORNERS = ("M", "N")
 HYPOTHESES = ("plane stress", "plane strain")
 POSITIVE = ("width", "height", "density", "young", "stiffness")
 UNSIGNED = ("shear_stiffness", "gap", "cohesion")
-OPEN, STICKS, RIGHT, LEFT = 0, 1, 2, -2
+OPEN = 0
+STICKS = 1
+RIGHT = 2
+LEFT = -2
 """States of a corner; `RIGHT` and `LEFT` slip towards +x and -x."""
 States = tuple[int, int]
 Vector = list[arb]
@@ -135,8 +138,10 @@ class Course:
 
     def from_row(self, index: int) -> Base:
         """The base at a row of its record, and its velocity from then on; before the first row it is there at rest."""
-        motion, still = self.motion, arb(0)
-        x, y = arb(motion.x[max(index, 0)]), arb(motion.y[max(index, 0)])
+        motion = self.motion
+        still = arb(0)
+        x = arb(motion.x[max(index, 0)])
+        y = arb(motion.y[max(index, 0)])
         if index < 0 or index + 1 == len(motion.time):
             return Base(x, y, still, still)
         spacing = arb(motion.time[index + 1]) - arb(motion.time[index])
@@ -162,7 +167,8 @@ class BlockModel:
     """
 
     def __init__(self, problem: BlockProblem) -> None:
-        a, b = arb(problem.width), arb(problem.height)
+        a = arb(problem.width)
+        b = arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
         self.mass = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
@@ -199,7 +205,8 @@ class BlockModel:
         """Work of an evenly moving base from one state to a later one: what the springs add to the momentum [J]."""
         if base.vx == 0 and base.vy == 0:
             return arb(0)
-        m, load = self.mass[0], self.load
+        m = self.mass[0]
+        load = self.load
         along, upwards = (m * (later[6 + i, 0] - z[6 + i, 0]) - load[i] * time for i in (0, 1))
         return base.vx * along + base.vy * upwards
 
@@ -209,9 +216,11 @@ class BlockModel:
         x'' = f + R r - B x, where B need not be symmetric; the reference of a corner counts where it sticks.
         """
         K = [list(line) for line in self.elastic]
-        F, R = list(self.load), [[arb(0), arb(0)] for _ in range(6)]
+        F = list(self.load)
+        R = [[arb(0), arb(0)] for _ in range(6)]
         for c, state in enumerate(states):
-            n, s = self.normal[c], self.shear[c]
+            n = self.normal[c]
+            s = self.shear[c]
             for i in range(6):
                 if state == STICKS:
                     K[i] = [K[i][j] + self.p * n[i] * n[j] + self.ps * s[i] * s[j] for j in range(6)]
@@ -243,7 +252,8 @@ class BlockModel:
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
     """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4)."""
-    E, mu = arb(problem.young), arb(problem.poisson)
+    E = arb(problem.young)
+    mu = arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))
     if problem.hypothesis == "plane strain":
         E = E / (1 - mu * mu)
@@ -258,9 +268,12 @@ def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
 
 def _load(problem: BlockProblem, a: arb, b: arb, m: arb) -> Vector:
     """Virtual work of the pressure on its part of the top, of the traction and of the weight."""
-    q, e, t = arb(problem.pressure), arb(problem.eccentricity), arb(problem.traction)
+    q = arb(problem.pressure)
+    e = arb(problem.eccentricity)
+    t = arb(problem.traction)
     push = q * (a - 2 * abs(e))
     turn = math.radians(problem.slope)
     weight = m * arb(problem.gravity)
-    along, down = weight * arb(math.sin(turn)), weight * arb(math.cos(turn))
+    along = weight * arb(math.sin(turn))
+    down = weight * arb(math.cos(turn))
     return [t * a + along, -push - down, arb(0), t * a * b / 2, -push * e, -push * b / 2]

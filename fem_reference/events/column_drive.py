@@ -1,6 +1,7 @@
-"""What drives a column: pieces of entire functions, each with its Taylor coefficients and a bound on what follows them.
+"""What drives columns and bars: pieces of entire functions, their Taylor coefficients and a bound on what follows.
 
-A drive is a displacement of the base (or of the wave that comes up through the half-space) or a pressure on the top.
+A drive is a displacement of the base (or of the wave that comes up through the half-space) or a pressure on the top; of
+bars the base's drive is its velocity.
 On each piece it is a polynomial, a sine or a Ricker pulse, so that a step that ends where the piece does has a power
 series with a proven remainder.
 """
@@ -56,7 +57,8 @@ class Sine:
     def series(self, start: arb, length: float, count: int) -> list[arb]:
         """Coefficients of the first powers of (t - start) / length."""
         angle = self.rate * (start - arb(self.origin))
-        sine, cosine = angle.sin(), angle.cos()
+        sine = angle.sin()
+        cosine = angle.cos()
         turns = [sine, cosine, -sine, -cosine]
         step = self.rate * arb(length)
         power = self.amplitude
@@ -90,7 +92,8 @@ class Ricker:
         """Coefficients of the first powers of (t - start) / length."""
         f = arb(self.pulse_frequency)
         late = start - 2 / f
-        before, ctx.cap = ctx.cap, count
+        before = ctx.cap
+        ctx.cap = count
         try:
             delay = arb_series([late, arb(length)], prec=count)
             b = delay * (arb.pi() * f)
@@ -130,6 +133,16 @@ class Course:
         end = self.breaks[index] if index < len(self.breaks) else None
         return self.pieces[index], end
 
+    def parts(self) -> list[tuple[float, Piece]]:
+        """Return the pieces from t = 0 on, each with its beginning [s]."""
+        parts = []
+        start: float | None = 0.0
+        while start is not None:
+            piece, end = self.piece_at(start)
+            parts.append((start, piece))
+            start = end
+        return parts
+
 
 Drive = Callable[[], Course]
 """Makes its course in the precision of the current context."""
@@ -138,6 +151,11 @@ Drive = Callable[[], Course]
 def still() -> Course:
     """Nothing."""
     return Course((), (NOTHING,))
+
+
+def constant(size: float) -> Drive:
+    """A size from t = 0 on."""
+    return lambda: Course((), (Polynomial((size,)),))
 
 
 def half_sine(size: float, duration: float, integral: bool = False) -> Drive:

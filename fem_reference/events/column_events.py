@@ -26,7 +26,7 @@ from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_le
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import bits_of, check_request, precision
-from fem_reference.events.switches import LostDigitsError, ProvenMotion
+from fem_reference.events.switches import ProvenMotion, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -34,10 +34,6 @@ DIGITS = 60
 """Decimal digits of the first computation."""
 MOST_DIGITS = 960
 """Decimal digits of the last one, where switches cost those of the ones before."""
-MARGIN = 1.25
-"""Times the digits that are expected to do which are taken next."""
-MOST_FOLD = 4
-"""Times the digits that are taken next at most, but for the margin."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 REPORT_DIGITS = 28
@@ -188,17 +184,23 @@ class ColumnMotion(ProvenMotion):
         radius: Array,
     ) -> ColumnHistory:
         """Put what the unknowns do into faces and joints."""
-        model, problem = self.model, self.problem
+        model = self.model
+        problem = self.problem
         stretch, reference, travel = joints
         shape = len(problem.blocks), len(t)
         # the last row is where `BASE` points to
         u, v, a = (np.vstack([part, of_base]) for part, of_base in zip(motion, base, strict=True))
         feet, tops = ([face[side] for face in model.faces] for side in (0, 1))
-        foot, top, foot_velocity, top_velocity = u[feet], u[tops], v[feet], v[tops]
+        foot = u[feet]
+        top = u[tops]
+        foot_velocity = v[feet]
+        top_velocity = v[tops]
         force, y, y_rate, slip, joint_states = (np.zeros(shape) for _ in range(5))
-        springs, friction = np.zeros(len(t)), np.zeros(len(t))
+        springs = np.zeros(len(t))
+        friction = np.zeros(len(t))
         for c, contact in enumerate(model.contacts):
-            k, j = float(contact.stiffness), contact.joint
+            k = float(contact.stiffness)
+            j = contact.joint
             y[j] = stretch[c]
             y_rate[j] = v[contact.above] - v[contact.below]
             slip[j] = reference[c]
@@ -325,17 +327,4 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
             model,
         )
 
-    while True:
-        try:
-            motion = motion_in(digits)
-            if motion.radius <= PROMISED * end:
-                return motion
-            times = [switch.time for switch in motion.switches if switch.radius <= PROMISED * end]
-            lost = LostDigitsError(times[-1] if times else 0.0, f"{len(motion.switches)} switches have cost the digits")
-        except LostDigitsError as error:
-            lost = error
-        if digits >= MOST_DIGITS:
-            raise lost
-        # Digits are lost evenly, so that the time they lasted for tells how many are needed.
-        needed = MARGIN * digits * end / max(lost.time, end / MOST_FOLD)
-        digits = min(MOST_DIGITS, math.ceil(needed))
+    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

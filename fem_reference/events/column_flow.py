@@ -15,21 +15,22 @@ from typing import NamedTuple
 import numpy as np
 from flint import arb, arb_poly
 
-from fem_reference.events.block_flow import CELLS, CUTS, FIRST_CELLS, FLOAT_TERMS, bernstein, cell_shift, term_count
+from fem_reference.events.block_flow import FLOAT_TERMS, ROUNDING, first_doubt, term_count
 from fem_reference.events.column_drive import TAIL_SUM, Piece
 from fem_reference.events.column_model import BASE, ColumnModel
 from fem_reference.events.enclosure import Fall, Local, ball, first_fall
 from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
-OPEN, CLOSED, STICKS, SLIPS = 0, 1, 1, 2
+OPEN = 0
+CLOSED = 1
+STICKS = 1
+SLIPS = 2
 """States of a contact; `SLIPS` towards +, -`SLIPS` towards -."""
 ANGLE = 6.0
 """Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
 MOST_LOOKS = 5000
 """Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more."""
-ROUNDING = 400 * np.finfo(float).eps
-"""Part of its terms by which Bernstein's forms of `FLOAT_TERMS` terms may be wrong after all cuts."""
 
 
 class Forces(NamedTuple):
@@ -256,24 +257,8 @@ class Watched:
             spread = float(first.upper()) + float(power.upper()) * np.exp(self.growth)
             beyond = size[FLOAT_TERMS:].sum() + float(self._tail(watch.contact).upper())
             margin[i] = ROUNDING * size.sum() + beyond + spread + 1e-300
-        doubtful = np.arange(len(terms))
-        forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
-        doubtful = doubtful[~(forms > margin)]
-        if not len(doubtful):
-            return 1.0, 0.0, []
-        terms = terms[doubtful]
-        margins = margin[doubtful, None]
-        low = 0.0
-        width = 1.0
-        for _ in range(CUTS):
-            forms = (terms @ bernstein(CELLS)).reshape(len(terms), CELLS, FLOAT_TERMS).min(axis=2)
-            failing = np.flatnonzero(~(forms > margins).all(axis=0))
-            if not len(failing):
-                return low + width, 0.0, []
-            width /= CELLS
-            low += failing[0] * width
-            terms = terms @ cell_shift(CELLS, int(failing[0]))
-        return low, width, [self.watches[i] for i in doubtful]
+        share, width, doubtful = first_doubt(terms, margin)
+        return share, width, [self.watches[i] for i in doubtful]
 
     def _exact_start(self, watch: Watch) -> arb:
         start = self.segment.stretches[watch.contact][0] * watch.sign

@@ -153,7 +153,8 @@ class March:
 
     def _step(self, limit: arb) -> None:
         """One step, up to a switch at most."""
-        model, start = self.model, self.start
+        model = self.model
+        start = self.start
         remaining = (limit - start.time).upper()
         length = min(step_length(model, self.states, self.forces), float(remaining) * (1 + 1e-9))
         segment = expand(model, self.states, start, self.forces, length)
@@ -218,7 +219,8 @@ class March:
 
     def _grow(self, segment: Segment) -> None:
         """Let the error grow over a step, by itself and by what the series of the drives leaves out."""
-        model, bounds = self.model, self.model.bounds
+        model = self.model
+        bounds = self.model.bounds
         span = arb(segment.length)
         base, pressure = segment.drive_tails
         push = arb(0)
@@ -239,11 +241,13 @@ class March:
 
     def _advance(self, segment: Segment, share: arb, whole: arb, limit: arb) -> None:
         """Move to a share of a step, or to its border where the share reaches it."""
-        start, span = self.start, arb(segment.length)
+        start = self.start
+        span = arb(segment.length)
         time = limit if share >= whole else (start.time + share * span).mid()
         at = (time - start.time) / span
         rest = ball(segment.tail)
-        u, v = [], []
+        u = []
+        v = []
         for i in range(self.model.size):
             series = segment.polynomial(i)
             u.append(series(at) + rest)
@@ -254,7 +258,8 @@ class March:
 
     def _blur(self, watch: Watch) -> None:
         """Put into the error what the centre misses its switch by, and the time in which states may differ."""
-        model, bounds = self.model, self.model.bounds
+        model = self.model
+        bounds = self.model.bounds
         contact = model.contacts[watch.contact]
         compliance = arb(float(bounds.compliance[watch.contact]))
         if watch.rate:
@@ -275,12 +280,14 @@ class March:
         return self.forces.base.series(self.start.time, 1.0, 2)[order]
 
     def _stretch(self, c: int) -> arb:
-        contact, u = self.model.contacts[c], self.start.u
+        contact = self.model.contacts[c]
+        u = self.start.u
         below = self._base(0) if contact.below == BASE else u[contact.below]
         return u[contact.above] - below + contact.gap
 
     def _rate(self, c: int) -> arb:
-        contact, v = self.model.contacts[c], self.start.v
+        contact = self.model.contacts[c]
+        v = self.start.v
         below = self._base(1) if contact.below == BASE else v[contact.below]
         return v[contact.above] - below
 
@@ -297,7 +304,9 @@ class March:
 
     def _at_zero(self, switching: set[int]) -> dict[int, int]:
         """Contacts that may switch now, with the direction of their slip, 0 where they open or close."""
-        model, bounds, error = self.model, self.model.bounds, self.error
+        model = self.model
+        bounds = self.model.bounds
+        error = self.error
         undecided: dict[int, int] = {}
         for c, contact in enumerate(model.contacts):
             state = self.states[c]
@@ -402,7 +411,8 @@ class March:
             return
         references = list(self.start.references)
         for c, contact in enumerate(self.model.contacts):
-            was, now = before[c], self.next_states[c]
+            was = before[c]
+            now = self.next_states[c]
             if abs(was) == SLIPS and was != now:
                 sign = 1 if was > 0 else -1
                 reference = self._stretch(c) - sign * contact.reach
@@ -448,7 +458,8 @@ class March:
     def _record(self, before: Sequence[int]) -> None:
         """Add the changes of states to the switches."""
         for c, contact in enumerate(self.model.contacts):
-            was, now = before[c], self.states[c]
+            was = before[c]
+            now = self.states[c]
             if was == now:
                 continue
             if self.model.unilateral:

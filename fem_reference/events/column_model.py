@@ -150,15 +150,18 @@ class ColumnModel:
         self.contacts: list[Contact] = []
         self.rigid_masses: list[tuple[int, arb]] = []
         weights: dict[int, arb] = {}
-        previous, count = BASE, 0
+        previous = BASE
+        count = 0
         for j, (block, joint) in enumerate(zip(problem.blocks, problem.joints, strict=True)):
             foot = previous
             if joint is not None or (j == 0 and problem.base != "rigid"):
-                foot, count = count, count + 1
+                foot = count
+                count = count + 1
             top = foot
             mass = arb(block.density) * arb(block.height)
             if math.isfinite(block.modulus):
-                top, count = count, count + 1
+                top = count
+                count = count + 1
                 self.struts.append(Strut(foot, top, arb(block.modulus) / arb(block.height), mass))
             elif foot != BASE:
                 self.rigid_masses.append((foot, mass))
@@ -251,7 +254,8 @@ class ColumnModel:
 
     def accelerations(self, forces: list[arb]) -> list[arb]:
         """Solve M a = f; overwrites the forces."""
-        factors, last = self.factors, self.size - 1
+        factors = self.factors
+        last = self.size - 1
         for i in range(last):
             factor = factors[i]
             if factor is not None:

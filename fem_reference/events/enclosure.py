@@ -146,7 +146,8 @@ def _root(function: Smooth, low: arb, high: arb) -> Fall:
     exact = arb(0)
     x = ((low + high) / 2).mid()
     width = high - low
-    start, end = low, high
+    start = low
+    end = high
     for _ in range(NEWTON_STEPS):
         here = function(x, exact)
         if here.value > 0:

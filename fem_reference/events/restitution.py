@@ -56,7 +56,8 @@ class ContactScheme:
         if not omega > 0:
             raise ValueError(f"omega: must be positive, got {omega!r}")
         k = 1 / (1 / omega / omega + self.alpha)  # Omega^2 / (1 + alpha Omega^2); 1 / alpha if stiff
-        gg, delta = self.gg, self.delta
+        gg = self.gg
+        delta = self.delta
         velocity = np.array([-delta * k, gg, 1 - delta])
         return np.array([np.array([1 - k / 2, 0.0, 0.0]) + gg * velocity, velocity, [-k, 0.0, 0.0]])
 

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
+
+MARGIN = 1.25
+"""Times the digits that are expected to do which are taken next."""
+MOST_FOLD = 4
+"""Times the digits that are taken next at most, but for the margin."""
 
 
 @dataclass(frozen=True)
@@ -57,17 +63,21 @@ class LostDigitsError(HorizonError):
     """The switches have amplified the enclosure of the motion until nothing can be decided."""
 
 
-def with_enough_digits(motion_in: Callable[[int], Motion], digits: int, most: int, promised: float) -> Motion:
+def with_enough_digits(
+    motion_in: Callable[[int], Motion], end: float, digits: int, most: int, promised: float
+) -> Motion:
     """The motion in as many digits as it needs.
 
     Parameters
     ----------
     motion_in
         From decimal digits to the motion in them.
+    end
+        Last instant of the motion [s].
     digits, most
-        The digits of the first computation; twice as many are taken time after time, up to the most.
+        The digits of the first computation; more are taken time after time, up to the most.
     promised
-        What the instants of all switches are enclosed to [s].
+        Part of the end to which the instants of all switches are enclosed.
 
     Raises
     ------
@@ -77,12 +87,14 @@ def with_enough_digits(motion_in: Callable[[int], Motion], digits: int, most: in
     while True:
         try:
             motion = motion_in(digits)
-            if motion.radius <= promised:
+            if motion.radius <= promised * end:
                 return motion
-            times = [switch.time for switch in motion.switches if switch.radius <= promised]
+            times = [switch.time for switch in motion.switches if switch.radius <= promised * end]
             lost = LostDigitsError(times[-1] if times else 0.0, f"{len(motion.switches)} switches have cost the digits")
         except LostDigitsError as error:
             lost = error
         if digits >= most:
             raise lost
-        digits = min(2 * digits, most)
+        # Digits are lost evenly, so that the time they lasted for tells how many are needed.
+        needed = MARGIN * digits * end / max(lost.time, end / MOST_FOLD)
+        digits = min(most, math.ceil(needed))

@@ -151,7 +151,8 @@ class Bar:
         history = bar_scheme.weighted_response(b / self.travel * scheme.step, cut, at_once, steps)
         if self.ramp:
             history = ramped(history, self.ramp / scheme.step)
-        fine, coarse = history[: len(columns)], history[len(columns) :]
+        fine = history[: len(columns)]
+        coarse = history[len(columns) :]
         error = np.abs(fine - coarse).max(axis=1, initial=0.0)
         scale = np.maximum(np.abs(fine).max(axis=1, initial=0.0), BEGUN * min(1.0, self.kappa))
         return fine, float((error / scale).max(initial=0.0))

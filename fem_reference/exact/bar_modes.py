@@ -16,12 +16,14 @@ def wave_numbers(kappa: float, count: int) -> Array:
     theta - atan(kappa / (n pi + theta)), which increases, kept inside its bracket by bisection.
     """
     turn = np.pi * np.arange(count)
-    low, high = np.zeros(count), np.full(count, np.pi / 2)
+    low = np.zeros(count)
+    high = np.full(count, np.pi / 2)
     theta = np.minimum(np.pi / 4, np.sqrt(kappa)) * np.ones(count)
     for _ in range(60):
         b = turn + theta
         miss = theta - np.arctan2(kappa, b)
-        low, high = np.where(miss < 0, theta, low), np.where(miss >= 0, theta, high)
+        low = np.where(miss < 0, theta, low)
+        high = np.where(miss >= 0, theta, high)
         slope = 1 + kappa / (b * b + kappa * kappa) if kappa < 1 else 1 + 1 / (b * b / kappa + kappa)
         proposed = theta - miss / slope
         inside = (proposed >= low) & (proposed <= high)  # with its ends, one of which is theta: it may have settled

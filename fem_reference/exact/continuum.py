@@ -97,15 +97,19 @@ def _pressure(t: Array, kappa: float) -> Array:
 
 def _forces(t: Array, kappa: float) -> Iterator[tuple[Array, Array]]:
     """Yield I_j and K_j for j = 0, 1, ..., of the waves from j on, the last axis of `t`."""
-    first, second = _Laguerre(2 * kappa * t, 1), _Laguerre(2 * kappa * t, 2)
+    first = _Laguerre(2 * kappa * t, 1)
+    second = _Laguerre(2 * kappa * t, 2)
     begun = -np.expm1(-kappa * t)
-    force, rise = 2 * begun, 4 / kappa * gammainc(2, kappa * t)
+    force = 2 * begun
+    rise = 4 / kappa * gammainc(2, kappa * t)
     impulse = 2 * t * begun - rise / 2
     while True:
         yield force, impulse
-        before, force = force[..., 1:], 2 * first.advance() - force[..., 1:]
+        before = force[..., 1:]
+        force = 2 * first.advance() - force[..., 1:]
         if kappa < SOFT:
-            impulse, rise = rise[..., 1:] - impulse[..., 1:], second.advance() / kappa - rise[..., 1:]
+            impulse = rise[..., 1:] - impulse[..., 1:]
+            rise = second.advance() / kappa - rise[..., 1:]
         else:
             impulse = (before - force) / kappa - impulse[..., 1:]
 
@@ -134,16 +138,24 @@ class _Laguerre:
     """
 
     def __init__(self, x: Array, order: int = 1) -> None:
-        self._x, self._j, self._order = x, 0, order
+        self._x = x
+        self._j = 0
+        self._order = order
         begun = np.minimum(x / 2, 600.0)
-        self._rise, self._now, self._exponent = np.zeros_like(x), np.exp(-begun), begun - x / 2
+        self._rise = np.zeros_like(x)
+        self._now = np.exp(-begun)
+        self._exponent = begun - x / 2
         self._scaled = bool(np.any(self._exponent < 0))
 
     def advance(self) -> Array:
         """Drop the first wave, raise j by one and return l_j^m; for m = 1 that is l_j^0 - l_(j+1)^0."""
-        j, x, now = self._j, self._x[..., 1:], self._now[..., 1:]
+        j = self._j
+        x = self._x[..., 1:]
+        now = self._now[..., 1:]
         self._rise = (j * self._rise[..., 1:] - x * now) / (j + 1 + self._order)
-        self._j, self._x, self._now = j + 1, x, now + self._rise
+        self._j = j + 1
+        self._x = x
+        self._now = now + self._rise
         value = x**self._order * now
         return self._rescaled(value) if self._scaled else value
 
@@ -154,5 +166,7 @@ class _Laguerre:
         down = np.where(np.abs(self._now) > HUGE, np.minimum(np.log(HUGE), -self._exponent), 0.0)
         if down.any():
             factor = np.exp(-down)
-            self._rise, self._now, self._exponent = self._rise * factor, self._now * factor, self._exponent + down
+            self._rise = self._rise * factor
+            self._now = self._now * factor
+            self._exponent = self._exponent + down
         return result

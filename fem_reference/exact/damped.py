@@ -176,7 +176,9 @@ def slowest(t: Array, w: float, a: float) -> Array:
     y[early] = w * w * t[early] / 2 * (np.exp(-a * s) * s * np.sinc(v * s / np.pi).real @ weights)
     if w < a / 2:
         q = np.sqrt((a - w) * (a + w))
-        slow, fast, late = w * w / (a + q), a + q, t[~early]
+        slow = w * w / (a + q)
+        fast = a + q
+        late = t[~early]
         y[~early] = (slow * np.expm1(-fast * late) - fast * np.expm1(-slow * late)) / (2 * q)
     return np.asarray(y)
 
@@ -189,7 +191,8 @@ def response(t: Array, w: Array, a: float) -> Array:
     x = np.exp(-a * t) * (np.cos(swing) + a * t * np.sinc(swing / np.pi))
     over = square > 0
     if over.any():
-        v, slow = q[over], w[over] ** 2 / (a + q[over])
+        v = q[over]
+        slow = w[over] ** 2 / (a + q[over])
         # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
         fall = -np.expm1(-2 * v * t)
         x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))

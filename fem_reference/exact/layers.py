@@ -59,18 +59,22 @@ def amplitudes(
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)
-    one, zero = np.ones_like(w), np.zeros_like(w)
+    one = np.ones_like(w)
+    zero = np.zeros_like(w)
     free = dict(_descend(ground, heights, w2, (one, zero)))
     pressed = dict(_descend(ground, heights, w2, (zero, -one)))
     if ground.impedance is None:
-        excitation, free_residual, pressed_residual = np.asarray(1 / (1j * w)), free[-1][0], pressed[-1][0]
+        excitation = np.asarray(1 / (1j * w))
+        free_residual = free[-1][0]
+        pressed_residual = pressed[-1][0]
     else:
         z = ground.impedance
         excitation = np.asarray(-2 * z * one)
         free_residual, pressed_residual = (
             np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1])
         )
-    by_base, by_top = excitation / free_residual, -pressed_residual / free_residual
+    by_base = excitation / free_residual
+    by_top = -pressed_residual / free_residual
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
 
@@ -120,7 +124,8 @@ def _descend(ground: Ground, heights: Sequence[float], w2: Complex, state: State
 def through(modulus: float, density: float, depth: float, w2: Complex, state: State) -> State:
     """Return the state deeper in a layer by some depth [m]."""
     k = np.sqrt(density * w2 / modulus)
-    cosine, sine = np.cos(k * depth), np.sin(k * depth)
+    cosine = np.cos(k * depth)
+    sine = np.sin(k * depth)
     u, sigma = state
     return u * cosine - sigma * sine / (modulus * k), sigma * cosine + modulus * k * u * sine
 
@@ -158,7 +163,8 @@ def solve_layers(
     if reason := applicable(scheme):
         raise ValueError(f"gg: {reason}")
     began = perf_counter()
-    count, samples = 1, 0
+    count = 1
+    samples = 0
     histories = _synthesis(ground, scheme, steps, drive, columns, heights, count)
     error = math.inf
     while error > TOLERANCE and PERIODS * steps * 2 * count <= max(MOST_SAMPLES, 2 * PERIODS * steps):
@@ -205,7 +211,8 @@ def _synthesis(
     w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
     excitation = drive(time)
     moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
-    velocity, pressure = rfft(weight * excitation.velocity), rfft(weight * excitation.pressure)
+    velocity = rfft(weight * excitation.velocity)
+    pressure = rfft(weight * excitation.pressure)
     picked = count * np.arange(1, steps + 1)
     histories = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]
     return np.asarray(np.array(histories) / weight[picked])

@@ -178,7 +178,9 @@ class _Series:
 
 def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
     """x^2 of the scheme, and the image of a load that is one from t = 0 on, less r times the A_0 that it causes."""
-    alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
     denominator = 1 - gg * z
     b = ((0.5 - alpha) * z + alpha) * denominator + gg * z * ((1 - delta) * z + delta)
     x2 = (travel / scheme.step) ** 2 * (1 - z) * denominator / b
@@ -194,7 +196,8 @@ def closed_forms(x2: Array) -> tuple[Array, Array, Array]:
     """
     x = np.sqrt(np.asarray(x2, complex))  # Re x >= 0, so that the exponentials decay
     with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
-        e, root = np.exp(-2 * x), np.exp(-x / 2)
+        e = np.exp(-2 * x)
+        root = np.exp(-x / 2)
         stretch = (x * (1 + e) / (1 - e) - 1) / x2
         across = (2 * x * np.exp(-x) / (1 - e) - 1) / x2
         half = (x * root / (1 - root * root) - 1) / x2
@@ -239,13 +242,23 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
     free
         What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).
     """
-    count, dt, alpha, delta, gg = len(loaded), scheme.step, scheme.alpha, scheme.delta, scheme.gg
-    surface, compliance = bar.density * bar.height, bar.width / bar.base_stiffness
+    count = len(loaded)
+    dt = scheme.step
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
+    surface = bar.density * bar.height
+    compliance = bar.width / bar.base_stiffness
     load = -bar.pressure / surface - bar.gravity
-    D, V, A = 0.0, bar.velocity, load if scheme.start == "consistent" else 0.0
+    D = 0.0
+    V = bar.velocity
+    A = load if scheme.start == "consistent" else 0.0
     C = alpha * dt**2 / surface + loaded[0]
     backwards = loaded[::-1].copy()
-    rigid, N, gap, closed = np.zeros(count), np.zeros(count), np.full(count, bar.gap), np.zeros(count)
+    rigid = np.zeros(count)
+    N = np.zeros(count)
+    gap = np.full(count, bar.gap)
+    closed = np.zeros(count)
     speed = np.full(count, V)
     closed[0] = bar.gap == 0
     for n in range(1, count):
@@ -254,15 +267,19 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
         w = bar.gap + ahead + (free[n] + past)
         noise = NOTHING * (abs(ahead) + abs(free[n]) + abs(past))
         if abs(w) <= noise:  # neither pressed nor lifted
-            w, closed[n] = 0.0, closed[n - 1]
+            w = 0.0
+            closed[n] = closed[n - 1]
         else:
             closed[n] = w < 0
         if w < 0:
             N[n] = -w / (C + compliance)
         gap[n] = -compliance * N[n] if closed[n] else w
         new = load + N[n] / surface
-        D, V, A = ahead + alpha * dt**2 * (new - load), gg * V + dt * ((1 - delta) * A + delta * new), new
-        rigid[n], speed[n] = D, V
+        D = ahead + alpha * dt**2 * (new - load)
+        V = gg * V + dt * ((1 - delta) * A + delta * new)
+        A = new
+        rigid[n] = D
+        speed[n] = V
     return _Base(rigid, N, gap, closed, speed)
 
 

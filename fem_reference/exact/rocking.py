@@ -191,7 +191,10 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if not abs(tilt) < FALLEN:
         raise ValueError(f"tilt: must be below a right angle, got {tilt!r}")
-    time, angle, rate, fallen = 0.0, tilt, 0.0, False
+    time = 0.0
+    angle = tilt
+    rate = 0.0
+    fallen = False
     swings: list[Swing] = []
     impacts: list[float] = []
     while time < end and not fallen:
@@ -200,18 +203,22 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
         if angle == 0 and abs(rate) < STILL * block.p:
             wakes = _wakes(block, pulse, time)
             swings.append(Swing(time, lambda t: np.zeros((2, len(t)))))
-            time, rate = (end if wakes is None else min(wakes, end)), 0.0
+            time = end if wakes is None else min(wakes, end)
+            rate = 0.0
             if time == end:
                 break
         side = _sign(angle) or _sign(rate) or -_sign(pulse.amplitude)
         last = pulse.duration if time < pulse.duration < end else end
         swing = _swing(block, pulse, side, (time, last), (angle, rate))
         swings.append(Swing(time, swing.sol))
-        time, angle, rate = float(swing.t[-1]), float(swing.y[0, -1]), float(swing.y[1, -1])
+        time = float(swing.t[-1])
+        angle = float(swing.y[0, -1])
+        rate = float(swing.y[1, -1])
         fallen = len(swing.t_events[1]) > 0
         if len(swing.t_events[0]):
             impacts.append(time)
-            angle, rate = 0.0, rate * block.ratio
+            angle = 0.0
+            rate = rate * block.ratio
     return RockingMotion(min(time, end), tuple(swings), tuple(impacts), fallen)
 
 
@@ -229,7 +236,9 @@ def _wakes(block: RockingBlock, pulse: Pulse, time: float) -> float | None:
 
 def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, float], start: tuple[float, float]) -> Any:
     """The block on a corner until it comes down or falls, or to the end of a span."""
-    alpha, square, g = block.alpha * side, block.p**2, block.gravity
+    alpha = block.alpha * side
+    square = block.p**2
+    g = block.gravity
 
     def motion(t: float, y: Array) -> list[float]:
         pushed = pulse(t) / g if span[1] <= pulse.duration else 0.0
@@ -243,7 +252,9 @@ def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, floa
         return FALLEN - side * float(y[0])
 
     for event in (lands, falls):
-        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+        # type: ignore[attr-defined]
+        event.terminal = True
+        event.direction = -1
     return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=[lands, falls], dense_output=True)
 
 
@@ -287,7 +298,8 @@ def overturning_amplitude(block: RockingBlock, duration: float, shape: str = "ha
         raise ValueError(f"duration: must be positive and finite, got {duration!r}")
     low = high = block.lifting
     while not overturns(block, Pulse(high, duration, shape)):
-        low, high = high, 2 * high
+        low = high
+        high = 2 * high
     while high - low > 1e-12 * high:
         middle = (low + high) / 2
         fell = overturns(block, Pulse(middle, duration, shape))

@@ -193,7 +193,8 @@ def moved(time: ArrayLike, displacement: ArrayLike) -> tuple[Segment, ...]:
 
 
 def _rows(what: str, time: ArrayLike, values: ArrayLike) -> tuple[list[float], list[float]]:
-    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    t = np.asarray(time, dtype=float)
+    x = np.asarray(values, dtype=float)
     if t.ndim != 1 or t.shape != x.shape or not len(t) or not np.all(np.isfinite([t, x])):
         raise ValueError(f"{what}: must be finite numbers at as many instants, got shapes {t.shape} and {x.shape}")
     if t[0] != 0 or np.any(np.diff(t) < 0):
@@ -274,7 +275,9 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
     """
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
-    slide, velocity, stretches = 0.0, 0.0, list[Stretch]()
+    slide = 0.0
+    velocity = 0.0
+    stretches = list[Stretch]()
     for segment in base:
         remainder: Segment | None = replace(segment, end=min(segment.end, end))
         while remainder is not None and remainder.start < remainder.end:
@@ -292,7 +295,8 @@ def _begin(block: SlidingBlock, base: Segment, slide: float, velocity: float) ->
     """The mass from an instant on."""
     direction = int(np.sign(velocity)) or _yields(block, base)
     if direction < 0 and not block.two_way:
-        direction, velocity = 0, 0.0
+        direction = 0
+        velocity = 0.0
     return Stretch(base, direction, slide, velocity if direction else 0.0, block.push(direction))
 
 
@@ -300,7 +304,8 @@ def _yields(block: SlidingBlock, base: Segment) -> int:
     """The way in which a mass at rest on its base begins to slide, 0 if it stays."""
     now = float(base.acceleration(0.0))
     for direction in (1, -1):
-        excess, size = direction * (block.push(direction) - now), block.gravity + abs(now)
+        excess = direction * (block.push(direction) - now)
+        size = block.gravity + abs(now)
         if excess > NOISE * size or (abs(excess) <= NOISE * size and direction * base.grows < 0):
             return direction
     return 0
@@ -322,7 +327,8 @@ def _slips(block: SlidingBlock, base: Segment) -> float | None:
 
 def _sticks(stretch: Stretch) -> float | None:
     """The first root of the rate of the slide, which is monotone between the roots of its own rate."""
-    base, direction = stretch.base, stretch.way
+    base = stretch.base
+    direction = stretch.way
 
     def rate(s: float) -> float:
         return direction * (stretch.velocity + stretch.push * s - float(base.velocity(s)))

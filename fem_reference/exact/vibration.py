@@ -35,7 +35,8 @@ def response(
     root = bar.travel * np.sqrt(W2)
     theta: Complex = np.where(root.imag > 0, -root, root)
     whole = np.exp(-1j * theta)
-    cosine, sine = (1 + whole**2) / 2, theta * _sine(theta, whole**2)
+    cosine = (1 + whole**2) / 2
+    sine = theta * _sine(theta, whole**2)
     below = bar.kappa * cosine - theta * sine
     half = np.exp(-0.5j * theta)
     middle = half * ((1 + whole) / 2 + bar.kappa / 2 * _sine(theta / 2, whole))

@@ -12,7 +12,8 @@ import numpy as np
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.problem.problem import Array
 
-FIRST, LAST = 256, 2**15
+FIRST = 256
+LAST = 2**15
 """Modes of the first and of the last attempt."""
 TARGET = 1e-12
 """Change of the history over its maximum at which no more modes are added."""
@@ -32,7 +33,8 @@ def histories(times: Array, kappa: float, rate: float, lag: float, columns: tupl
     rate, lag
         c times the travel time, and a1 over it.
     """
-    count, histories = FIRST, _summed(times, kappa, rate, lag, columns, FIRST)
+    count = FIRST
+    histories = _summed(times, kappa, rate, lag, columns, FIRST)
     while True:
         count *= 2
         finer = _summed(times, kappa, rate, lag, columns, count)

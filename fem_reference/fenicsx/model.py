@@ -15,7 +15,10 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 COMM = MPI.COMM_WORLD
-BASE, TOP, PRESSED = 1, 2, 3  # the top without its pressed part, and that part
+# the top without its pressed part, and that part
+BASE = 1
+TOP = 2
+PRESSED = 3
 Request = dict[str, Any]
 
 
@@ -27,7 +30,8 @@ class Outline:
     """The block's corners from the start of its base on, relative to that point [m]."""
 
     def __init__(self, request: Request) -> None:
-        base, corners = request["base"], np.asarray(request["vertices"], float)
+        base = request["base"]
+        corners = np.asarray(request["vertices"], float)
         self.origin = corners[base].copy()
         self.corners = np.roll(corners, -base, axis=0) - self.origin
         self.top = (request["top"] - base) % len(corners)
@@ -53,7 +57,8 @@ def nodes_and_cells(request: Request, outline: Outline) -> tuple[np.ndarray, np.
         return points, cells if cells.shape[1] == 3 else cells[:, [0, 1, 3, 2]]
     n = request["elements"]
     right, up = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
-    right, up = right.reshape(-1, 1), up.reshape(-1, 1)
+    right = right.reshape(-1, 1)
+    up = up.reshape(-1, 1)
     a, b, c, d = outline.corners
     points = (1 - up) * ((1 - right) * a + right * b) + up * ((1 - right) * d + right * c)
     first = (np.arange(n) + (n + 1) * np.arange(n)[:, None]).reshape(-1, 1)
@@ -67,7 +72,8 @@ def make_mesh(request: Request, outline: Outline) -> Any:
     points, cells = nodes_and_cells(request, outline)
     kind = "triangle" if cells.shape[1] == 3 else "quadrilateral"
     if COMM.rank > 0:
-        points, cells = points[:0], cells[:0]
+        points = points[:0]
+        cells = cells[:0]
     try:
         import basix.ufl
 
@@ -94,7 +100,8 @@ def facets_on(mesh: Any, outline: Outline, index: int, low: float, high: float) 
 
     def inside(x: np.ndarray) -> np.ndarray:
         away = x[:2] - start[:, None]
-        s, off = along @ away, along[0] * away[1] - along[1] * away[0]
+        s = along @ away
+        off = along[0] * away[1] - along[1] * away[0]
         return np.asarray((np.abs(off) <= slack) & (s >= low - slack) & (s <= high + slack))
 
     return np.asarray(dolfinx.mesh.locate_entities_boundary(mesh, 1, inside), np.int32)
@@ -118,7 +125,8 @@ class Block:
     """M D'' + K D = F + pushes y, y the displacement of the base, and the rows that observe D."""
 
     def __init__(self, request: Request) -> None:
-        self.request, self.outline = request, Outline(request)
+        self.request = request
+        self.outline = Outline(request)
         self.mesh = make_mesh(request, self.outline)
         self.mesh.topology.create_connectivity(1, 2)
         self.space = vector_space(self.mesh, request["degree"])
@@ -151,7 +159,8 @@ class Block:
 
     def _check(self) -> None:
         """Refuse a mesh that is not the block's: area, perimeter, loaded and carried length."""
-        o, request = self.outline, self.request
+        o = self.outline
+        request = self.request
         perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
         top = self.ds((TOP, PRESSED))
         measures = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
@@ -173,14 +182,20 @@ class Block:
 
     def _matrices(self) -> None:
         """Assemble M and K from rho (u, v), lam (div u, div v) + 2 G (eps(u), eps(v)) and the springs."""
-        r, mesh, dx, ds = self.request, self.mesh, self.dx, self.ds
-        u, v = ufl.TrialFunction(self.space), ufl.TestFunction(self.space)
+        r = self.request
+        mesh = self.mesh
+        dx = self.dx
+        ds = self.ds
+        u = ufl.TrialFunction(self.space)
+        v = ufl.TestFunction(self.space)
         t = self.outline.side(0)[1]
-        self.tangent, self.normal = t, np.array([-t[1], t[0]])
+        self.tangent = t
+        self.normal = np.array([-t[1], t[0]])
         spread = 2 / self.carried  # over edges of the base; where springs stand at its corners no edge is marked
         kn, kt = (constant(mesh, spread * r[name]) for name in ("stiffness", "shear_stiffness"))
         lam, shear = (constant(mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
-        n, t = constant(mesh, self.normal), constant(mesh, self.tangent)
+        n = constant(mesh, self.normal)
+        t = constant(mesh, self.tangent)
         elastic = (lam * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(strain(u), strain(v))) * dx
         springs = (kn * ufl.dot(n, u) * ufl.dot(n, v) + kt * ufl.dot(t, u) * ufl.dot(t, v)) * ds(BASE)
         self.M = assembled(ufl.dot(u, v) * dx)
@@ -206,7 +221,8 @@ class Block:
 
     def _spring(self) -> np.ndarray:
         """Matrix of one corner spring."""
-        p, ps = self.request["stiffness"], self.request["shear_stiffness"]
+        p = self.request["stiffness"]
+        ps = self.request["shear_stiffness"]
         return np.asarray(p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent))
 
     def _corners(self) -> list[np.ndarray]:
@@ -261,7 +277,8 @@ class Block:
 
     def _point_rows(self) -> tuple[Any, Any]:
         """Rows that give u and v at the centroid: the basis functions of its cell, each evaluated there."""
-        point, cell = np.append(self.outline.centroid, 0.0), self._cell()
+        point = np.append(self.outline.centroid, 0.0)
+        cell = self._cell()
         owner = COMM.allreduce(COMM.size if cell is None else COMM.rank, MPI.MIN)
         if owner == COMM.size:
             raise ValueError("vertices: the centroid must lie inside the block")

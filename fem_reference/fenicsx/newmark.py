@@ -42,11 +42,17 @@ class Newmark:
     """
 
     def __init__(self, block: Block, request: Request) -> None:
-        self.M, self.K, self.moved = block.M, block.K, request["moved"]
-        self.constant, self.pushes, self.step = block.F, block.pushes, 0
+        self.M = block.M
+        self.K = block.K
+        self.moved = request["moved"]
+        self.constant = block.F
+        self.pushes = block.pushes
+        self.step = 0
         self.F = self.load(self.moved[0] if self.moved else (0.0, 0.0))
-        self.dt, self.gg = request["step"], request["gg"]
-        self.alpha, self.delta = request["alpha"], request["delta"]
+        self.dt = request["step"]
+        self.gg = request["gg"]
+        self.alpha = request["alpha"]
+        self.delta = request["delta"]
         S = self.M.copy()
         S.axpy(self.alpha * self.dt**2, self.K, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         self.solve = Factor(S)
@@ -67,7 +73,9 @@ class Newmark:
 
     def advance(self) -> Any:
         """Take one step and return the displacement."""
-        dt, alpha, A = self.dt, self.alpha, self.A
+        dt = self.dt
+        alpha = self.alpha
+        A = self.A
         if self.moved:
             self.step += 1
             self.F = self.load(self.moved[self.step])

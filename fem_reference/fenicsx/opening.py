@@ -35,8 +35,10 @@ class Base:
     """The nodes of the base that bear springs, in their order along it and alike on every rank."""
 
     def __init__(self, block: Block, request: Request) -> None:
-        self.normal, self.tangent = block.normal, block.tangent
-        self.block, self.length = block, block.outline.side(0)[2]
+        self.normal = block.normal
+        self.tangent = block.tangent
+        self.block = block
+        self.length = block.outline.side(0)[2]
         parts = COMM.allgather(self._owned(request))
         numbers, along, share = (np.concatenate([part[i] for part in parts]) for i in range(3))
         order = np.argsort(along)
@@ -55,7 +57,8 @@ class Base:
 
         The integral of a node's shape function over the base is its share of the length.
         """
-        block, owned = self.block, self.block.space.dofmap.index_map
+        block = self.block
+        owned = self.block.space.dofmap.index_map
         first, end = owned.local_range
         share = np.zeros(end - first)
         if request["foundation"] == "corner":
@@ -100,8 +103,11 @@ class Opening:
     """The scheme on a base that carries no tension; a piece without a contact is repeated shorter, from its start."""
 
     def __init__(self, block: Block, request: Request) -> None:
-        self.block, self.request, self.base = block, request, Base(block, request)
-        self.alpha, self.delta = request["alpha"], request["delta"]
+        self.block = block
+        self.request = request
+        self.base = Base(block, request)
+        self.alpha = request["alpha"]
+        self.delta = request["delta"]
         self.sheared = request["shear_stiffness"] > 0
         self._pieces: dict[float, Piece] = {}
         self.nonzeros = 0
@@ -111,7 +117,8 @@ class Opening:
         if request["start"] == "consistent":
             self.A = Factor(block.M)(block.F)
         n = len(self.base.share)
-        zero, gap = np.zeros(n), np.full(n, float(request["gap"]))
+        zero = np.zeros(n)
+        gap = np.full(n, float(request["gap"]))
         self.contact = Start(gap, zero, zero, (gap == 0).astype(int), zero)
         self.N = self.T = zero
         self.time, displacement = 0.0, self._way(0.0)
@@ -133,11 +140,13 @@ class Opening:
         if share not in self._pieces:
             if len(self._pieces) > KEPT:
                 self._pieces = {1.0: self._pieces[1.0]}
-            dt, gg = share * self.request["step"], self.request["gg"] ** share
+            dt = share * self.request["step"]
+            gg = self.request["gg"] ** share
             S = self.block.M.copy()
             S.axpy(self.alpha * dt**2, self.block.K, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
             self.nonzeros = int(S.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
-            solve, n = Factor(S), len(self.base.share)
+            solve = Factor(S)
+            n = len(self.base.share)
             units = np.eye(2 * n)[: 2 * n if self.sheared else n]
             answers = [np.concatenate(self.base.moved(solve(self.base.load(u[:n], u[n:])))) for u in units]
             C = self.alpha * dt**2 * np.array(answers)[:, : len(units)].T
@@ -159,14 +168,17 @@ class Opening:
                 continue
             remainder = remainder - share if remainder - share > 1e-9 else 0.0
             share = min(share, remainder)
-        gap, length = self.contact.gap, self.base.length
+        gap = self.contact.gap
+        length = self.base.length
         opened = float(self.base.share @ (gap > 0))
         sizes = [float(np.max(part, initial=0.0)) for part in (gap, -gap, np.abs(self.contact.slid))]
         return [self.N.sum() / length, self.T.sum() / length, opened, *sizes, float(solves), float(cuts)], ""
 
     def _try(self, piece: Piece) -> tuple[int, str]:
         """Take a piece of a step, or say why there is no contact at its end."""
-        block, alpha, (dt, gg, solve, C) = self.block, self.alpha, piece
+        block = self.block
+        alpha = self.alpha
+        (dt, gg, solve, C) = piece
         ahead = self.D + gg * dt * self.V + dt**2 * (0.5 - alpha) * self.A
         residual = block.K.createVecRight()
         block.K.multAdd(-ahead, block.F, residual)
@@ -179,7 +191,9 @@ class Opening:
         A = solve(residual + self.base.load(forces.N, forces.T))
         self.D = ahead + alpha * dt**2 * A
         self.V = gg * self.V + dt * ((1 - self.delta) * self.A + self.delta * A)
-        self.A, self.N, self.T = A, forces.N, forces.T
+        self.A = A
+        self.N = forces.N
+        self.T = forces.T
         self.contact = small.ended(forces, self.base.moved(self.D)[1] - displacement[1])
         self.time += dt
         return count, ""

@@ -22,7 +22,8 @@ SETS = 256  # sets of states of which all are tried
 TURNS = 4  # changes of one node after the other, over the number of nodes
 SWEEPS = 200  # corrections of the crossings for given states
 SLACK = 1e-12  # of the friction, by which a node that slides may miss it
-NONE, SEVERAL = "no consistent contact state", "several consistent contact states"
+NONE = "no consistent contact state"
+SEVERAL = "several consistent contact states"
 
 
 class Law(NamedTuple):
@@ -59,7 +60,10 @@ class Small:
     """The small problem of one step."""
 
     def __init__(self, law: Law, C: np.ndarray, free: tuple[np.ndarray, np.ndarray], start: Start) -> None:
-        self.law, self.C, self.start, self.n = law, C, start, len(law.k)
+        self.law = law
+        self.C = C
+        self.start = start
+        self.n = len(law.k)
         self.sheared = len(C) > self.n
         self.rubs = self.sheared and law.tan < np.inf
         self.free = np.concatenate([free[0], free[1] - start.reference])[: len(C)]
@@ -68,7 +72,9 @@ class Small:
     def forces(self, states: np.ndarray) -> Forces:
         """Forces of given states, with the crossings that they bring about."""
         closing = (states == 1) & (self.start.states == 0) & self.sheared
-        phi, relax, least = np.where(closing, 0.5, 1.0), 1.0, np.inf
+        phi = np.where(closing, 0.5, 1.0)
+        relax = 1.0
+        least = np.inf
         for _ in range(SWEEPS):
             forces = self._linear(states, phi)
             miss = np.where(closing, self._passed(forces.N) - phi, 0.0)
@@ -87,8 +93,10 @@ class Small:
 
     def _linear(self, states: np.ndarray, phi: np.ndarray) -> Forces:
         """Solve x + k (free + C lambda) = 0, lambda = P x + q, for the N of closed and the T of sticking nodes."""
-        n, size = self.n, len(self.C)
-        P, q = np.eye(size), np.zeros(2 * n)
+        n = self.n
+        size = len(self.C)
+        P = np.eye(size)
+        q = np.zeros(2 * n)
         for i in np.flatnonzero(np.abs(states) == 2):
             d = np.sign(states[i])
             P[n + i, [i, n + i]] = -d * self.law.tan, 0.0
@@ -102,14 +110,17 @@ class Small:
         found = P[:, rows] @ x + q
         moved = self.free + self.C @ found
         N, T, w, s = (np.zeros(n) for _ in range(4))
-        N[:], w[:] = found[:n], moved[:n]
+        N[:] = found[:n]
+        w[:] = moved[:n]
         if self.sheared:
-            T[:], s[:] = found[n:], moved[n:]
+            T[:] = found[n:]
+            s[:] = moved[n:]
         return Forces(N, T, w, s, states)
 
     def wanted(self, forces: Forces) -> np.ndarray:
         """States that forces, gaps and slips ask for."""
-        states, law = forces.states, self.law
+        states = forces.states
+        law = self.law
         closed = np.where(states != 0, forces.N >= 0, forces.w < 0)
         if not self.rubs:
             return closed.astype(int)
@@ -178,9 +189,11 @@ class Small:
 
     def ended(self, forces: Forces, slip: np.ndarray) -> Start:
         """The nodes at the end of the step, which are at `slip`."""
-        law, start = self.law, self.start
+        law = self.law
+        start = self.start
         unstrained = slip + np.divide(forces.T, law.k_t, out=np.zeros(self.n), where=law.k_t > 0)
-        was, slides = start.states != 0, np.abs(forces.states) == 2
+        was = start.states != 0
+        slides = np.abs(forces.states) == 2
         stuck = np.where(was & ~slides, start.reference, unstrained)
         crossing = start.slip + (1 - self._passed(forces.N)) * (slip - start.slip)
         reference = unstrained - np.where(was, start.reference, crossing)

@@ -92,8 +92,12 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:
     """Return all columns, shape (columns, steps), the discounts and the energy taken, for a load of unit size."""
     rows = np.array([model.observers[name] for name in COLUMNS])
-    history, discount, loss = np.empty((len(COLUMNS), steps)), np.ones(steps), np.zeros(steps)
-    M, K, F = stepper.M, stepper.K, stepper.F
+    history = np.empty((len(COLUMNS), steps))
+    discount = np.ones(steps)
+    loss = np.zeros(steps)
+    M = stepper.M
+    K = stepper.K
+    F = stepper.F
     before = energy = 0.0
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
@@ -105,5 +109,6 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
             scheme = replace(stepper.scheme, gg=float(discount[n]))
             state = advance(state, F, scheme, lambda x: M @ x, lambda x: K @ x, stepper.solve)
             history[:, n] = rows @ state.D
-            before, energy = energy, float(state.V @ (M @ state.V)) / 2
+            before = energy
+            energy = float(state.V @ (M @ state.V)) / 2
     return history, discount, np.cumsum(loss)

@@ -27,7 +27,9 @@ class KrylovSpace:
     """The space, grown vector by vector."""
 
     def __init__(self, M: csr_array, S: csr_array, F: Array, solve: Callable[[Array], Array], capacity: int) -> None:
-        self._M, self._S, self._solve = M, S, solve
+        self._M = M
+        self._S = S
+        self._solve = solve
         first = solve(F)
         self.load = float(np.sqrt(first @ F))
         """V' F, all along the first vector."""
@@ -51,7 +53,8 @@ class KrylovSpace:
 
     def _add(self) -> None:
         j = len(self)
-        V, v = self.vectors[: j + 1], self.vectors[j]
+        V = self.vectors[: j + 1]
+        v = self.vectors[j]
         Mv = self._M @ v
         w = self._solve(Mv)
         self.diagonal.append(float(v @ Mv))

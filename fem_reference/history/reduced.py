@@ -35,7 +35,8 @@ LIGHTEST = 1e-6
 """Least inertia of a mode, as a share of S, that a consistent start may divide the load by: it holds rounding / tau."""
 CANCELLED = 1e-11
 """Rounding of a column, over its maximum, beyond which it must be stepped."""
-FEWEST, LARGEST = 8, 400
+FEWEST = 8
+LARGEST = 400
 """Least and greatest number of vectors."""
 SLOW = 0.1
 """kappa below which 1 - tau is formed again where digits count."""
@@ -126,7 +127,8 @@ class Modes:
 
 def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> Modes:
     """Modes of a space; `rows` observe the columns."""
-    size, scheme = len(space), stepper.scheme
+    size = len(space)
+    scheme = stepper.scheme
     tau, turn = eigh_tridiagonal(space.diagonal, space.beside[: size - 1])
     tau, kappa = np.maximum(tau, np.finfo(float).tiny), 1 - tau
     vectors = space.vectors[:size]

@@ -80,7 +80,8 @@ def observed(model: Model, F: Array, rows: Array, W2: Complex) -> Complex:
     """Rows of D, shape (rows, frequencies)."""
     if not np.any(F):
         return np.zeros((len(rows), len(W2)), complex)
-    K, M = coo_array(model.K), coo_array(model.M)
+    K = coo_array(model.K)
+    M = coo_array(model.M)
     width = int(max(np.max(np.abs(K.row - K.col)), np.max(np.abs(M.row - M.col))))
     if len(F) * width**2 <= NARROW:
         return np.stack([rows @ _eliminated(K, M, F, complex(w2), width) for w2 in W2], axis=1)

@@ -58,9 +58,11 @@ def solve(
         instants = scheme.step * np.arange(steps + 1.0)
         moved = None if problem.motion is None else problem.motion(instants)
         shares = problem.load_shares(instants) if problem.ramp else None
-        history, estimate = run(stepper, model, steps, tuple(columns), writer, moved, shares), None
+        history = run(stepper, model, steps, tuple(columns), writer, moved, shares)
+        estimate = None
     else:
-        history, estimate = small.history, small.estimate
+        history = small.history
+        estimate = small.estimate
     history = bounded(history, problem.load_size)
     ended = time.perf_counter()
     return Result(

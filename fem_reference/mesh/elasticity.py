@@ -74,7 +74,8 @@ def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: 
     first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
     local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
     dofs = basis.element_dofs.T.astype(np.int32)
-    rows, columns = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
+    rows = np.repeat(dofs, dofs.shape[1], axis=1)
+    columns = np.tile(dofs, dofs.shape[1])
     data = np.tile(local.ravel(), len(dofs))
     return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
 
@@ -133,14 +134,17 @@ def edge_rule(
         Number of Gauss points per piece, exact to degree 2 order - 1.
     """
     nodes, weights = np.polynomial.legendre.leggauss(order)
-    reference, cells, w = [], [], []
+    reference = []
+    cells = []
+    w = []
     for facet in facets:
         cell = mesh.f2t[0, facet]
         ends = mesh.facets[:, facet]
         s0, s1 = tangent @ (mesh.p[:, ends] - origin[:, None])
         local = mesh.elem.refdom.p[:, [int(np.flatnonzero(mesh.t[:, cell] == e)[0]) for e in ends]]
         for low, high in intervals:
-            a, b = max(low, min(s0, s1)), min(high, max(s0, s1))
+            a = max(low, min(s0, s1))
+            b = min(high, max(s0, s1))
             if b > a:
                 fraction = ((a + b) / 2 + nodes * (b - a) / 2 - s0) / (s1 - s0)
                 reference.append(local[:, :1] + fraction * (local[:, 1:] - local[:, :1]))
@@ -152,7 +156,8 @@ def edge_rule(
 def vertex_rule(mesh: Mesh, facets: NDArray[np.int64], points: Array) -> Rule:
     """Unit weights at mesh nodes of an edge; `points` has shape (2, count)."""
     ends = mesh.facets[:, facets]
-    reference, cells = [], []
+    reference = []
+    cells = []
     for point in points.T:
         distance = np.hypot(*(mesh.p[:, ends] - point[:, None, None]))
         i, k = np.unravel_index(np.argmin(distance), distance.shape)
@@ -179,10 +184,13 @@ def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Arra
     2 p normally and 2 p_s tangentially.
     """
     u, v = values(basis, rule.points, rule.cells)
-    n, t = problem.normal, problem.tangent
-    normal, tangential = n[0] * u + n[1] * v, t[0] * u + t[1] * v
+    n = problem.normal
+    t = problem.tangent
+    normal = n[0] * u + n[1] * v
+    tangential = t[0] * u + t[1] * v
     share = 2 * rule.weights / _carried(problem)
-    k_n, k_t = problem.stiffness * share, problem.shear_stiffness * share
+    k_n = problem.stiffness * share
+    k_t = problem.shear_stiffness * share
     K = normal.T @ diags_array(k_n) @ normal + tangential.T @ diags_array(k_t) @ tangential
     return csr_array(K), -(normal.T @ k_n) / problem.base_length
 
@@ -196,7 +204,8 @@ def _carried(problem: Problem) -> float:
 
 def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half: bool = False) -> Rule:
     """Rule of the foundation on the base; of its first half only if `half`."""
-    a, order = problem.base_length, problem.degree + 1
+    a = problem.base_length
+    order = problem.degree + 1
     if problem.foundation == "corner":
         ends = problem.outline[:1] if half else problem.outline[:2]
         return vertex_rule(mesh, base, ends.T)

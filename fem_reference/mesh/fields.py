@@ -59,7 +59,9 @@ class FieldWriter:
     def __init__(self, problem: Problem, model: Model, path: Path, step: float, steps: int) -> None:
         if path.suffix not in SUFFIXES:
             raise ValueError(f"fields: must end in one of {SUFFIXES}, got {str(path)!r}")
-        self._problem, self._path, self._step = problem, path, step
+        self._problem = problem
+        self._path = path
+        self._step = step
         mesh = block_mesh(problem).mesh
         self._basis = elasticity.vector_basis(mesh, problem.degree)
         centre = np.full((2, 1), 0.5 if mesh.t.shape[0] == 4 else 1 / 3)

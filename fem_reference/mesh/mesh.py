@@ -132,7 +132,8 @@ def _read(path: str) -> Mesh:
 
 def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
     """Every boundary node on the polygon, every corner a node, base and top covered in full."""
-    corners, mesh = problem.outline, tagged.mesh
+    corners = problem.outline
+    mesh = tagged.mesh
     slack = 1e-9 * float(np.ptp(corners, axis=0).max())
     nodes = mesh.p[:, mesh.boundary_nodes()].T
     if max(_distance(corners, point) for point in nodes) > slack:

@@ -148,7 +148,8 @@ def column(problem: Problem) -> Model:
     # With mu = 0 the modulus of a bar, lam + 2 G, is E.
     K_v = problem.young * L + 2 * problem.stiffness * at_base
     K_u = problem.shear_modulus * L + 2 * problem.shear_stiffness * at_base
-    middle, none = basis.probes(np.array([[height / 2]])).toarray()[0], np.zeros(basis.N)
+    middle = basis.probes(np.array([[height / 2]])).toarray()[0]
+    none = np.zeros(basis.N)
     places = np.array([np.zeros(2 * basis.N), np.tile(y, 2), np.repeat([0.0, 1.0], basis.N)])
     observers = {
         "displacement": np.concatenate([none, middle]),
@@ -159,7 +160,8 @@ def column(problem: Problem) -> Model:
     M, K = (csr_array(block_diag(pair)) for pair in ((B, B), (K_u, K_v)))
     unit = problem.unit
     F_v = -unit.pressure * width * top + unit.pull[1] * (B @ np.ones(basis.N))
-    force, pressure = np.zeros((2 * basis.N, 2)), np.zeros(2)
+    force = np.zeros((2 * basis.N, 2))
+    pressure = np.zeros(2)
     if problem.motion is not None:
         force[basis.N :, 1] = 2 * problem.stiffness * base
         pressure[1] = 2 * problem.stiffness / width
@@ -195,7 +197,8 @@ def half_block(problem: Problem) -> Model:
     doubled = {"contact_pressure": 2 * assembled.observers["contact_pressure"]}
     observers = assembled.observers | doubled | {"rotation": np.zeros(assembled.basis.N)}
     model = _model(problem, replace(assembled, observers=observers), "half", ("half the block",))
-    x, component = model.places[0], model.places[2]
+    x = model.places[0]
+    component = model.places[2]
     mirror = (component == 0) & (x > problem.base_length / 2 * (1 - 1e-9))
     return restrict(model, ~mirror)
 
@@ -235,7 +238,8 @@ def reachable(model: Model) -> Model:
     touched = np.zeros(count, dtype=bool)
     touched[label[(model.F != 0) | np.any(model.base_force != 0, axis=1)]] = True
     keep = touched[label]
-    dropped, total = int(np.count_nonzero(~keep)), len(keep)
+    dropped = int(np.count_nonzero(~keep))
+    total = len(keep)
     if dropped == 0:
         return model
     note = f"dropped {dropped} of {total} unknowns"

@@ -11,7 +11,8 @@ import numpy as np
 
 from fem_reference.problem.problem import Array, Problem
 
-SOFTEST, STIFFEST = 1e-3, 1e12
+SOFTEST = 1e-3
+STIFFEST = 1e12
 """Bounds of p/E within which nine digits are kept [-]."""
 INCOMPRESSIBLE = 1e4
 """Largest lam / G for which nine digits are kept [-]."""

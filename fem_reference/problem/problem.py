@@ -246,7 +246,8 @@ class Problem:
         opposite = len(corners) == 4 and (self.top - self.base) % 4 == 2
         if not opposite:
             return None
-        width, height = float(corners[1, 0]), float(corners[3, 1])
+        width = float(corners[1, 0])
+        height = float(corners[3, 1])
         expected = np.array([[0, 0], [width, 0], [width, height], [0, height]])
         # A corner that is off by rounding of its coordinates is still this rectangle's corner.
         slack = 4 * np.finfo(float).eps * max(width, height, float(np.abs(self.vertices).max()))

@@ -57,7 +57,8 @@ def modes(
 
 def _carried(problem: Problem, model: Model) -> Array:
     """Inertia M R of a unit acceleration of the base, along the ways that it moves."""
-    component, motion = model.places[2], problem.motion
+    component = model.places[2]
+    motion = problem.motion
     ways = [i for i, part in enumerate(((), ()) if motion is None else (motion.x, motion.y)) if any(part)] or [1]
     inertia: Array = model.M @ np.isin(component, ways).astype(float)
     return inertia
@@ -84,7 +85,8 @@ def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
     The operator is made by applying the scheme's own step to unit states.
     """
     dt = scheme.step
-    one, square = csr_array(np.eye(1)), csr_array([[frequency**2]])
+    one = csr_array(np.eye(1))
+    square = csr_array([[frequency**2]])
     stepper = Stepper(one, square, np.zeros(1), scheme)
     columns = []
     for D, V, A in np.eye(3):

@@ -79,7 +79,9 @@ def determinant(h: Array, scheme: Scheme) -> Array:
 
 def spectrum(omega: Array, scheme: Scheme) -> Spectrum:
     """Trace, determinant and the differences from one that would cancel."""
-    gg, delta, h = scheme.gg, scheme.delta, h_of(omega, scheme)
+    gg = scheme.gg
+    delta = scheme.delta
+    h = h_of(omega, scheme)
     slope = 0.5 + gg * delta
     linear = 1 + 3 * gg - 2 * gg * delta * (1 - gg)
     return Spectrum(
@@ -146,7 +148,10 @@ def first_steps(omega: Array, scheme: Scheme) -> tuple[Array, Array]:
 
     The load is one per unit mass; lengths are measured in units of dt^2.
     """
-    alpha, delta, gg, h = scheme.alpha, scheme.delta, scheme.gg, h_of(omega, scheme)
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
+    h = h_of(omega, scheme)
     # Omega^2 D for unit load: every term carries h = Omega^2 / beta. rest = 1 / beta.
     rest = 1 - alpha * h
     A0 = 1.0 if scheme.start == "consistent" else 0.0
@@ -191,8 +196,11 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
 
 def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
     """1 - x of one mode at steps 1 to `steps`, keeping the digits of small values."""
-    s, (y1, y2) = spectrum(omega, scheme), first_steps(omega, scheme)
-    x1, rise, k = 1 - y1, y1 - y2, np.arange(steps)
+    s = spectrum(omega, scheme)
+    (y1, y2) = first_steps(omega, scheme)
+    x1 = 1 - y1
+    rise = y1 - y2
+    k = np.arange(steps)
     if s.trace[0] < 0:
         return np.asarray(1 - _chunk(omega, np.ones((1, 1)), scheme, steps)[0], dtype=np.float64)
     if abs(s.discriminant[0]) <= CLOSE**2 * s.product[0]:
@@ -210,7 +218,9 @@ def _lowest(omega: Array, scheme: Scheme, steps: int) -> Array:
 
 def _stepped(det: float, product: float, y1: float, y2: float, steps: int) -> Array:
     """Y = 1 - x from y(k+1) - y(k) = det (y(k) - y(k-1)) + product (1 - y(k)), for nearly equal roots."""
-    y, rise, rows = y1, y2 - y1, []
+    y = y1
+    rise = y2 - y1
+    rows = []
     for _ in range(steps):
         rows.append(y)
         y += rise
@@ -220,14 +230,17 @@ def _stepped(det: float, product: float, y1: float, y2: float, steps: int) -> Ar
 
 def _chunk(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
     """Sum over modes of weights * x."""
-    s, h, (y1, y2) = spectrum(omega, scheme), h_of(omega, scheme), first_steps(omega, scheme)
+    s = spectrum(omega, scheme)
+    h = h_of(omega, scheme)
+    (y1, y2) = first_steps(omega, scheme)
     pair = s.discriminant < 0
     close = ~pair & (s.discriminant <= (CLOSE * s.trace) ** 2)
     total = np.zeros((len(weights), steps))
     for chosen, response in ((pair, _turning), (~pair & ~close, _decaying), (close, _confluent)):
         if np.any(chosen):
             part = Spectrum(*(field[chosen] for field in s))
-            x1, rise = (1 - y1)[chosen], (y1 - y2)[chosen]
+            x1 = (1 - y1)[chosen]
+            rise = (y1 - y2)[chosen]
             total += response(part, h[chosen], weights[:, chosen], x1, rise, scheme, steps)
     return total
 
@@ -253,7 +266,8 @@ def _confluent(s: Spectrum, h: Array, weights: Array, x1: Array, rise: Array, sc
     near, far = _distances(s)
     distance = np.where(s.trace >= 0, near, far)
     gap = np.where(s.trace >= 0, 1.0, -1.0) * np.sqrt(s.discriminant)
-    larger, k = 1 - distance, np.arange(steps)
+    larger = 1 - distance
+    k = np.arange(steps)
     total = np.zeros((len(weights), steps))
     log, sign = _one_minus(distance)
     for i in range(len(log)):
@@ -274,7 +288,8 @@ def _powers(root: _Power, weights: Array | Complex, steps: int) -> Array:
     With k = j B + i the powers factor into those of i and those of j B.
     """
     block = int(np.ceil(np.sqrt(steps)))
-    i, j = np.arange(block)[:, None], block * np.arange(-(-steps // block))
+    i = np.arange(block)[:, None]
+    j = block * np.arange(-(-steps // block))
     inner = root.sign**i * np.exp(i * root.log)
     outer = root.sign[:, None] ** j * np.exp(root.log[:, None] * j)
     rows = []

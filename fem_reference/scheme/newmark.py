@@ -57,7 +57,9 @@ class State:
 def effective_matrix(M: csr_array, K: csr_array, scheme: Scheme) -> csr_array:
     """S = M + delta dt C + alpha dt^2 K, at C = 0 the paper's (9) times alpha dt^2."""
     if scheme.damped:
-        a0, a1, dt = scheme.mass_damping, scheme.stiffness_damping, scheme.step
+        a0 = scheme.mass_damping
+        a1 = scheme.stiffness_damping
+        dt = scheme.step
         return (1 + scheme.delta * dt * a0) * M + (scheme.alpha * dt**2 + scheme.delta * dt * a1) * K
     return M + (scheme.alpha * scheme.step**2) * K if scheme.alpha > 0 else M
 
@@ -116,7 +118,8 @@ def _advance_damped(
     def C(x: Array) -> Array:
         return scheme.mass_damping * M(x) + scheme.stiffness_damping * K(x)
 
-    dt, displacement = scheme.step, predicted - state.D
+    dt = scheme.step
+    displacement = predicted - state.D
     slowed = scheme.gg * state.V + dt * (1 - scheme.delta) * state.A
     resisted = F - C(slowed)
     D = state.D + solve(

@@ -33,7 +33,9 @@ def _viscosity(square: float | Array, scheme: Scheme) -> float | Array:
 
 
 def _roots(one: float, square: float, e: float | Array, scheme: Scheme) -> NDArray[np.complex128]:
-    alpha, delta, gg = scheme.alpha, scheme.delta, scheme.gg
+    alpha = scheme.alpha
+    delta = scheme.delta
+    gg = scheme.gg
     middle = square * (0.5 - alpha + gg * (delta - alpha)) + e * (1 - 2 * delta) - one * (1 + gg)
     last = one * gg + gg * square * (0.5 - delta + alpha) - e * (1 - delta)
     roots = np.roots([float(one + alpha * square + delta * e), float(middle), float(last)])
@@ -57,13 +59,16 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     k = omega * omega
     e = _viscosity(k, scheme)
     denominator = 1 + scheme.delta * e + scheme.alpha * k
-    y, p = np.zeros_like(omega), np.zeros_like(omega)
+    y = np.zeros_like(omega)
+    p = np.zeros_like(omega)
     q = k.copy() if scheme.start == "consistent" else np.zeros_like(omega)  # dt^2 w^2 A
     responses = np.empty((len(weights), steps))
     for n in range(steps):
-        y, p = y + scheme.gg * p + (0.5 - scheme.alpha) * q, scheme.gg * p + (1 - scheme.delta) * q
+        y = y + scheme.gg * p + (0.5 - scheme.alpha) * q
+        p = scheme.gg * p + (1 - scheme.delta) * q
         q = (k * (1 - y) - e * p) / denominator
-        y, p = y + scheme.alpha * q, p + scheme.delta * q
+        y = y + scheme.alpha * q
+        p = p + scheme.delta * q
         total = weights @ y
         rounding = ROUNDING * (np.abs(weights) @ np.abs(y))
         responses[:, n] = np.where(np.abs(total) <= rounding, 0.0, total)  # before a wave has come there is nothing

@@ -146,7 +146,7 @@ def test_a_required_solver_without_a_judged_gate_is_no_green(scene_file: Path, t
 
 def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
     assert covers("fenicsx", "fenicsx:2") and covers("fem", "fem:full") and covers("fem", "fem")
-    assert not covers("fem", "fem-60") and not covers("fenicsx:2", "fenicsx")
+    assert not covers("dda", "dda-60") and not covers("fenicsx:2", "fenicsx")
     core = get_study("core")
     damping = Gate("figures-3-4[time.step=0.01]", ("damping",), "operator", 0.0, 1.0, "a derived row of the elements")
     run = JudgedStudy(core, [Verdict(damping, None, Status.NOT_RUN)], {})

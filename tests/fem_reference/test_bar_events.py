@@ -1,7 +1,6 @@
 """The exact motion of the bar on a no-tension spring: known histories, an independent integration, identities."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,8 +9,7 @@ from oracles.bar_oracle import Delayed, random_problem
 from oracles.landing import stiff_opening
 
 from fem_reference import Bar, Scheme
-from fem_reference.events.bar_events import BarMotion, solve
-from fem_reference.events.bar_model import BarProblem
+from fem_reference.events.bar_events import BarMotion, BarProblem, solve
 from fem_reference.events.switches import TooManySwitchesError
 
 PAPER = BarProblem(height=2.0, width=2.0, density=2700.0, young=1e9, base_stiffness=2e9, pressure=5e6)
@@ -124,83 +122,33 @@ def test_an_independent_integration_of_the_delay_equation_agrees(seed: int) -> N
     # dense output of DOP853 is of order 7: about 1e-9 at these steps, and each round trip starts from the one before
     assert np.array(switch_times(motion)) / problem.travel == pytest.approx(other.switches, abs=1e-7)
     speed = problem.height / problem.travel
-    assert motion.at([motion.end]).gap[0] * speed / problem.height == pytest.approx(gap, abs=1e-7 * abs(other.q))
+    assert motion.at([motion.bars.end]).gap[0] * speed / problem.height == pytest.approx(gap, abs=1e-7 * abs(other.q))
 
 
-@pytest.mark.parametrize("seed", thinned(range(10, 22), 3))
-def test_momentum_and_the_digits_of_random_motions(seed: int) -> None:
+@pytest.mark.parametrize("seed", thinned(range(10, 22), 6))
+def test_momentum_and_the_law_of_the_base_of_random_motions(seed: int) -> None:
     problem = random_problem(seed)
-    end = 15 * problem.travel
-    motion, finer = solve(problem, end), solve(problem, end, digits=110)
-    assert motion.switches == finer.switches
-    t = np.linspace(0, end, 80)
-    history, other = motion.at(t), finer.at(t)
-    for name in ("displacement", "gap", "contact_pressure", "mean_velocity", "impulse"):
-        a, b = getattr(history, name), getattr(other, name)
-        assert np.abs(a - b).max() <= 1e-15 * np.abs(b).max(), name
-    scale = abs(problem.pressure) * end + np.abs(history.impulse).max()
-    assert np.abs(history.momentum_residual).max() <= 1e-40 * scale
+    history = solve(problem, 15 * problem.travel).at(np.linspace(0, 15 * problem.travel, 80))
+    change = history.mean_velocity - problem.velocity + problem.gravity * history.time
+    momentum = problem.density * problem.height * change + problem.pressure * history.time
+    scale = abs(problem.pressure) * history.time[-1] + np.abs(history.impulse).max()
+    assert np.abs(momentum - history.impulse).max() <= 1e-14 * scale
     assert np.all(history.contact_pressure >= 0)
     assert history.contact_pressure == pytest.approx(
         np.maximum(0, -problem.base_stiffness * history.gap / problem.width), rel=1e-14
     )
 
 
-@pytest.mark.parametrize("seed", thinned(range(30, 34), 3))
-@pytest.mark.long
-def test_energy_and_mean_velocity_from_the_fields(seed: int) -> None:
-    problem = random_problem(seed)
-    end = 9 * problem.travel
-    motion = solve(problem, end)
-    base = problem.base_stiffness / problem.width
-    totals = []
-    for time in np.linspace(0.013, 0.987, 7) * end:
-        y, weight = gauss(motion.breaks(time))
-        field, now = motion.fields(time, y), motion.at([time])
-        top = motion.fields(time, [problem.height]).displacement[0]
-        kinetic = weight @ field.velocity**2 * problem.density / 2
-        strain = weight @ field.stress**2 / (2 * problem.young)
-        fallen = problem.density * problem.gravity * (weight @ field.displacement)
-        totals.append([kinetic, strain, base * min(0.0, now.gap[0]) ** 2 / 2, fallen, problem.pressure * top])
-        assert weight @ field.velocity / problem.height == pytest.approx(
-            now.mean_velocity[0], abs=1e-12 * np.abs(field.velocity).max()
-        )
-    energy = np.array(totals)
-    start = problem.density * problem.height * problem.velocity**2 / 2
-    assert np.abs(energy.sum(axis=1) - start).max() <= 1e-11 * np.abs(energy).max()
-
-
-def gauss(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights between breaks, where the fields are smooth but may decay by exp(-100)."""
-    node, weight = np.polynomial.legendre.leggauss(24)
-    cut = np.concatenate([low + (high - low) * np.linspace(0, 1, 7)[:-1] for low, high in pairwise(breaks)])
-    edges = np.append(cut, breaks[-1])
-    half = np.diff(edges) / 2
-    return ((edges[:-1] + half)[:, None] + np.outer(half, node)).ravel(), np.outer(half, weight).ravel()
-
-
-def test_the_fields_meet_the_base_and_the_top() -> None:
+def test_the_points_of_the_bar_meet_the_base_and_the_top() -> None:
     problem = random_problem(34)
     motion = solve(problem, 7 * problem.travel)
-    for time in np.array([0.4, 1.7, 3.3, 6.1]) * problem.travel:
-        field, now = motion.fields(time, [0.0, problem.height / 2, problem.height]), motion.at([time])
-        assert field.displacement[0] + problem.gap == pytest.approx(now.gap[0], rel=1e-12)
-        assert field.displacement[1] == pytest.approx(now.displacement[0], rel=1e-14)
-        assert -field.stress[0] == pytest.approx(now.contact_pressure[0], abs=1e-14 * abs(problem.pressure))
-        assert field.stress[2] == pytest.approx(-problem.pressure, rel=1e-14)
-
-
-def test_a_soft_spring_keeps_its_digits() -> None:
-    """Integration divides by kappa, here 1e-8: 22 of 60 digits are lost unless the computation has more."""
-    problem = replace(OTHER, base_stiffness=3e9 * 1e-8, gravity=9.81, velocity=-1.0)
-    end = 40 * problem.travel
-    motion, finer = solve(problem, end), solve(problem, end, digits=250)
-    t = np.linspace(0, end, 30)
-    for name in ("displacement", "gap", "contact_pressure", "mean_velocity"):
-        a, b = getattr(motion.at(t), name), getattr(finer.at(t), name)
-        assert np.abs(a - b).max() <= 1e-15 * np.abs(b).max(), name
-    history = motion.at(t)
-    assert np.abs(history.momentum_residual).max() <= 1e-50 * history.impulse.max()
+    t = np.array([0.4, 1.7, 3.3, 6.1]) * problem.travel
+    now = motion.at(t)
+    base, middle, top = (motion.bars.point(0, y, t) for y in (0.0, problem.height / 2, problem.height))
+    assert base.displacement + problem.gap == pytest.approx(now.gap, rel=1e-12)
+    assert middle.displacement == pytest.approx(now.displacement, rel=1e-14)
+    assert base.stress == pytest.approx(now.contact_pressure, abs=1e-14 * abs(problem.pressure))
+    assert top.stress == pytest.approx(problem.pressure, rel=1e-14)
 
 
 def test_resting_states() -> None:
@@ -221,14 +169,10 @@ def test_bad_input_is_refused_by_name() -> None:
             replace(PAPER, **{field: value})
     with pytest.raises(ValueError, match="end"):
         solve(PAPER, np.inf)
-    with pytest.raises(ValueError, match="digits"):
-        solve(PAPER, 1.0, digits=10)
     motion = solve(PAPER, 0.01)
     with pytest.raises(ValueError, match="times"):
         motion.at([-0.02])
-    with pytest.raises(ValueError, match="points"):
-        motion.fields(0.01, [2.1])
     count = len(solve(PAPER, 0.04).switches)
-    assert len(solve(PAPER, 0.04, limit=count).switches) == count == 3
+    assert len(solve(PAPER, 0.04, limit=count + 1).switches) == count == 3  # one of them is the first touch
     with pytest.raises(TooManySwitchesError):
-        solve(PAPER, 0.04, limit=count - 1)
+        solve(PAPER, 0.04, limit=count)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from fem_reference.column import contacts
 from fem_reference.column.contacts import (
@@ -24,7 +25,7 @@ from fem_reference.column.contacts import (
 )
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
-from fem_reference.events import bars_events, bars_model
+from fem_reference.events import bars_events, bars_model, column_drive
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -105,6 +106,7 @@ def errors_of_blocks(column: ContactColumn, numbers: tuple[float, float], count:
     return float(np.abs(final - exact).max() / np.abs(exact).max())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "column",
     [
@@ -136,10 +138,10 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
     end = {CRADLE: 6.0, TWO_BARS: 8.0, SPALL: 0.04}[column]
     dt = travel / count / 2
     steps = round(end / dt)
-    drive, top = still(steps), ()
+    drive, top = still(steps), column_drive.still
     if column is SPALL:
         drive = still(steps, pressure=half_sine(2e6, 0.004, dt * np.arange(steps + 1)))
-        top = bars_model.half_sine(2e6, 0.004)
+        top = column_drive.half_sine(2e6, 0.004)
     bars = tuple(
         bars_model.Bar(one.thickness, one.density, one.young, velocity)
         for one, velocity in zip(strata, column.velocities, strict=True)
@@ -155,14 +157,17 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
 
 @pytest.mark.parametrize(
     ("column", "numbers", "counts", "order", "band"),
-    [
-        (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
-        (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
-        (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
-        (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
-        pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
-        pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
-    ],
+    thinned(
+        [
+            (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
+            (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
+            (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
+            (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
+            pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
+            pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
+        ],
+        4,
+    ),
     ids=lambda value: "",
 )
 def test_finer_elements_tend_to_the_exact_bars(

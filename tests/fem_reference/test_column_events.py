@@ -7,6 +7,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
+from conftest import thinned
 from flint import arb
 from oracles.column_motions import COLUMNS, RIGID, KnownColumn, blocks, half_unit, kind_of
 from oracles.column_oracle import integrated, random_column
@@ -62,7 +63,7 @@ def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
     assert motion.touches == ()
 
 
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", thinned(range(16), 8))
 def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_events(seed: int) -> None:
     problem, end = random_column(seed)
     motion = solve(problem, end)
@@ -76,6 +77,7 @@ def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_event
     np.testing.assert_allclose(state.slip[:, 0], oracle.slip, rtol=0, atol=1e-8 * scale)
 
 
+@pytest.mark.long
 def test_more_digits_give_the_same_motion() -> None:
     # the second computation of the digit in which the printed numbers of A3 are off
     known = COLUMNS["A3"]
@@ -373,7 +375,7 @@ def is_bitten(name: str) -> bool:
     return misprinted(known, motion) != []
 
 
-@pytest.mark.parametrize(("name", "fault"), MODEL_FAULTS, ids=lambda part: getattr(part, "__name__", part))
+@pytest.mark.parametrize(("name", "fault"), thinned(MODEL_FAULTS, 3), ids=lambda part: getattr(part, "__name__", part))
 def test_a_seeded_fault_of_the_model_is_bitten(name: str, fault: Fault, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(problem: ColumnProblem) -> ColumnModel:
         model = ColumnModel(problem)

@@ -43,6 +43,7 @@ def in_modes(monkeypatch, drawn):
     return plain, solve_unilateral(problem, scheme, 50, contact, every_point=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("draw", [random_contact.opening, random_contact.sliding])
 def test_what_is_compiled_gives_the_same_numbers(long, draw):
     pytest.importorskip("numba")

@@ -8,8 +8,8 @@ import pytest
 from oracles.elements import make
 
 from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
+from fem_reference.events.bar_events import BarProblem
 from fem_reference.events.bar_events import solve as exact
-from fem_reference.events.bar_model import BarProblem
 from fem_reference.exact.bar import Bar
 from fem_reference.exact.opening_bar import OpeningBar, applicable, closed_forms
 

@@ -1,7 +1,5 @@
 """Histories in a Krylov space: equal to stepped ones, with an honest estimate, for one factorisation."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 from conftest import thinned
@@ -21,17 +19,20 @@ PATCH = {"poisson": 0.3, "hypothesis": "plane strain", "foundation": "patch", "p
 
 @pytest.mark.parametrize(
     ("change", "scheme"),
-    [
-        ({"poisson": 0.25, "degree": 1, "elements": 24}, CONSTANT),
-        ({"poisson": 0.3, "hypothesis": "plane strain"}, Scheme(0.5, 1.0, 0.97, 8e-4, "consistent")),
-        (PATCH, Scheme(0.5625, 1.0, 0.97, 2e-3, "consistent")),
-        ({**PATCH, "elements": 5}, Scheme(0.3025, 0.6, 0.97, 2e-3)),
-        ({"poisson": 0.3, "eccentricity": 0.2, "gravity": 9.81}, Scheme(0.5, 1.0, 1.0, 2e-3)),
-        ({"poisson": 0.3, "p": 1e6}, Scheme(0.5, 1.0, 1.0, 5e-3)),
-        ({"poisson": 0.3, "p": 1e16}, Scheme(0.25, 0.5, 0.98, 5e-3)),
-        ({"elements": 24}, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")),
-        ({"elements": 24}, Scheme(0.5, 1.0, 1.0, 1e-5)),
-    ],
+    thinned(
+        [
+            ({"poisson": 0.25, "degree": 1, "elements": 24}, CONSTANT),
+            ({"poisson": 0.3, "hypothesis": "plane strain"}, Scheme(0.5, 1.0, 0.97, 8e-4, "consistent")),
+            (PATCH, Scheme(0.5625, 1.0, 0.97, 2e-3, "consistent")),
+            ({**PATCH, "elements": 5}, Scheme(0.3025, 0.6, 0.97, 2e-3)),
+            ({"poisson": 0.3, "eccentricity": 0.2, "gravity": 9.81}, Scheme(0.5, 1.0, 1.0, 2e-3)),
+            ({"poisson": 0.3, "p": 1e6}, Scheme(0.5, 1.0, 1.0, 5e-3)),
+            ({"poisson": 0.3, "p": 1e16}, Scheme(0.25, 0.5, 0.98, 5e-3)),
+            ({"elements": 24}, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")),
+            ({"elements": 24}, Scheme(0.5, 1.0, 1.0, 1e-5)),
+        ],
+        4,
+    ),
 )
 def test_the_history_is_that_of_the_steps(change, scheme):
     problem = make(**{"elements": 8, "degree": 2, **change})
@@ -68,26 +69,6 @@ def test_no_scene_is_worse_than_it_says(scenes):
             worst = max(worst, error(found.history, steps) / found.estimate)
     assert spaces > scenes // 4
     assert worst <= 1  # 300 scenes of this kind gave 0.15 at worst
-
-
-RATIOS, SCHEMES = [1e8, 1e-3, 1.0, 1e4, 1e12], [(0.5, 1.0, "zero"), (0.25, 0.5, "consistent")]
-
-
-@pytest.mark.parametrize(("ratio", "scheme"), thinned(product(RATIOS, SCHEMES), 10))
-def test_nine_digits_whatever_the_springs(ratio, scheme):
-    from validation import load_scene
-    from validation import solve as run_scene
-
-    values = {"contact.stiffness": ratio * 1e9, "fem.elements": 4, "fem.degree": 1, "time.step": 2e-3}
-    values |= dict(zip(("time.alpha", "time.delta", "time.start"), scheme, strict=True)) | {"time.steps": 100}
-    scene = load_scene("poisson").with_values(values)
-    if scene.sweep:
-        scene = scene.expand()[0]
-    found, exact = run_scene(scene, "fem"), run_scene(scene, "fem-60")
-    assert any("Krylov" in note or "small space" in note for note in found.notes)
-    for name in COLUMNS:
-        a, b = found.history.columns[name], exact.history.columns[name]
-        assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max(), name
 
 
 def test_the_first_steps_are_exact():

@@ -118,6 +118,7 @@ def test_the_overshoot_of_a_mass_that_falls_from_above_is_uniform_from_0_to_gg(g
             restitution(scheme, 1000.0, [gg + 0.01])
 
 
+@pytest.mark.long
 def test_an_overdamped_contact_sticks() -> None:
     scheme = ContactScheme(0.5, 1.0, 0.9)
     assert damped_rebound(scheme, 0.01) == 0.0

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation.problems.problem import problem, problem_of
 from validation.problems.truth import exact
@@ -154,15 +155,18 @@ def test_its_default_box_lands_and_does_not_bounce() -> None:
 @installed
 @pytest.mark.parametrize(
     ("scene", "within"),
-    [
-        (problem("locked").scene, 1e-5),
-        (problem("opening").scene, 2e-4),
-        (changed("rebound", time__steps=150), 1e-5),
-        (changed("sliding", time__steps=10), 1e-5),
-        (changed("creep", time__steps=25), 1e-4),
-        (changed("rocking"), 1e-4),
-        (problem("column").scene, 5e-4),
-    ],
+    thinned(
+        [
+            (problem("locked").scene, 1e-5),
+            (problem("opening").scene, 2e-4),
+            (changed("rebound", time__steps=150), 1e-5),
+            (changed("sliding", time__steps=10), 1e-5),
+            (changed("creep", time__steps=25), 1e-4),
+            (changed("rocking"), 1e-4),
+            (problem("column").scene, 5e-4),
+        ],
+        4,
+    ),
     ids=lambda value: value.name if isinstance(value, Scene) else "",
 )
 def test_comes_near_to_the_exact_motion(scene: Scene, within: float) -> None:
@@ -187,7 +191,7 @@ MORE = {
 
 
 @installed
-@pytest.mark.parametrize("name", MORE)
+@pytest.mark.parametrize("name", thinned(MORE, 4))
 def test_takes_what_the_problems_of_the_suite_do_not_ask(name: str) -> None:
     assert worst(MORE[name]) < 5e-3
 

@@ -189,12 +189,11 @@ def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() ->
         extreme("dda", 1e6, 1e-3, 4e-13),  # the pressure keeps 4e-12: eleven digits
         extreme("dda", 1e6, 1.0, None, outcome=Outcome.UNSTABLE, kind="unstable as predicted"),
         extreme("dda", 1e6, 2.0, None, outcome=Outcome.OVERFLOW, kind="overflow"),
-        extreme("fem", 1.0, 1e-3, 1e-11),
-        extreme("fem", 1e14, 1e-3, 1e-2),  # beyond what fem promises
+        extreme("dda-textbook", 1e14, 1e-3, 1e-3),
     ]
     assert chapters_stability.conclusion(found) == (
-        "Fewest correct digits, in both quantities: dda 11, fem 10 for p/E from 10⁻³ to 10¹²; 2 runs of dda "
-        "left their bounds, all as predicted."
+        "Fewest correct digits, in both quantities: dda 11, dda-textbook 2; 2 runs of dda left their "
+        "bounds, all as predicted."
     )
     odd = [*found, extreme("dda", 1.0, 1.0, None, outcome=Outcome.MISPREDICTED)]
     assert chapters_stability.conclusion(odd).endswith("2 runs of dda left their bounds, all but 1 more as predicted.")
@@ -202,13 +201,15 @@ def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() ->
 
 def test_a_cell_of_extremes_has_its_stiffness_over_young_and_its_own_measure(tmp_path: Path) -> None:
     results, scene = Results(tmp_path), BASE.with_values({"contact.stiffness": 4e9})
-    rows = [made_row(solver, {}, scene.name) for solver in ("dda", "bar", "continuum")]
+    rows = [made_row(solver, {}, scene.name) for solver in ("dda", "dda-textbook", "continuum")]
     apart = {"displacement.max": 0.1, "displacement.scaled": 0.2, "displacement.l2": 0.3}
-    pairs = [{"scene": scene.name, "solver": name, "reference": "x", "metrics": apart} for name in ("dda", "bar")]
+    pairs = [
+        {"scene": scene.name, "solver": name, "reference": "x", "metrics": apart} for name in ("dda", "dda-textbook")
+    ]
     manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
     found = chapters_stability.extreme_runs(results, manifest)
     assert [(cell.solver, cell.ratio, cell.step, cell.errors["displacement"]) for cell in found] == [
-        ("dda", 4.0, 0.002, 0.1), ("bar", 4.0, 0.002, 0.2)]  # fmt: skip
+        ("dda", 4.0, 0.002, 0.1), ("dda-textbook", 4.0, 0.002, 0.1)]  # fmt: skip
 
 
 def test_outcomes_are_counted_under_their_names() -> None:
@@ -254,13 +255,12 @@ def test_the_one_factor_table_shows_radius_condition_residual_and_digits() -> No
     numbers = {"stability.radius": 0.98, "stability.condition": 4.5e7, "stability.residual": 6.1e-17}
     found = [
         extreme("dda", 1.0, 1e-3, 0.9e-13, scene="extreme-a", metrics=numbers),
-        extreme("dda-textbook", 1.0, 1e-3, 0.9e-6, scene="extreme-a"),
-        extreme("fem", 1.0, 1e-3, None, scene="extreme-a", outcome=Outcome.REFUSED),
+        extreme("dda-textbook", 1.0, 1e-3, None, scene="extreme-a", outcome=Outcome.REFUSED),
     ]
     _, table = chapters_stability.factor_tables(found)
     heads = [c.title for c in table.columns]
-    assert heads == ["Scene", "|λ|", "condition", "residual", "dda", "dda-textbook", "fem"]
-    assert table.rows == (("extreme-a", "0.98", "4.5×10⁷", "6.1×10⁻¹⁷", "13 / 12", "6 / 5", "refused"),)
+    assert heads == ["Scene", "|λ|", "condition", "residual", "dda", "dda-textbook"]
+    assert table.rows == (("extreme-a", "0.98", "4.5×10⁷", "6.1×10⁻¹⁷", "13 / 12", "refused"),)
 
 
 def test_of_many_extremes_the_table_shows_those_of_the_fewest_digits() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from fem_reference.events import bars_events
 from validation.errors import InputError
@@ -55,7 +56,7 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
     return max(errors)
 
 
-@pytest.mark.parametrize("column", [OPENS, SLIPS], ids=["opens", "slips"])
+@pytest.mark.parametrize("column", thinned([OPENS, SLIPS], 4), ids=["opens", "slips"])
 @pytest.mark.parametrize("base", ["rigid", "transmitting", "free", "springs"])
 def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
     below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}
@@ -76,7 +77,7 @@ def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], bas
     assert errors[1][1] < 0.01 and errors[1][1] < 0.4 * errors[0][1]
 
 
-@pytest.mark.parametrize("shape", ["sine", "cosine", "triangle", "half-sine"])
+@pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))
 def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
     layers = [layer | {"velocity": 0.0} for layer in LAYERS]
@@ -97,6 +98,7 @@ def written(directory: Path, header: str, *rows: tuple[float, float]) -> str:
     return str(file)
 
 
+@pytest.mark.long
 def test_records_are_taken_row_by_row(tmp_path: Path) -> None:
     columns = ["displacement", "force_3", "gap_3"]
     pulse = scene_of(OPENS, columns, input={"at": "top", "shape": "triangle", "pressure": 2e5, "duration": 0.01})
@@ -112,6 +114,7 @@ def test_records_are_taken_row_by_row(tmp_path: Path) -> None:
         assert by_acceleration[name] == pytest.approx(values, rel=1e-12, abs=1e-18)
 
 
+@pytest.mark.long
 def test_layers_without_joints_between_them_are_bars_of_pieces() -> None:
     halves = [LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[1]]
     joints = [{"height": 0.0, "stiffness": 2e9, "gap": 1e-3}]

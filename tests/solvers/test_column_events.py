@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation.errors import InputError
 from validation.runs.run import Outcome
@@ -39,7 +40,7 @@ def names(*parts: str, numbers: range = range(1, 6)) -> list[str]:
     return [f"{part}_{number}" for part in parts for number in numbers]
 
 
-@pytest.mark.parametrize("column", [OPENS, SLIPS])
+@pytest.mark.parametrize("column", thinned([OPENS, SLIPS], 2))
 @pytest.mark.parametrize("base", ["rigid", "transmitting", "free"])
 def test_dda_tends_to_it_with_order_two(column: dict[str, Any], base: str) -> None:
     half_space = {"base_density": 2600.0, "base_speed": 900.0} if base == "transmitting" else {}
@@ -155,6 +156,7 @@ def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch)
     assert "exact up to" in run.notes[0]
 
 
+@pytest.mark.long
 def test_the_record_of_its_contacts_keeps_momentum_and_energy() -> None:
     scene = scene_of(OPENS, ["contact_pressure"], steps=600)
     prepared = get_solver("column-events").prepare(scene)

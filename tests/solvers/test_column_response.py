@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.linalg
+from conftest import thinned
 from oracles.stepped_vibration import fit
 
 import dda
@@ -91,7 +92,7 @@ def ends_there(history: Result | FemResult, found: dict[str, np.ndarray], w: flo
     return sharp
 
 
-@pytest.mark.parametrize("seed", [12, 3, 5])  # a told base, a half-space, a pressure on the top
+@pytest.mark.parametrize("seed", thinned([12, 3, 5], 3))  # a told base, a half-space, a pressure on the top
 def test_stepped_columns_end_where_the_closed_form_says(seed: int) -> None:
     assert check(seed)
 

@@ -28,7 +28,7 @@ from validation.studies import Study
 JOINTS = "rusty joints"
 OWN = (  # a solver that is added leaves the roles of these as they are
     *("dda", "dda-textbook", "fem", "fenicsx", "bar", "continuum", "layers", "block-events", "bar-events"),
-    *("dda-60", "fem-60", "bar-60"),
+    "dda-60",
 )
 
 

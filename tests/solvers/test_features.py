@@ -48,7 +48,7 @@ SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few ot
     features.CONSERVING: CONSERVING,
 }
 TAKES: dict[str, set[str]] = {
-    features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum", "fem-60", "bar-60"},
+    features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum"},
     features.OFF_CENTRE: {"dda", "fem", "fenicsx", "block-events"},
     features.WEIGHT: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
     features.RAMP: {"dda", "fem", "bar"},

@@ -25,7 +25,7 @@ def test_memory_of_a_history_grows_by_its_columns_and_steps() -> None:
     assert bytes_of("dda", time__steps=2 * 10**6) == pytest.approx(2 * bytes_of("dda", time__steps=10**6), rel=1e-12)
 
 
-@pytest.mark.parametrize("solver", ["fem", "fem-60", "fenicsx", "fenicsx:2"])
+@pytest.mark.parametrize("solver", ["fem", "fenicsx", "fenicsx:2"])
 def test_memory_of_a_mesh_grows_by_its_unknowns(solver: str) -> None:
     """2 (n d + 1)^2 unknowns, a little more than in proportion: the factor fills."""
     sizes = {

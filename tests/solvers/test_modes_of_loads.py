@@ -119,7 +119,7 @@ def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
     agree(modes, carried(*upright(1, P)))  # those of a weight, which is M R as well
 
 
-@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("count", thinned([1, 2, 3], 3))
 def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int) -> None:
     """Of the whole block the rocking modes lie lower; asked for few, the search goes on."""
     few = fem_reference.modes(make(elements=4), SAME, count=count, full=True)
@@ -209,6 +209,7 @@ def mesh_diagnostics(n: int, alpha: float, delta: float, gg: float, step: float)
     return diagnostics(make(elements=n, degree=1), fem_reference.Scheme(alpha, delta, gg, step))
 
 
+@pytest.mark.long
 def test_diagnostics_of_a_large_mesh_know_its_highest_frequency() -> None:
     case = make(poisson=0.3, elements=14, degree=1)
     found = diagnostics(case, SAME, full=True)

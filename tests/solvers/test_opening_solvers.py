@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import solve
 from validation.errors import InputError
@@ -44,6 +45,7 @@ def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -
     assert both == pytest.approx(2.0 * history.contact_pressure, rel=1e-15)
 
 
+@pytest.mark.long
 def test_elements_take_implicit_contact(scene: Scene) -> None:
     average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "contact.stiffness": 1e11}
     energies = []
@@ -61,11 +63,14 @@ def test_elements_take_implicit_contact(scene: Scene) -> None:
 
 @pytest.mark.parametrize(
     "values",
-    [
-        {"fem": {"elements": 6, "foundation": "corner"}},
-        {"fem": {"elements": 6, "foundation": "nodes", "degree": 1, "cells": "triangles"}},
-        {"fem": {"elements": 6, "foundation": "patch", "patch_width": 0.4}},
-    ],
+    thinned(
+        [
+            {"fem": {"elements": 6, "foundation": "corner"}},
+            {"fem": {"elements": 6, "foundation": "nodes", "degree": 1, "cells": "triangles"}},
+            {"fem": {"elements": 6, "foundation": "patch", "patch_width": 0.4}},
+        ],
+        3,
+    ),
     ids=["corner", "nodes", "patch"],
 )
 def test_every_foundation_opens_and_never_pulls(scene: Scene, values: dict[str, object]) -> None:

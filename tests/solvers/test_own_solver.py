@@ -13,7 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import SCENE
+from conftest import SCENE, thinned
 from oracles.pages import write_my_solver
 from oracles.processes import answer_here
 
@@ -207,6 +207,7 @@ def test_a_solver_that_cannot_be_loaded_is_refused_before_anything_runs(tmp_path
     assert "failed" not in shown
 
 
+@pytest.mark.long
 def test_a_report_of_junit_brings_no_warnings(tmp_path: Path) -> None:
     (tmp_path / "short.py").write_text("def solve(scene):\n    return [0.0], [0.0]\n")
     shown = through_the_gates("short:solve", tmp_path, "--junitxml=j.xml", "-k", "figures-3-4 and settling", "-n0")
@@ -486,7 +487,7 @@ WHAT_IS_MISREAD = {  # of tests/oracles/six_unknowns.py: scenes that fail where 
 }
 
 
-@pytest.mark.parametrize("solver", WHAT_IS_MISREAD)
+@pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 4))
 def test_a_datum_that_a_solver_misreads_is_named(solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     answer_here(monkeypatch)
     told = told_by(f"six_unknowns:{solver}", tmp_path)
@@ -502,7 +503,10 @@ def test_a_datum_that_a_solver_misreads_is_named(solver: str, tmp_path: Path, mo
     assert lines[-1].startswith("no gate saw: an outline that is no rectangle, a shear load, gravity, ")
 
 
-@pytest.mark.parametrize("slip", ["delta_missing", "zero_start", "consistent_start", "late_pressure", "gg_twice"])
+SLIPS_OF_THE_SCHEME = ("gg_twice", "delta_missing", "zero_start", "consistent_start", "late_pressure")
+
+
+@pytest.mark.parametrize("slip", thinned(SLIPS_OF_THE_SCHEME, 5))
 def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(
     slip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -514,6 +518,7 @@ def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(
     assert first(told, [t for t in told if t.status == "FAIL"]) == wrong
 
 
+@pytest.mark.long
 def test_a_slip_of_the_scheme_and_a_misread_datum_are_both_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

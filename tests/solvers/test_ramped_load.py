@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import refused, typed
+from conftest import refused, thinned, typed
 
 import dda
 from dda.one_block.natural_modes import modal_form
@@ -57,13 +57,16 @@ def test_each_mode_of_the_block_tends_to_the_closed_form_with_the_second_order(y
 
 @pytest.mark.parametrize(
     "values",
-    [
-        {},
-        {"time.start": "consistent"},
-        {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-        {"load.ramp": 1e-3},  # less than a step
-        {"load.ramp": 10.0},  # never at its end
-    ],
+    thinned(
+        [
+            {},
+            {"time.start": "consistent"},
+            {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
+            {"load.ramp": 1e-3},  # less than a step
+            {"load.ramp": 10.0},  # never at its end
+        ],
+        4,
+    ),
 )
 def test_a_ramp_is_a_sum_of_loads_that_come_on_step_by_step(values: dict[str, Any]) -> None:
     """The scheme is linear and the same at every step, so the increments of the load superpose."""
@@ -169,6 +172,7 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
             dda.Load(ramp=ramp)
 
 
+@pytest.mark.long
 def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path: Path) -> None:
     values = ("--set", "time.step=0.002", "--set", f"load.ramp={RAMP}")
     history = tmp_path / "ramped.csv"

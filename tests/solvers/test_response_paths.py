@@ -87,6 +87,7 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
             assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
 
 
+@pytest.mark.long
 def test_what_a_space_does_not_resolve_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = BLOCK.with_values({"block.subdivide": [4, 4], "block.poisson": 0.3, "fem.elements": 8})
     f = [5.0, 90.0, 200.0]
@@ -99,6 +100,7 @@ def test_what_a_space_does_not_resolve_is_solved_by_itself(monkeypatch: pytest.M
             assert np.allclose(found.columns[column], whole.columns[column], rtol=1e-8)
 
 
+@pytest.mark.long
 def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> NoReturn:
         raise AssertionError("a step was run")
@@ -160,7 +162,7 @@ def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:
 
 
 def test_refusals_name_solver_scene_and_rule() -> None:
-    for solver in ("fenicsx", "dda-textbook", "dda-60", "bar-60"):
+    for solver in ("fenicsx", "dda-textbook", "dda-60"):
         with pytest.raises(InputError, match=r"figures-3-4: solver .*no frequency response"):
             response(BLOCK, 1.0, solver)
     with pytest.raises(InputError, match=r"frequencies: must be finite and not negative, got -1"):

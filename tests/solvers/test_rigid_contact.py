@@ -46,6 +46,7 @@ def test_a_scene_keeps_a_rigid_contact_through_plain_data() -> None:
 SPRING = {"contact.stiffness": 1e9}
 
 
+@pytest.mark.long
 def test_the_page_on_contact_takes_it(tmp_path: Path) -> None:
     path = tmp_path / "rigid.toml"
     path.write_text(

@@ -104,12 +104,11 @@ solvers = ["bar-events"]
 
 @pytest.mark.parametrize(
     ("name", "module", "limit", "most", "horizon"),
-    [("bar-events", bar_events, "PIECES", 80, 0.0096), ("block-events", block_march, "STEPS", 27, 0.0049)],
+    [("bar-events", bar_events, "ADVANCES", 150, 0.0096), ("block-events", block_march, "STEPS", 27, 0.0049)],
 )
 def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, most: int, horizon: float
 ) -> None:
-    """The bar of 165 pieces is cut at 80; a longer one has thousands and would go on for hours."""
     monkeypatch.setattr(module, limit, most)
     run = get_solver(name).prepare(scene(tmp_path, GRANITE)).run()
     assert run.outcome is Outcome.HORIZON

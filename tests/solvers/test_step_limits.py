@@ -53,7 +53,6 @@ SCENES = {
     "locked": ("dda", {}),
     "sixty digits": ("dda-60", {}),
     "mesh": ("fem", {}),
-    "sixty digits of a mesh": ("fem-60", {}),
     "adaptive": ("dda", {"damping": {"kinetic": "adaptive", "floor": 0.5}}),
     "opening": ("dda", {"contact": OPEN}),
     "frictionless": ("dda", {"contact": {**OPEN, "shear_stiffness": 0.0}}),
@@ -162,6 +161,7 @@ def test_the_bound_is_that_of_a_free_body() -> None:
     assert largest < bound < 1.1 * largest
 
 
+@pytest.mark.long
 def test_a_column_that_resonates_stays_far_below_the_bound() -> None:
     sound = scene(1e-3, 3000, column=COLUMN, input=PULSE).with_values({"time.alpha": 0.25})
     run = solve(sound, "fem")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.stepped_vibration import Rule
 
@@ -59,7 +60,7 @@ def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: d
         assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))
 
 
-@pytest.mark.parametrize("values", [{}, AVERAGE, {"time.gg": 0.98, "time.alpha": 0.6}])
+@pytest.mark.parametrize("values", thinned([{}, AVERAGE, {"time.gg": 0.98, "time.alpha": 0.6}], 3))
 def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
     scene = BLOCK.with_values(values)
     bar, errors = solve(scene, "bar").history, []
@@ -69,7 +70,9 @@ def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
     assert np.all(np.log2(np.divide(*errors)) > 3.8)
 
 
-@pytest.mark.parametrize("values", [{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}])
+@pytest.mark.parametrize(
+    "values", thinned([{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}], 3)
+)
 def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
     errors = []
     for step in (4e-4, 1e-4):

@@ -11,7 +11,6 @@ from faults.fault import Fault, late, thousandth, times, with_scheme
 from faults.kill_matrix import check_kill_matrix
 
 import dda
-import fem_reference.scheme.newmark
 from dda.one_block.natural_modes import ModalForm
 from validation.engine.run import run_study
 from validation.gates.gate import Status
@@ -48,27 +47,6 @@ def offset(sound):
     return faulty
 
 
-class AccelerationFirst(fem_reference.scheme.newmark.Stepper):
-    """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
-
-    def advance(self, state, F=None):
-        s = self.scheme
-        ahead = fem_reference.scheme.newmark.predictor(state, s)
-        A = self.solve((self.F if F is None else F) - self.K @ ahead)
-        D = ahead + s.alpha * s.step**2 * A
-        return fem_reference.scheme.newmark.State(D, fem_reference.scheme.newmark.velocity(state, A, s), A)
-
-
-def begun(sound):
-    """Let the bar be displaced and pressed by 2e-9 of the static values from the beginning."""
-
-    def faulty(*arguments):
-        history, estimate = sound(*arguments)
-        return history + 2e-9, estimate
-
-    return faulty
-
-
 FAULTS = [
     Fault("dda: the printed recursion", ("dda",), seams.DDA_SOLVE, printed_recursion),
     Fault("dda: modes by a general solver", ("dda",), seams.DDA_MODES, unscaled_modes),
@@ -76,10 +54,6 @@ FAULTS = [
     Fault("dda: delta 0.1 % high", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=thousandth)),
     Fault("dda: an offset", ("dda",), seams.DDA_OVERFLOW, offset),
     Fault("dda-textbook: the robust form", ("dda-textbook",), seams.DDA_TEXTBOOK, robust_form),
-    Fault("fem: accelerations first", ("fem",), seams.FEM_STEPPER, lambda sound: AccelerationFirst),
-    Fault("fem: history 2e-9 high", ("fem",), seams.FEM_BOUNDED, times(1 + 2e-9)),
-    Fault("bar: shares 2e-9 high", ("bar",), seams.BAR_SHARES, times(1 + 2e-9)),
-    Fault("bar: begun before the wave", ("bar",), seams.BAR_SUM, begun),
 ]
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fem_reference.events.bars_events import solve
-from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem, half_sine, sine, triangle
+from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
+from fem_reference.events.column_drive import half_sine, sine, triangle
 from validation.theory import joints
 
 # a = s / (z v0): T, R, A, from slip instants in 30 digits by another program

@@ -47,7 +47,8 @@ class Change:
         """Whether the band lets pass what it did not before."""
         if self.band_before is None or self.band_after is None:
             return False
-        (low, high), (new_low, new_high) = self.band_before, self.band_after
+        (low, high) = self.band_before
+        (new_low, new_high) = self.band_after
         last = LAST_DIGITS * max(map(abs, (low, high)))
         return new_low < low - last or new_high > high + last
 
@@ -104,11 +105,13 @@ def changes(before: Iterable[Record], after: Iterable[Record]) -> list[Change]:
     old, new = ({(v["study"], v["id"]): v for v in verdicts} for verdicts in (before, after))
     found = []
     for key in dict.fromkeys([*old, *new]):
-        was, now = old.get(key), new.get(key)
+        was = old.get(key)
+        now = new.get(key)
         bands = _band(was), _band(now)
         differs = was is None or now is None or _said(was) != _said(now) or not same_band(*bands)
         if differs:
-            (word, value), (new_word, new_value) = _said(was), _said(now)
+            (word, value) = _said(was)
+            (new_word, new_value) = _said(now)
             found.append(Change(*key, word, new_word, value, new_value, *bands))
     order = ("worse", "better", "new", "gone", "band", "value")
     return sorted(found, key=lambda c: (order.index(c.kind), c.study, c.id))

@@ -68,14 +68,18 @@ class OneBlock(Prepared):
         import dda
 
         no_fields("dda", self.scene, fields)
-        check_columns(self.scene, dda.COLUMNS)
+        adaptive = features.ADAPTIVE in features.of(self.scene)
+        check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS) if adaptive else dda.COLUMNS)
         with naming(self.scene):
             return to_run(self.scene, self.solve_steps(self.scene.time.steps, self.scene.run.columns))
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
-        """Return the history of some steps."""
+        """Return the history of some steps; a discount may follow the kinetic energy."""
         import dda
 
+        if features.ADAPTIVE in features.of(self.scene):
+            floor = self.scene.damping.floor
+            return dda.solve_adaptive(self.model, self.scheme, steps, columns, floor, self.full)
         return dda.solve(self.model, self.scheme, steps, columns, self.full)
 
     def step_limit(self) -> StepLimit:
@@ -114,32 +118,6 @@ class OneBlock(Prepared):
         along = base_direction(self.scene)
         with naming(self.scene):
             return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
-
-
-class AdaptiveBlock(Prepared):
-    """A whole block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
-
-    def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene = scene
-        self.block = OneBlock(scene, full)
-
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the whole block."""
-        return self.block.step_limit()
-
-    def history_run(self, fields: Path | None) -> Run:
-        """Run the scene; DDA has no fields."""
-        import dda
-
-        no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS))
-        t = self.scene.time
-        block = self.block
-        columns = self.scene.run.columns
-        floor = self.scene.damping.floor
-        with naming(self.scene):
-            result = dda.solve_adaptive(block.model, block.scheme, t.steps, columns, floor, block.full)
-        return to_run(self.scene, result)
 
 
 class SubBlocks(OneBlock):
@@ -244,8 +222,6 @@ class DDA(Solver):
         if features.UNILATERAL in features.of(scene):
             kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
             return kind(scene, scheme_of(scene), base_motion(scene), full)
-        if features.ADAPTIVE in features.of(scene):
-            return AdaptiveBlock(scene, full)
         return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
 
 

@@ -26,7 +26,8 @@ from validation.solvers.translation import check_columns, naming, no_fields
 if TYPE_CHECKING:
     from fem_reference.events import bar_events, block_events
     from fem_reference.events import switches as events
-    from fem_reference.events.bar_model import BarProblem
+    from fem_reference.events.bar_events import BarProblem
+    from fem_reference.events.bars_events import BarsMotion
     from fem_reference.events.block_model import BlockProblem
     from fem_reference.problem.motion import Motion as BaseMotion
 
@@ -101,7 +102,7 @@ def base_of(scene: Scene) -> BaseMotion | None:
 
 def bar_of(scene: Scene) -> BarProblem:
     """Return the bar of a scene."""
-    from fem_reference.events.bar_model import BarProblem
+    from fem_reference.events.bar_events import BarProblem
 
     return BarProblem(**data_of(scene), base_stiffness=2 * scene.contact.stiffness)
 
@@ -198,6 +199,11 @@ class Motion(Prepared):
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return all columns in the order of `names`."""
         raise NotImplementedError
+
+
+def digits_of_switches(bars: BarsMotion) -> str:
+    """Return in how many digits the switches of bars are the same."""
+    return f"the same switches in {bars.digits // 2} and in {bars.digits} digits"
 
 
 def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
@@ -298,7 +304,7 @@ class BarMotion(Motion):
     """The bar."""
 
     names = BAR_COLUMNS
-    motion: bar_events.BarMotion
+    motion: bar_events.BarMotion  # type: ignore[assignment]
 
     def starts_closed(self, corner: str) -> bool:
         """Whether the base is closed just after t = 0."""
@@ -314,6 +320,10 @@ class BarMotion(Motion):
         state = self.motion.at(self.instants())
         force = state.contact_pressure * problem.width / 2
         return (state.displacement, state.contact_pressure, state.gap, state.gap, force, force)
+
+    def bounds(self) -> Iterable[str]:
+        """Yield how far the switches are known."""
+        yield digits_of_switches(self.motion.bars)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
@@ -336,8 +346,9 @@ class BarMotion(Motion):
 
     def _rebound(self, first: float, last: float | None) -> Rebound:
         """Return the velocities of the base as its contact begins and ends."""
-        rates = [None if at is None else float(self.motion.fields(at, [0.0]).velocity[0]) for at in (first, last)]
-        return Rebound(-(rates[0] or 0.0), rates[1])
+        times = [first] if last is None else [first, last]
+        closing, *opening = self.motion.bars.point(0, 0.0, times).velocity.tolist()
+        return Rebound(-closing, opening[0] if opening else None)
 
 
 class BlockEvents(Solver):

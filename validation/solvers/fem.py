@@ -134,9 +134,18 @@ class Mesh(Prepared):
         """Run the scene."""
         import fem_reference
 
-        check_columns(self.scene, fem_reference.COLUMNS)
         steps = self.scene.time.steps
         columns = self.scene.run.columns
+        if features.ADAPTIVE in features.of(self.scene):
+            no_fields("fem with self-adaptive damping", self.scene, fields)
+            check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
+            floor = self.scene.damping.floor
+            with naming(self.scene):
+                result = fem_reference.solve_adaptive(
+                    self.problem, self.scheme, steps, columns, floor, model=self.model
+                )
+            return to_run(self.scene, result, built=self.building)
+        check_columns(self.scene, fem_reference.COLUMNS)
         with naming(self.scene):
             result = fem_reference.solve(
                 self.problem, self.scheme, steps, columns, full=self.full, fields=fields, model=self.model
@@ -170,32 +179,6 @@ class Mesh(Prepared):
         along = base_direction(self.scene)
         with naming(self.scene):
             return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
-
-
-class AdaptiveMesh(Prepared):
-    """A meshed block whose discount follows its kinetic energy; it has a history, and nothing of a linear motion."""
-
-    def __init__(self, scene: Scene, full: bool) -> None:
-        self.scene = scene
-        self.mesh = Mesh(scene, full)
-
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the mesh."""
-        return self.mesh.step_limit()
-
-    def history_run(self, fields: Path | None) -> Run:
-        """Run the scene."""
-        import fem_reference
-
-        no_fields("fem with self-adaptive damping", self.scene, fields)
-        check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
-        mesh = self.mesh
-        t = self.scene.time
-        columns = self.scene.run.columns
-        floor = self.scene.damping.floor
-        with naming(self.scene):
-            result = fem_reference.solve_adaptive(mesh.problem, mesh.scheme, t.steps, columns, floor, model=mesh.model)
-        return to_run(self.scene, result, built=mesh.building)
 
 
 # J, in the order of `STORED` and `LOST`
@@ -317,6 +300,4 @@ class FiniteElements(Solver):
 
             kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
             return kind(scene, scheme_of(scene))
-        if features.ADAPTIVE in features.of(scene):
-            return AdaptiveMesh(scene, full)
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

@@ -9,7 +9,7 @@ from validation.metrics.catalogue import CATALOGUE, PAIRS
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.scenes.tables import GateSection
-from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
+from validation.solvers.registry import FULL, get_solver, is_solver, replacement, solver_names
 
 
 def check_names(scene: Scene, source: str) -> None:
@@ -24,9 +24,8 @@ def check_names(scene: Scene, source: str) -> None:
     for name in scene.run.solvers:
         solver = name.removesuffix(FULL)
         if not is_solver(solver):
-            raise InputError(
-                f"must be among {', '.join(solver_names())}", source=source, field="run.solvers", value=repr(name)
-            )
+            rule = f"must be among {', '.join(solver_names())}"
+            raise InputError(rule, source=source, field="run.solvers", value=repr(name), advice=replacement(name))
         solver_columns |= dict.fromkeys(get_solver(solver).columns() or scene.run.columns)
     for column in scene.run.columns:
         if column not in solver_columns:

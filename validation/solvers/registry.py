@@ -32,9 +32,8 @@ BUILT_IN = {
     "column-events": "validation.solvers.columns.events:ColumnEvents",
     "bars-events": "validation.solvers.columns.bars:BarsEvents",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
-    "fem-60": "validation.solvers.sixty_digits.adapters:PreciseFiniteElements",
-    "bar-60": "validation.solvers.sixty_digits.adapters:PreciseBar",
 }
+WITHDRAWN = {"fem-60": "dda-60 or fem with a finer mesh", "bar-60": "dda-60 or continuum"}  # and what to use instead
 USERS = "validation.solvers.user:UserSolver"
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
@@ -58,6 +57,12 @@ def is_solver(name: str) -> bool:
     return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
 
 
+def replacement(name: str) -> str | None:
+    """Return what to use instead of a solver that was withdrawn, None for any other name."""
+    plain = name.partition(":")[0]
+    return f"{plain} was withdrawn, use {WITHDRAWN[plain]}" if plain in WITHDRAWN else None
+
+
 def _is_target(module: str, attribute: str) -> bool:
     return all(part.isidentifier() for part in (*module.split("."), *attribute.split(".")))
 
@@ -77,9 +82,8 @@ def get_solver(name: str) -> Solver:
         user: Solver = _imported(USERS)(name, entry_points().get(name, name))
         return user
     if plain not in BUILT_IN:
-        raise InputError(
-            f"must be one of {', '.join(solver_names())}, or module:attribute", field="solver", value=repr(name)
-        )
+        rule = f"must be one of {', '.join(solver_names())}, or module:attribute"
+        raise InputError(rule, field="solver", value=repr(name), advice=replacement(name))
     solver: Solver = _imported(BUILT_IN[plain])()
     return solver.option(option) if colon else solver
 

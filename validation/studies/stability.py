@@ -14,7 +14,7 @@ from validation.gates.gate import Gate
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.declaration import Study
-from validation.theory import spectra, statics
+from validation.theory import spectra
 
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5))
 STIFFNESS = tuple(10.0**power for power in range(0, 25, 3))  # p [N/m] at E = 1e9 Pa: p/E = 1e-9 to 1e15
@@ -31,15 +31,12 @@ FACTORS: dict[str, dict[str, Sequence[Any]]] = {
     "plane-strain": {"block.poisson": (-0.9, 0.25, 0.49, 0.4999, 0.4999999)},
     "pressure": {"load.pressure": (0.0, 1e-300, 1e300)},
 }
-PAIRS = (("dda", "dda-60"), ("dda-textbook", "dda-60"), ("bar", "bar-60"), ("fem", "fem-60"))
+PAIRS = (("dda", "dda-60"), ("dda-textbook", "dda-60"))
 MEASURES = ("history", "stability")
-# Explicit schemes run far beyond their limits; in the matrix's corners fem and the printed recursion, out of the range
-# in which they promise digits, grow by rounding before they grow by the scheme.
+# Explicit schemes run far beyond their limits; in the matrix's corners the printed recursion grows by rounding before
+# it grows by the scheme.
 ENDS = (Outcome.OVERFLOW, Outcome.MISPREDICTED)
 LIMIT = {"zero": 1e-11, "consistent": 1e-9}  # what dda promises, over the maximum
-FEM_LIMIT = 1e-9  # what fem promises
-FEM_RANGE = (1e-3, 1e12)  # the p/E for which it does
-BAR_LIMIT = 1e-9
 # Orders of magnitude of the pressure error of the printed recursion over 300 steps of 1e-3 s, by an independent program
 LOST = {(0.5, 1e21): 2e-5, (0.5, 1e24): 0.04, (0.25, 1e21): 9e-4, (0.25, 1e24): 1.3}
 
@@ -50,14 +47,12 @@ def conditional(alpha: float, delta: float) -> bool:
 
 
 def scheme_scene(alpha: float, delta: float, start: str, sweep: Mapping[str, Any]) -> Scene:
-    """Return the base scene under a scheme, swept; the bar joins where it can."""
+    """Return the base scene under a scheme, swept."""
     limited = conditional(alpha, delta)
     values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
     base = load_scene("extremes")
     if limited:
         values["time.allow_unstable"] = True
-    else:
-        values["run.solvers"] = [*base.run.solvers, "bar", "bar-60"]
     name = f"extremes-{alpha:.4g}-{delta:g}" + ("-consistent" if start == "consistent" else "")
     title = f"Stiffness and step, alpha = {alpha:.4g}, delta = {delta:g}, {start} start"
     scene = base.with_values(values)
@@ -77,8 +72,8 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
     for name, start in itertools.product(names, STARTS):
         ((alpha, delta),) = STARTS[start]
         values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
-        if name.startswith("plane"):  # linear elements: both components move, and sixty digits take their time
-            values |= {"block.hypothesis": name.replace("-", " "), "fem.degree": 1}
+        if name.startswith("plane"):
+            values["block.hypothesis"] = name.replace("-", " ")
         scene = load_scene("extremes").with_values(values)
         sweep = {key: list(extremes) for key, extremes in FACTORS[name].items()} | {"mode": "zip"}
         update = {"name": f"extreme-{name}-{start}", "title": f"Extremes of {name}, {start} start", "sweep": sweep}
@@ -105,26 +100,12 @@ def bounded(case: Scene) -> bool:
     return spectra.contact_frequency(case) * t.step < spectra.critical_omega(case) * (1 - 1e-6)
 
 
-def incompressible(case: Scene) -> bool:
-    """Whether lam / G = 2 mu' / (1 - mu') exceeds 1e4, beyond which fem says that it keeps fewer digits."""
-    _, mu = statics.moduli(case)
-    return mu > 1 - 2e-4
-
-
 def digits(case: Scene) -> Iterator[Gate]:
     """Yield the gates on correct digits, both quantities, against sixty-digit arithmetic."""
     t = case.time
-    ratio = case.contact.stiffness / case.block.young
     name = case.name
     why = "contact-gap coordinates, mode by mode: eleven digits from A0 = 0, nine from the consistent start"
     yield Gate(name, ("dda", "dda-60"), "worst.max", 0.0, LIMIT[t.start], why)
-    if FEM_RANGE[0] <= ratio <= FEM_RANGE[1] and not conditional(t.alpha, t.delta) and not incompressible(case):
-        why = "solved for the displacement, against its own matrices taken as exact: nine digits for p/E 1e-3 to 1e12"
-        yield Gate(name, ("fem", "fem-60"), "worst.max", 0.0, FEM_LIMIT, why)
-    if "bar" in case.run.solvers:
-        why = "exact modes, cut off at 1e-11 of the maximum; over the static value where the wave has not arrived"
-        for quantity in ("displacement", "pressure"):
-            yield Gate(name, ("bar", "bar-60"), f"{quantity}.scaled", 0.0, BAR_LIMIT, why)
     lost = LOST.get((t.alpha, case.contact.stiffness))
     if lost and t.start == "zero" and t.step == 1e-3 and t.discount == 1:
         why = "the printed recursion loses the pressure: independent program, within the scatter of rounding errors"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,16 +13,16 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.modes import Switch
 from validation.scenes import features
 from validation.scenes.column import NEAR, ColumnSection
-from validation.scenes.drive import read_record
 from validation.scenes.scene import Scene
+from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.events import KINDS, Motion
+from validation.solvers.events import KINDS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
     from fem_reference.events.bars_events import BarsMotion
-    from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem, Drive
+    from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
 
 
 def bars_of(scene: Scene) -> tuple[BarsProblem, Array]:
@@ -38,15 +37,13 @@ def bars_of(scene: Scene) -> tuple[BarsProblem, Array]:
     impedance = column.impedance
     with naming(scene):
         feet, bars, joints = _bars_and_joints(column)
-        drive = _drive(scene)
-        at_top = scene.stated_input is not None and scene.input.at == "top"
         problem = BarsProblem(
             bars=tuple(bars),
             joints=tuple(joints),
             gravity=column.gravity if column.law == "unilateral" else 0.0,
             base_impedance=np.inf if impedance is None else impedance,
-            base=() if at_top else drive,
-            top=drive if at_top else (),
+            base=drive_of(scene, "base", integral=False),
+            top=drive_of(scene, "top", integral=False),
             settled=column.settled,
         )
     return problem, np.array(feet)
@@ -89,26 +86,6 @@ def _bars_and_joints(column: ColumnSection) -> tuple[list[float], list[Bar], lis
     return feet, bars, joints
 
 
-def _drive(scene: Scene) -> Drive:
-    """Return what drives the column, as pieces."""
-    from fem_reference.events import bars_model
-
-    if scene.stated_input is None:
-        return ()
-    section = scene.input
-    if section.record is not None:
-        instants, values, order = read_record(Path(section.record), section.at)
-        as_pieces = bars_model.recorded if order == 1 else bars_model.accelerated
-        return as_pieces(instants.tolist(), values.tolist())
-    size = (section.velocity if section.at == "base" else section.pressure) or 0.0
-    if section.shape == "half-sine":
-        return bars_model.half_sine(size, section.duration or 1.0)
-    if section.shape == "triangle":
-        return bars_model.triangle(size, section.duration or 1.0)
-    wave = bars_model.sine if section.shape == "sine" else bars_model.cosine
-    return wave(size, section.frequency or 1.0)
-
-
 class BarsOfColumn(Motion):
     """A column of elastic bars."""
 
@@ -135,8 +112,7 @@ class BarsOfColumn(Motion):
 
     def bounds(self) -> Iterable[str]:
         """Yield how far the switches are known."""
-        digits = self.motion.digits
-        yield f"the same switches in {digits // 2} and in {digits} digits"
+        yield digits_of_switches(self.motion)
 
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return the columns that the scene asks for."""

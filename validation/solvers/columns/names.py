@@ -10,7 +10,10 @@ from validation.scenes.column import MOST_HEIGHTS, NEAR, ColumnSection
 from validation.scenes.scene import Scene
 
 STRESS = "stress"
-VELOCITY, FORCE, GAP, SLIP = "velocity", "force", "gap", "slip"
+VELOCITY = "velocity"
+FORCE = "force"
+GAP = "gap"
+SLIP = "slip"
 BONDED = (DISPLACEMENT, STRESS)  # what a history may hold at each height
 MOVING = (*BONDED, VELOCITY, FORCE, GAP, SLIP)  # and where contacts open or slip: the last three at a contact only
 

@@ -1,4 +1,1 @@
-"""References in sixty-digit arithmetic.
-
-They share no step with the solvers that they judge.
-"""
+"""The block in sixty-digit arithmetic, which shares no step with the solvers that it judges."""

@@ -24,8 +24,7 @@ from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 
 QUANTITIES = {"displacement": "Displacement", "pressure": "Contact pressure"}
-MEASURE = {"bar": "scaled"}  # the bar's wave may not have arrived; all others over their own maximum
-SOLVERS = ("dda", "dda-textbook", "fem", "bar")
+SOLVERS = ("dda", "dda-textbook")
 MATRIX = "extremes-"  # prefix of the scenes of the maps
 FACTOR = "extreme-"  # prefix of the scenes with one datum at its extremes
 SHADES = MapScale("cividis", 16.0, cell=4.6)
@@ -56,7 +55,7 @@ def extreme_runs(results: Results, manifest: Manifest) -> list[ExtremeRun]:
         name = entry["scene"]
         definition = entry["definition"]
         metrics = compared.get((name, solver), {})
-        errors = {q: metrics.get(f"{q}.{MEASURE.get(solver, 'max')}") for q in QUANTITIES}
+        errors = {q: metrics.get(f"{q}.max") for q in QUANTITIES}
         ratio = definition["contact"]["stiffness"] / definition["block"]["young"]
         runs.append(ExtremeRun(name, solver, ratio, definition["time"]["step"], rows[entry["key"]], errors))
     return runs
@@ -101,10 +100,9 @@ def conclusion(runs: Sequence[ExtremeRun]) -> str:
     """Say in one sentence how many digits each solver keeps at least, and how runs beyond their limit end."""
     parts = []
     for solver in SOLVERS:
-        errors = _errors(c for c in runs if c.solver == solver and (solver != "fem" or 1e-3 <= c.ratio <= 1e12))
+        errors = _errors(run for run in runs if run.solver == solver)
         if errors:
-            where = " for p/E from 10⁻³ to 10¹²" if solver == "fem" else ""
-            parts.append(f"{solver} {digits(max(errors))}{where}")
+            parts.append(f"{solver} {digits(max(errors))}")
     text = f"Fewest correct digits, in both quantities: {', '.join(parts)}"
     ends = Counter(run.row.outcome for run in runs if run.solver == "dda")
     grown = ends[Outcome.UNSTABLE] + ends[Outcome.OVERFLOW]
@@ -130,8 +128,7 @@ def outcome_table(runs: Sequence[ExtremeRun]) -> Table:
         others = ", ".join(f"{name} {n}" for name, n in count.items() if name not in kinds)
         rows.append((solver, *(str(count.get(kind, 0)) for kind in kinds), others or DASH))
     notes = tuple(f"{kind}: {kind.sentence}" for kind in Stability)
-    caption = "Outcomes by name; the bar has no matrix and completes or does not apply."
-    return table(("Solver", *kinds, TableColumn("otherwise", "fill")), rows, caption, notes)
+    return table(("Solver", *kinds, TableColumn("otherwise", "fill")), rows, "Outcomes by name.", notes)
 
 
 def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> Blocks:
@@ -144,8 +141,7 @@ def _maps(study: str, runs: Sequence[ExtremeRun], directory: Path) -> Blocks:
     labels = ("Time step dt [s]", "p / E")
     figure = map_figure([maps], [*map(_decade, ratios)], [*map(_decade, steps)], labels, SHADES)
     solver = runs[0].solver
-    scale = "over the static value where nothing has arrived, " if solver == "bar" else ""
-    caption = f"{solver}: correct digits, {scale}the worst of all bounded schemes; blank: no bounded run."
+    caption = f"{solver}: correct digits, the worst of all bounded schemes; blank: no bounded run."
     return [histories.saved(figure, directory, f"{study}-digits-{solver}.svg", caption)]
 
 
@@ -181,7 +177,7 @@ def factor_tables(runs: Sequence[ExtremeRun]) -> Blocks:
             (
                 TableColumn("Scene", "id"),
                 ("dda", "|λ|", "condition", "residual"),
-                ("Digits of displacement / pressure", "dda", "dda-textbook", "fem"),
+                ("Digits of displacement / pressure", *SOLVERS),
             ),
             rows,
             caption,
@@ -194,7 +190,7 @@ def _factor_row(scene: str, runs: Mapping[tuple[str, str], ExtremeRun]) -> tuple
     dda = runs.get((scene, "dda"))
     metrics = dda.row.metrics if dda else {}
     numbers = [_number_cell(metrics.get(f"stability.{name}")) for name in ("radius", "condition", "residual")]
-    return (scene, *numbers, *(_digits_cell(runs.get((scene, solver))) for solver in ("dda", "dda-textbook", "fem")))
+    return (scene, *numbers, *(_digits_cell(runs.get((scene, solver))) for solver in SOLVERS))
 
 
 def _fewest(run: ExtremeRun | None) -> float:

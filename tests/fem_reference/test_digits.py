@@ -1,0 +1,84 @@
+"""How many digits `fem` and `bar` keep with stiff springs and extreme steps, against sixty-digit arithmetic."""
+
+from collections.abc import Callable
+from itertools import product
+from typing import Any
+
+import pytest
+from conftest import thinned
+from faults import seams
+from faults.fault import times
+from oracles.matrices_in_balls import lost
+
+from fem_reference.scheme.newmark import State, Stepper, predictor, velocity
+from validation import load_scene
+from validation.scenes.scene import Scene
+
+LIMIT = 1e-9  # over the maximum: what fem promises for p/E from 1e-3 to 1e12, and bar for every one
+SCHEMES = [(0.5, 1.0, 1.0, "zero"), (0.25, 0.5, 1.0, "consistent"), (0.5625, 1.0, 0.9, "zero")]
+EXTREMES: dict[str, list[dict[str, Any]]] = {
+    "fem": [
+        *({"contact.stiffness": 1e9 * ratio} for ratio in (1e-3, 1e3, 1e12)),
+        {"block.density": 1e-6},
+        {"block.width": 2000.0, "block.height": 2.0},
+        {"block.poisson": -0.9, "fem.degree": 1},
+        {"block.hypothesis": "plane strain", "block.poisson": 0.4999, "fem.degree": 1},
+    ],
+    "bar": [*({"contact.stiffness": 1e9 * ratio} for ratio in (1e-9, 1.0, 1e15)), {"block.density": 1e-6}],
+}
+CASES = [
+    (solver, values, step, scheme)
+    for solver, extremes in EXTREMES.items()
+    for values, step, scheme in product(extremes, (1e-9, 1e-3, 1e3), SCHEMES)
+]
+
+
+def extreme(values: dict[str, Any], step: float = 1e-3, scheme: tuple[float, float, float, str] = SCHEMES[0]) -> Scene:
+    """Return the scene of the extremes on two elements a side, of which sixty digits take little time."""
+    of_scheme = dict(zip(("time.alpha", "time.delta", "time.gg", "time.start"), scheme, strict=True))
+    return load_scene("extremes").with_values(
+        {"fem.elements": 2, "fem.degree": 2, "time.steps": 100, "time.step": step, **of_scheme, **values}
+    )
+
+
+@pytest.mark.parametrize(("solver", "values", "step", "scheme"), thinned(CASES, 10))
+def test_nine_digits_are_kept(solver: str, values: dict[str, Any], step: float, scheme: Any) -> None:
+    assert lost(extreme(values, step, scheme), solver) <= LIMIT
+
+
+class AccelerationFirst(Stepper):
+    """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
+
+    def advance(self, state: State, F: Any = None) -> State:
+        s = self.scheme
+        ahead = predictor(state, s)
+        A = self.solve((self.F if F is None else F) - self.K @ ahead)
+        return State(ahead + s.alpha * s.step**2 * A, velocity(state, A, s), A)
+
+
+def begun(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Let the bar be displaced and pressed by 4e-9 of the static values from the beginning."""
+
+    def faulty(*arguments: Any) -> Any:
+        history, estimate = sound(*arguments)
+        return history + 4e-9, estimate
+
+    return faulty
+
+
+@pytest.mark.parametrize(
+    ("solver", "seam", "fault"),
+    [
+        ("fem", seams.FEM_STEPPER, lambda sound: AccelerationFirst),
+        ("fem", seams.FEM_BOUNDED, times(1 + 2e-9)),
+        ("bar", seams.BAR_SHARES, times(1 + 2e-9)),
+        ("bar", seams.BAR_SUM, begun),
+    ],
+)
+def test_a_fault_of_two_in_a_thousand_millions_is_seen(
+    solver: str, seam: seams.Seam, fault: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stiff = extreme({"contact.stiffness": 1e21}, scheme=SCHEMES[1])
+    assert lost(stiff, solver) <= LIMIT
+    seam.wrap(monkeypatch, fault)
+    assert lost(stiff, solver) > LIMIT
