@@ -22,6 +22,7 @@ HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 HALF = 0.5  # steps late: a mean of two
 UNEXPLAINED = "unexplained"
+SWAPPED = "swapped"
 DIVERGED = "diverged"
 BENIGN = frozenset({"base-compliance", "own-weight", "geometry-updated"})
 
@@ -61,6 +62,7 @@ def _factor(name: str, quantity: str, number: str = "") -> Cause:
 CATALOGUE = (
     Cause("sign", "a sign error: upwards is positive here"),
     Cause("unit", "a unit error"),
+    Cause(SWAPPED, "two columns are swapped"),
     Cause(DIVERGED, "the run diverged"),
     Cause("scheme", "a different scheme", "a different scheme from the scene's {scheme}"),
     Cause(

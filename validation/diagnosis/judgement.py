@@ -11,22 +11,31 @@ import numpy as np
 
 from validation.diagnosis import causes, evidence, families, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
+from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.forces import answer
+from validation.diagnosis.forces import answer as of_friction
+from validation.diagnosis.forces.answer import is_scene
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
-from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, readings_of, slips, words_of_slips
+from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
+from validation.diagnosis.readings import (
+    Reading,
+    exchanged,
+    has_swapped_columns,
+    readings_of,
+    remedy_of,
+    slips,
+    words_of_slips,
+)
 from validation.diagnosis.search import Verdict, beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.runs.history import Array
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -72,6 +81,26 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
+    pair = (DISPLACEMENT, PRESSURE)
+    if has_swapped_columns(scene, foreign):
+        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
+    else:
+        answer = _judged(scene, foreign, tolerance)
+        pair = (DISPLACEMENT, SIDEWAYS)
+        is_frictional = features.FRICTION in features.of(scene)
+        if not (is_frictional and UNEXPLAINED in answer.causes and is_scene(scene, exchanged(foreign, *pair))):
+            return replace(answer, remedy=remedy_of(foreign, answer.slips))
+        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
+    one, other = (name.replace("_", " ") for name in pair)
+    foreign = exchanged(foreign, *pair)
+    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
+    remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
+    sentence = f"The {one} is in the column of the {other}, and the reverse. Read so: {answer.sentence}"
+    causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
+    return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
+
+
+def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
     if scene.column is not None:
@@ -334,9 +363,9 @@ def _answer_of_rival(
 
 def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
-    read = answer.read(scene, foreign)
+    read = of_friction.read(scene, foreign)
     result = judge(scene, read.place, read.step, read.rounding)
-    ids = answer.ids_of(result, read)
+    ids = of_friction.ids_of(result, read)
     t = scene.time
     unexplained = float(f"{min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])):.4g}")
     near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
@@ -344,10 +373,10 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     return Answer(
         scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
         ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
-        departure=answer.departure_of(result, ids),
+        departure=of_friction.departure_of(result, ids),
         causes=ids,
         opened=result.opened if result.explained else None,
-        sentence=answer.sentence(scene, result, ids, read.corrected),
+        sentence=of_friction.sentence(scene, result, ids, read.corrected),
         notes=(*foreign.notes, *read.notes),
         misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
@@ -355,7 +384,7 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
         unexplained=0.0 if result.explained else unexplained,
         nearest=None if result.explained else near,
         alike=[_alone(one) for one in result.alike],
-        evidence=tuple(answer.stages(result, read)),
+        evidence=tuple(of_friction.stages(result, read)),
         slips=read.corrected,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +32,8 @@ class Foreign:
 
     `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
     (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
-    units of the last printed digit of each value, None where they are to be seen from the values.
+    units of the last printed digit of each value, None where they are to be seen from the values. `names` are the
+    file's own names of our columns, `scale` the factors by which its numbers were multiplied.
     """
 
     time: Array
@@ -44,6 +45,8 @@ class Foreign:
     pressure_rounding: Array | None = None  # [Pa]
     sideways: Array | None = None  # horizontal displacement [m]
     sideways_rounding: Array | None = None  # [m]
+    names: Mapping[str, str] = field(default_factory=dict)
+    scale: Mapping[str, float] = field(default_factory=dict)
 
 
 def parse_columns(text: str | None) -> dict[str, str]:
@@ -121,7 +124,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         for name in OURS[1:]
         if name in columns_of_file
     }
-    return _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
+    history = _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
+    return replace(history, names=columns, scale=scale)
 
 
 # ---- tables -------------------------------------------------------------------------------------------------------

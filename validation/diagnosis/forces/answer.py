@@ -14,7 +14,7 @@ from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding
 from validation.diagnosis.forces.laws import body_of
-from validation.diagnosis.forces.runs import at_step, displacements
+from validation.diagnosis.forces.runs import agreement, at_step, displacements
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, words_of_slips
 from validation.diagnosis.sentences import per_cent
@@ -108,6 +108,13 @@ def _unit(scene: Scene, step: float, place: Array) -> float:
         return 1.0
     ratio = math.log10(float(np.max(np.abs(place))) / size)
     return next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
+
+
+def is_scene(scene: Scene, foreign: Foreign) -> bool:
+    """Whether a history is the scene's own as it is read, no sign or unit corrected."""
+    reading = read(scene, foreign)
+    exact = at_step(scene, reading.step, len(reading.place))
+    return not reading.corrected and agreement(exact, reading.place, reading.rounding).same
 
 
 def _check(scene: Scene) -> None:
