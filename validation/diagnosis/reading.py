@@ -12,6 +12,7 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import last_digits
 from validation.errors import InputError
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.regular import regular
 
@@ -214,7 +215,7 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     start = y[0] - math.copysign(size[0], vy[0])
     every = bool(step[0] == 1 and np.all(np.diff(step) == 1))
     moved = np.copysign(size, summed if every else y - start)
-    sideways = float(np.max(np.abs(moved - summed))) if every else 0.0
+    sideways = largest(moved - summed) if every else 0.0
     if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
         moved = summed
     aside = np.cumsum(vx * dt) if every else x - (x[0] - vx[0] * dt[0])

@@ -12,6 +12,7 @@ import numpy as np
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
@@ -172,6 +173,6 @@ def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[flo
         most = furthest * abs(reference[0] or 1.0)
         bounded = np.clip(np.nan_to_num(reference), -most, most)
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
-    ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
+    ratio = math.log10(largest(values) / (largest(bounded) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
     return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]
