@@ -201,6 +201,7 @@ def test_units_are_read_and_named() -> None:
     answer = compare(DROPPED, replace(foreign, displacement=1e3 * foreign.displacement))
     assert answer.causes == ["unit"]
     assert [(slip.column, slip.factor) for slip in answer.slips] == [("displacement", 1e3)]
+    assert answer.remedy == "--scale displacement=0.001"
 
 
 @pytest.mark.parametrize("every", [1, 5])

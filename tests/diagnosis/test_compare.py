@@ -151,9 +151,10 @@ def example() -> dict[str, object]:
 def test_the_example_of_ntdda(example: dict[str, object]) -> None:
     assert set(example) == {
         *("sentence", "causes", "values", "unexplained", "nearest", "alike", "departure", "opened", "scheme"),
-        *("ranking", "evidence", "slips", "intervals"),
+        *("ranking", "evidence", "slips", "intervals", "remedy"),
     }
     assert example["slips"] == []
+    assert example["remedy"] == ""
     assert set(example["intervals"]) == set(example["values"])
     assert example["unexplained"] == 0 and example["nearest"] is None and example["alike"] == []
     assert set(example["values"]) == {"base-compliance", "own-weight"}
@@ -271,6 +272,8 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     answer = json.loads(slipped.stdout)
     assert answer["causes"] == ["sign", "unit"]
     assert answer["departure"] == {"step": 1, "kind": "amplitude"}
+    assert answer["remedy"] == "--scale time=0.001,displacement=-0.001"
+    assert typed(*arguments, *answer["remedy"].split()).returncode == 0
 
 
 def test_bad_input_is_one_line(tmp_path: Path) -> None:

@@ -515,6 +515,48 @@ def test_a_slip_of_sign_and_unit_is_told_with_its_column_and_factor() -> None:
     assert answer.as_dict()["slips"][1] == {"cause": "unit", "column": "contact_pressure", "factor": 1e-3}
 
 
+READINGS = {
+    "millimetres": (lambda v, p: (1e3 * v, p), ["unit"], "--scale displacement=0.001"),
+    "reversed, in kPa": (lambda v, p: (v, -1e-3 * p), ["sign", "unit"], "--scale contact_pressure=-1000"),
+    "swapped": (
+        lambda v, p: (p, v),
+        ["swapped"],
+        "--columns displacement=contact_pressure,contact_pressure=displacement",
+    ),
+    "swapped and reversed": (
+        lambda v, p: (p, -v),
+        ["swapped", "sign"],
+        "--columns displacement=contact_pressure,contact_pressure=displacement --scale displacement=-1",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_a_history_that_is_read_wrongly_is_told_what_to_type(name: str) -> None:
+    change, causes, remedy = READINGS[name]
+    answer = judged(change)
+    assert answer.causes == causes
+    assert answer.remedy == answer.as_dict()["remedy"] == remedy
+    assert ("(mm?)" in answer.sentence) == (name == "millimetres")
+    assert answer.misfit < 1e-6
+
+
+def test_a_remedy_takes_the_place_of_what_was_typed_before() -> None:
+    run = solve(SCENE, "dda")
+    typed = Foreign(
+        run.time,
+        run.contact_pressure,
+        1e3 * run.displacement,
+        names={"time": "t", "displacement": "p"},
+        scale={"time": 1e-3},
+    )
+    answer = compare(SCENE, typed)
+    assert answer.causes == ["swapped", "unit"]
+    assert answer.remedy == (
+        "--columns time=t,displacement=contact_pressure,contact_pressure=p --scale time=0.001,displacement=0.001"
+    )
+
+
 def test_the_page_lists_the_best_schemes_what_is_left_and_which_stages_are_right() -> None:
     ranked = [row(f"m{i}", 0.01 * (i + 1), None, "n", 0.5) for i in range(chapters_compare.LINES + 2)]
     marks = (("at_rest", True), ("period", False), ("load", None))

@@ -276,6 +276,10 @@ def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
     found = sound(steps=200)
     answer = compare(scene(), Foreign(found.time, 1e3 * found.v, sideways=1e3 * found.u))
     assert answer.causes == ["unit"]
+    assert answer.remedy == "--scale horizontal_displacement=0.001,displacement=0.001"
+    swapped = compare(scene(), Foreign(found.time, found.u, sideways=found.v))
+    assert swapped.causes == ["swapped"]
+    assert swapped.remedy == "--columns displacement=horizontal_displacement,horizontal_displacement=displacement"
     assert [(slip.column, slip.factor) for slip in answer.slips] == [
         ("horizontal_displacement", 1e3),
         ("displacement", 1e3),

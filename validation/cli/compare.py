@@ -79,6 +79,8 @@ def _print(answer: Answer) -> None:
     from validation.diagnosis.sentences import cleaned, per_cent, told_lines
 
     echo(answer.sentence)
+    if answer.remedy:
+        echo(f"to read the history so, add {answer.remedy}")
     if answer.causes:
         echo("\ncauses")
         for name in answer.causes:

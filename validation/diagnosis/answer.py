@@ -34,6 +34,7 @@ class Answer:
     pressures: dict[str, Array] = field(default_factory=dict)  # name to pressure at the times of `curves` [Pa]
     slips: tuple[Slip, ...] = ()  # of sign and unit, column by column
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)  # of `values`, 95 %
+    remedy: str = ""  # the options by which the history is read without `slips`, or with its columns in their places
     own_model: bool = True  # whether it is DDA that explains the history, not another model in space or in time
 
     @property
@@ -50,6 +51,7 @@ class Answer:
             "values": self.values,
             "intervals": {name: list(ends) for name, ends in self.intervals.items()},
             "slips": [{"cause": slip.cause, "column": slip.column, "factor": slip.factor} for slip in self.slips],
+            "remedy": self.remedy,
             "unexplained": self.unexplained,
             "nearest": self.nearest,
             "alike": self.alike,

@@ -1,13 +1,16 @@
-"""The catalogue: causes of a departure that people make, with their words and numbers."""
+"""The catalogue of `causes.toml`: causes of a departure that people make, with their words and numbers."""
 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.variant import Rectangle, Variant
@@ -22,126 +25,30 @@ HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 HALF = 0.5  # steps late: a mean of two
 UNEXPLAINED = "unexplained"
+SWAPPED = "swapped"
 DIVERGED = "diverged"
-BENIGN = frozenset({"base-compliance", "own-weight", "geometry-updated"})
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A cause of the catalogue.
+    """A cause of the catalogue; what each of its fields is stands at the head of `causes.toml`."""
 
-    Attributes
-    ----------
-    id
-        By which it is known.
-    words
-        What it is, without its number.
-    sentence
-        The same with the number `value` and what else `words_of` fills in.
-    number
-        Field of a variant that is its number, where that is plain; see `DERIVED`.
-    """
-
-    id: str
     words: str
     sentence: str = "{words}"
     number: str = ""
-
-    @property
-    def benign(self) -> bool:
-        """Whether integrator and contact law are as they should be."""
-        return self.id in BENIGN
-
-
-def _factor(name: str, quantity: str, number: str = "") -> Cause:
-    words = f"{quantity.removeprefix('the ')} wrong by a factor"
-    return Cause(name, words, f"{quantity} is {{value:.5g}} times the scene's", number)
+    further_scene: str = ""
+    of_columns: str = ""
+    benign: bool = False
+    integrator: bool = False
+    output: bool = False
+    usual: bool = False
+    alone: bool = False
+    outside: bool = False
 
 
-CATALOGUE = (
-    Cause("sign", "a sign error: upwards is positive here"),
-    Cause("unit", "a unit error"),
-    Cause(DIVERGED, "the run diverged"),
-    Cause("scheme", "a different scheme", "a different scheme from the scene's {scheme}"),
-    Cause(
-        "gg", "a different velocity discount gg", "gg = {value:.5g} where the scene has {scene.gg:.5g}{square}", "gg"
-    ),
-    Cause(
-        "gg-in-one-formula", "gg is applied in one formula alone", "gg is applied only in the formula for the {formula}"
-    ),
-    Cause("hht", "the scheme of Hilber, Hughes and Taylor", "{words}, alpha_f = {value:.4g}", "spectral"),
-    Cause(
-        "generalised-alpha", "Chung and Hulbert's generalised alpha", "{words}, spectral radius {value:.4g}", "spectral"
-    ),
-    Cause("substeps", "several steps in one", "the program makes {value:g} steps in one of the scene's", "parts"),
-    Cause("exact-in-time", "no scheme: exact in time"),
-    Cause("velocity", "the velocity at the end of a step is d/dt, not that of formula (7)"),
-    Cause("start", "the other initial acceleration", 'the initial acceleration is "{v.start}", not "{scene.start}"'),
-    Cause("time-shift", "the rows are shifted", "the rows are {lateness}", "shift"),
-    Cause("pressure-shift", "the pressure of another step, or a mean of steps", "the pressure is {lateness}", "late"),
-    _factor("pressure-factor", "the reported pressure", "pressure_factor"),
-    Cause("reported-point", "the displacement of another point", "{words}, {value:+.4g} m above the centroid{place}"),
-    _factor("density-factor", "the density", "density"),
-    _factor("young-factor", "Young's modulus", "young"),
-    Cause("poisson", "another Poisson's ratio", "Poisson's ratio is {value:.4g}"),
-    Cause("hypothesis", "plane strain for plane stress, or the reverse"),
-    _factor("side-factor", "the side of the block", "side"),
-    _factor("springs-factor", "the contact stiffness"),
-    _factor("load-factor", "the load, or the displacement,"),
-    Cause(
-        "load-row",
-        "another load in the row of the vertical strain",
-        "the load {lacking} in the row of ey",
-        "strain_load",
-    ),
-    Cause("load-ramp", "the load comes on in time", "the load comes on within {value:.4g} s, not at once", "ramp"),
-    Cause("gravity-factor", "gravity missing, upwards, or wrong by a factor", "gravity {gravity}", "gravity"),
-    Cause(
-        "inertia", "another inertia of the strains", "{words}, {value:.4g} times the rectangle's{twelfth}", "inertia"
-    ),
-    Cause("one-spring", "only one of the two corner springs acts"),
-    Cause("viscous-damping", "viscous damping of the mass", "{words} is there, {value:.4g} 1/s", "viscous"),
-    Cause("stiffness-damping", "viscous damping of the stiffness", "{words} is there, {value:.4g} s", "structural"),
-    Cause(
-        "coupling", "another coupling of strain and springs", "the springs' coupling of v and ey {lacking}", "coupling"
-    ),
-    Cause("stress-not-kept", "stress or springs' force is not carried over", "only the {carried} is carried over"),
-    _factor("friction-factor", "tan(phi) of friction"),
-    Cause("cohesion", "another cohesion", "the cohesion is {value:.4g} Pa"),
-    _factor("slope-factor", "the slope"),
-    _factor("shear-springs-factor", "the shear stiffness of the contact"),
-    _factor("normal-springs-factor", "the normal stiffness of the contact alone"),
-    _factor("strength-factor", "the strength of the contacts"),
-    _factor("gap-factor", "the gap of the contacts"),
-    _factor("velocity-factor", "the starting velocity"),
-    _factor("frequency-factor", "the input's frequency"),
-    _factor("duration-factor", "the input's duration"),
-    _factor("base-springs-factor", "the stiffness of the base"),
-    _factor("base-factor", "the impedance below the base"),
-    Cause("settled", "another start: at rest under the weight, or unstrained"),
-    Cause("no-friction", "no friction"),
-    Cause("no-slip", "contacts that do not slip"),
-    Cause("contact-welded", "welded contacts: their faces move alike"),
-    Cause("contact-opened", "the contact opened", "{words}{open_steps}"),
-    Cause("contact-locked", "the contact carries tension"),
-    Cause(
-        "dead-band",
-        "an open contact closes only beyond a penetration",
-        "{words} of about {value:.3g} m{between}",
-        "band",
-    ),
-    Cause("lagged-friction", "friction lags: at a slipping corner it is that of the step or iteration before"),
-    Cause(
-        "base-compliance", "a slightly compliant base", "a base that adds {per_cent:.2g} % to the static displacement"
-    ),
-    Cause("own-weight", "the block's own weight", "{words} ({value:.3g} x 9.81 m/s2)", "weight"),
-    Cause("geometry-updated", "geometry updated at every step"),
-    Cause(UNEXPLAINED, "no cause in the catalogue explains it"),
-)
-CAUSES = {cause.id: cause for cause in CATALOGUE}
-# what is computed beside the catalogue, so that no cause is named where this would do as well
-OUTSIDE = {"height-factor": _factor("height-factor", "the height of the block alone", "tall")}
-LISTED = CAUSES | OUTSIDE
+TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+LISTED = {name: Cause(**fields) for name, fields in TABLE.items()}
+CAUSES = {name: cause for name, cause in LISTED.items() if not cause.outside}
 DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that are no field of a variant
     "reported-point": lambda c, v: v.point * c.height / 2,
     "poisson": lambda c, v: c.poisson + v.poisson,
@@ -220,7 +127,7 @@ def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str,
             values[name] = DERIVED[name](rectangle, v)
         elif LISTED[name].number:
             values[name] = float(getattr(v, LISTED[name].number))
-    return {name: float(f"{value:.8g}") for name, value in values.items()}
+    return {name: significant(value, 8) for name, value in values.items()}
 
 
 def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -268,7 +175,7 @@ def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
                 inner = middle
             else:
                 outer = middle
-        return float(f"{inner:.4g}")
+        return significant(inner, 4)
 
     return end(1 / WIDEST_BAND), end(WIDEST_BAND)
 

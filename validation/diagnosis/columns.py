@@ -14,7 +14,7 @@ are clearly beyond it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -23,9 +23,9 @@ import numpy as np
 
 from validation.diagnosis import evidence, families, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import ARITHMETIC, last_digits
+from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm, significant
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.numbers import Values, contacts, layers, places
 from validation.diagnosis.one_change import (
@@ -43,6 +43,7 @@ from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Reading, slips, words_of_slips
 from validation.errors import InputError
 from validation.metrics.contact import AGREED, SHIFT
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
@@ -70,14 +71,6 @@ LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
 PARTS = (2, 4)  # steps of a program in one of the scene's
 NO_FRICTION = 1e-9  # of the strength: what slips all the time, which no scene can state
 WOULD_TELL = "the rows up to the first switch with every step, or a run with one contact"
-TELLS = {
-    "gravity-factor": "starting velocities or a load without the weight",
-    "springs-factor": "rigid contacts, or the contact pressure if it is missing",
-    "gap-factor": "touching contacts",
-    "strength-factor": "contacts that do not slip",
-    "friction-factor": "contacts that do not slip",
-    "velocity-factor": "a start from rest",
-}
 
 
 @dataclass(frozen=True)
@@ -98,13 +91,15 @@ def of_scene(scene: Scene) -> Iterator[Candidate]:
     """Yield everything that may be changed in a scene with such a column, one thing at a time."""
     yield from schemes(scene)
     yield from laws(scene)
-    for change in [*of_numbers(scene, STARTS, units=False), of_discount(scene, DISCOUNTS)]:
-        starts = change.starts if change.id == "gg" else (*change.starts, *map(math.log, UNITS))
+    for number in of_numbers(scene, STARTS, units=False):
+        starts = (*number.starts, *map(math.log, UNITS))
+        yield replace(number.giving(_changing(number.changed)), starts=starts)
+    discount = of_discount(scene, DISCOUNTS)
+    yield discount.giving(_changing(discount.changed))
 
-        def changed(u: float, values: Any = change.changed) -> ColumnChange:
-            return ColumnChange(values(u))
 
-        yield replace(change.giving(changed), starts=starts)
+def _changing(values: Callable[[float], Values]) -> Callable[[float], ColumnChange]:
+    return lambda u: ColumnChange(values(u))
 
 
 def schemes(scene: Scene) -> Iterator[Candidate]:
@@ -112,14 +107,12 @@ def schemes(scene: Scene) -> Iterator[Candidate]:
     t = scene.time
     for alpha, delta in dict.fromkeys([(t.alpha, t.delta), *NAMED.values()]):
         for start in dict.fromkeys([t.start, "zero", "consistent"]):
-            if (alpha, delta, start) == (t.alpha, t.delta, t.start):
-                continue
             values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
-            if (alpha, delta) == (t.alpha, t.delta):
+            if (alpha, delta) != (t.alpha, t.delta):
+                also = "" if start == t.start else f', the initial acceleration is "{start}"'
+                yield _plain("scheme", f"{sentences.scheme_words(alpha, delta, t.discount)}{also}", values)
+            elif start != t.start:
                 yield _plain("start", f'the initial acceleration is "{start}", not "{t.start}"', values)
-                continue
-            also = "" if start == t.start else f', the initial acceleration is "{start}"'
-            yield _plain("scheme", f"{sentences.scheme_words(alpha, delta, t.discount)}{also}", values)
     for parts in PARTS:
         words = f"the program makes {parts} steps in one of the scene's"
         yield _plain("substeps", words, {"time.step": t.step / parts}, float(parts))
@@ -127,16 +120,14 @@ def schemes(scene: Scene) -> Iterator[Candidate]:
 
 def laws(scene: Scene) -> Iterator[Candidate]:
     """Yield what a program may have forgotten, reversed, or put in place of the contacts' law."""
-    column = scene.column
-    if column is None:
-        return
+    column = column_of(scene)
     stated = scene.definition()
-    joints = stated["column"].get("joint", [])
+    has_velocity = any(layer.velocity for layer in column.layer)
     if column.gravity and column.law == "unilateral":
         unloaded: Values = {"column.gravity": 0.0}
         if column.settled:
             unloaded["column.settled"] = False
-        if scene.stated_input is not None or any(layer.velocity for layer in column.layer):
+        if scene.stated_input is not None or has_velocity:
             yield _plain("gravity-factor", "the weight is forgotten", unloaded, 0.0)
         if column.settled:
             words = "the column starts unstrained, its weight put on at once"
@@ -146,38 +137,33 @@ def laws(scene: Scene) -> Iterator[Candidate]:
             yield _plain("settled", words, {"column.settled": True})
     for place, where in places(scene, "gap").items():
         yield _plain("gap-factor", f"the gap of {where} is forgotten", contacts("gap", place)(scene, 0.0), 0.0)
-    bonded = ColumnChange(bonded=True)
     if column.law == "unilateral":
-        yield CandidateChange("contact-locked", lambda _: "the contacts carry tension", _no_number, lambda _: bonded)
+        yield _plain("contact-locked", "the contacts carry tension", {}, bonded=True)
     elif any(math.isfinite(contact.strength) for contact in column.contacts):
-        yield CandidateChange("no-slip", lambda _: "the contacts do not slip", _no_number, lambda _: bonded)
+        yield _plain("no-slip", "the contacts do not slip", {}, bonded=True)
         free = contacts("strength")(scene, NO_FRICTION)
         free |= contacts("friction")(scene.with_values(free), NO_FRICTION)
         yield _plain("no-friction", "there is no friction", free)
     if any(math.isfinite(contact.stiffness) for contact in column.contacts):
+        joints = stated["column"].get("joint", [])
         rigid: Values = {"column.joint": [joint | {"stiffness": math.inf} for joint in joints]}
         if column.stiffness is not None:
             rigid["column.stiffness"] = math.inf
-        words = "the contacts are welded: their faces move alike"
-        yield CandidateChange("contact-welded", lambda _: words, _no_number, lambda _: ColumnChange(rigid, True))
+        yield _plain("contact-welded", "the contacts are welded: their faces move alike", rigid, bonded=True)
     if scene.stated_input is not None:
-        sizes = {key: stated["input"][key] for key in ("velocity", "pressure") if stated["input"].get(key)}
-        if sizes:
-            reversed_input = {f"input.{key}": -size for key, size in sizes.items()}
+        sizes = {key: -stated["input"].get(key, 0.0) for key in ("velocity", "pressure")}
+        reversed_input: Values = {f"input.{key}": size for key, size in sizes.items() if size}
+        if reversed_input:
             yield _plain("load-factor", "the input acts the other way", reversed_input, -1.0)
-    if any(layer.velocity for layer in column.layer):
-        velocity = layers("velocity")
-        yield _plain("velocity-factor", "the starting velocity is reversed", velocity(scene, -1.0), -1.0)
-        yield _plain("velocity-factor", "the starting velocity is forgotten", velocity(scene, 0.0), 0.0)
+    if has_velocity:
+        for words, factor in (("reversed", -1.0), ("forgotten", 0.0)):
+            changed = layers("velocity")(scene, factor)
+            yield _plain("velocity-factor", f"the starting velocity is {words}", changed, factor)
 
 
-def _plain(name: str, words: str, values: Values, number: float = math.nan) -> Candidate:
+def _plain(name: str, words: str, values: Values, number: float = math.nan, bonded: bool = False) -> Candidate:
     """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
-    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: ColumnChange(values))
-
-
-def _no_number(_: float) -> float:
-    return math.nan
+    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: ColumnChange(values, bonded))
 
 
 # ---- runs -----------------------------------------------------------------------------------------------------------
@@ -248,6 +234,12 @@ class ColumnHistory:
         return apart
 
     @cached_property
+    def time(self) -> Array:
+        """Times of the rows [s]."""
+        stepping = self.reading.stepping
+        return np.asarray(np.cumsum(stepping.steps)[stepping.rows])
+
+    @cached_property
     def recorded(self) -> Array:
         """The columns of the file, (columns, rows)."""
         columns = [self.reading.displacement]
@@ -260,7 +252,7 @@ class ColumnHistory:
         roundings = (self.reading.rounding, self.reading.pressure_rounding)
         units = []
         for values, run, rounding in zip(self.recorded, own, roundings, strict=False):
-            size = max(float(np.max(np.abs(values))), float(np.max(np.abs(run))))
+            size = max(largest(values), largest(run))
             unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
             units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
         return np.array(units)
@@ -299,7 +291,7 @@ class ColumnExplanation:
     def value(self) -> float | None:
         """The number of the cause, None where it has none."""
         number = self.candidate.change.value(self.candidate.u)
-        return None if math.isnan(number) else float(f"{number:.6g}")
+        return None if math.isnan(number) else significant(number, 6)
 
     @property
     def change(self) -> ColumnChange:
@@ -313,7 +305,8 @@ class ColumnExplanation:
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as one of several that give the same rows."""
-        further = TELLS.get(self.id) or families.TELLS.get(self.id, WOULD_TELL)
+        cause = CAUSES[self.id]
+        further = cause.of_columns or cause.further_scene or WOULD_TELL
         values = {} if self.value is None else {self.id: self.value}
         return {"causes": [self.id], "values": values, "further_scene": further}
 
@@ -397,7 +390,7 @@ class ColumnSearch:
         candidates = [Fitted(change, 0.0, math.inf) for change in changes]
         groups = self._groups_of_rows()
         for number, rows in enumerate(groups):
-            own = float(np.linalg.norm(self.over(self.own[:, :rows], rows)))
+            own = norm(self.over(self.own[:, :rows], rows))
             candidates = [self._fitted(candidate, rows, number) for candidate in candidates]
             if number + 1 >= PATIENCE:
                 bar = max(NEAR * own, self._near(rows))
@@ -424,7 +417,7 @@ class ColumnSearch:
             for power in POWERS:
                 u = power * explanations[0].candidate.u
                 shares = self.over(self.history.run(change.changed(u), rows), rows)
-                if float(np.max(np.abs(shares))) <= APART:
+                if largest(shares) <= APART:
                     further.append(self._judged(Fitted(change, u, 0.0)))
         return further
 
@@ -467,9 +460,7 @@ class ColumnSearch:
         spread = self.history.spread(change, columns)
         rows = int(np.count_nonzero(np.all(np.isfinite(spread), axis=0)))
         shares = self.over(columns[:, :rows], rows, spread[:, :rows])
-        return ColumnExplanation(
-            candidate, float(np.max(np.abs(shares), initial=0.0)), float(np.linalg.norm(shares)), rows
-        )
+        return ColumnExplanation(candidate, largest(shares), norm(shares), rows)
 
 
 # ---- the verdict ----------------------------------------------------------------------------------------------------
@@ -555,8 +546,7 @@ def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[Colu
 
 def verdict_of(search: ColumnSearch) -> ColumnVerdict:
     """Return what explains a history that is not the scene's own."""
-    departing = search.departing
-    if len(departing) < LEAST_ROWS or search.own_over.max() <= APART:
+    if len(search.departing) < LEAST_ROWS or search.own_over.max() <= APART:
         return ColumnVerdict(search)
     ranked = search.explanations()
     alike: list[ColumnExplanation] = []
@@ -572,8 +562,7 @@ def _is_same(one: ColumnExplanation, other: ColumnExplanation) -> bool:
     if one.id != other.id:
         return False
     if one.id == "scheme":
-        pairs = [[each.values[key] for key in ("time.alpha", "time.delta")] for each in (one.change, other.change)]
-        return pairs[0] == pairs[1]
+        return all(one.change.values[key] == other.change.values[key] for key in ("time.alpha", "time.delta"))
     if one.value is None or other.value is None or other.candidate.change.starts:
         return False
     return abs(one.value - other.value) <= SAME_NUMBER * max(1.0, abs(other.value))
@@ -590,13 +579,12 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     ids = [*reading.slips, *([cause.id] if cause else [])]
     explained = verdict.is_scene or cause is not None
     best = cause or (verdict.ranked[0] if verdict.ranked else None)
-    time = np.cumsum(reading.stepping.steps)[reading.stepping.rows]
-    columns = search.own
-    if best is not None:
-        other = search.history.run(best.change, len(time))
-        columns = search.own if other is None else other
+    time = search.history.time
+    columns = None if best is None else search.history.run(best.change, len(time))
+    if columns is None:
+        columns = search.own
     own_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.own, columns))
-    left = 0.0 if explained else float(f"{min(misfit / own_misfit, 1.0) if own_misfit else 1.0:.4g}")
+    left = 0.0 if explained else significant(min(misfit / own_misfit, 1.0) if own_misfit else 1.0, 4)
     departure = None if not ids and explained else _departure(search)
     t = scene.time
     scheme: dict[str, float | None] = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount}
@@ -668,13 +656,10 @@ def _departure(search: ColumnSearch) -> Departure | None:
 
 def _first_rows(search: ColumnSearch) -> str:
     """Return which rows agree, and what would tell."""
-    departing = search.departing
-    reading = search.history.reading
-    row = int(departing[0]) if len(departing) else search.rows
+    row = search.departing[0] if len(search.departing) else search.rows
     agree = "no row agrees"
     if row:
-        time = float(np.cumsum(reading.stepping.steps)[reading.stepping.rows[row - 1]])
-        agree = f"the first {row} rows agree, up to t = {time:.6g} s"
+        agree = f"the first {row} rows agree, up to t = {search.history.time[row - 1]:.6g} s"
     return f"{agree}; what would tell: {WOULD_TELL}"
 
 
@@ -692,7 +677,7 @@ def _stages(search: ColumnSearch) -> list[Stage]:
         first = float(beyond[0] + 1) if len(beyond) else None
         stages.append(Stage(name, not len(beyond), of_column + what, {"misfit": misfit, "first_row": first}))
     if search.rows < search.own.shape[1]:
-        time = float(np.cumsum(reading.stepping.steps)[reading.stepping.rows[max(search.rows - 1, 0)]])
+        time = float(search.history.time[max(search.rows - 1, 0)])
         words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
         stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))
     return stages

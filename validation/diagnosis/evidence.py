@@ -14,11 +14,13 @@ from typing import Any, Literal
 import numpy as np
 
 from validation.diagnosis.causes import all_benign
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import Fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
-from validation.metrics.poles import Swing, swing
+from validation.metrics.poles import swing
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
@@ -63,8 +65,7 @@ def departure(
         return None
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")
-    recorded = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
-    columns = list(zip(recorded, expected_columns, target.bars, strict=False))
+    columns = list(zip(target.recorded, expected_columns, target.bars, strict=False))
     departing = [c for c in columns if not c[2].holds(c[0] - c[1][target.rows])]
     dated = [
         measured(expected_values[target.rows], values, target.rows, bar.spread)
@@ -78,7 +79,7 @@ def departure(
 
 def unbounded(expected_values: Array, recorded: Array, rows: np.ndarray) -> Departure:
     """Return the first step at which a history without bounds has left the expected one."""
-    away = np.abs(recorded - expected_values) > DEPARTED * float(np.max(np.abs(expected_values)))
+    away = np.abs(recorded - expected_values) > DEPARTED * largest(expected_values)
     return Departure(int(rows[int(np.argmax(away))]) + 1, "amplitude")
 
 
@@ -90,7 +91,7 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
     """
     with np.errstate(all="ignore"):
         expected_values = np.nan_to_num(expected_values, posinf=1e300, neginf=-1e300)
-        size = float(np.max(np.abs(recorded))) or 1.0
+        size = largest(recorded) or 1.0
         r = np.clip(expected_values, -1e3 * size, 1e3 * size)
     d = recorded - r
     tolerance = max(DEPARTED * size, NOISE * noise)
@@ -134,20 +135,13 @@ def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> 
 
 def growth(values: Array, expected: Array) -> float | None:
     """Return the factor by which a diverging history grows in a step, None if it is bounded."""
-    size, expected_size = np.abs(values), np.abs(np.nan_to_num(expected, posinf=1e300, neginf=-1e300))
-    thirds = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(size, 3)]
-    theirs = [float(np.max(part)) if len(part) else 0.0 for part in np.array_split(expected_size, 3)]
-    if thirds[2] > BEYOND * max(theirs):
-        return _factor(thirds, len(values))
-    grows = thirds[2] > GROWTH * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
-    if not (grows and thirds[2] > thirds[1] and thirds[2] > GROWTH * max(theirs)):
-        return None
-    return _factor(thirds, len(values))
-
-
-def _factor(thirds: Sequence[float], rows: int) -> float:
-    """Return the growth in a row from the middle third to the last."""
-    return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (rows / 3))
+    bounded = np.nan_to_num(expected, posinf=1e300, neginf=-1e300)
+    thirds, theirs = ([largest(part) for part in np.array_split(each, 3)] for each in (values, bounded))
+    if thirds[2] <= BEYOND * max(theirs):
+        grows = thirds[2] > GROWTH * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
+        if not (grows and thirds[2] > thirds[1] and thirds[2] > GROWTH * max(theirs)):
+            return None
+    return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (len(values) / 3))
 
 
 def stages(
@@ -169,37 +163,25 @@ def stages(
         Growth in a step, None if bounded.
     """
     read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
+    bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
     measured = [
         Stage("reading", not slips, read + (f"; {note}" if note else ""), {}),
-        Stage(
-            "bounded",
-            factor is None,
-            "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step",
-            {"growth": factor},
-        ),
+        Stage("bounded", factor is None, bounded, {"growth": factor}),
     ]
     if factor is not None:
         return measured
-    measured += _columns(target, expected)
-    return measured + _motion(target, expected[0])
-
-
-def _columns(target: Target, expected: Sequence[Array]) -> list[Stage]:
-    """Return how far each column is from the scene's own, by itself."""
-    recorded = [target.displacement] if target.pressure is None else [target.displacement, target.pressure]
-    measured = []
     for name, values, expected_values, bar in zip(
-        (DISPLACEMENT, PRESSURE), recorded, expected, target.bars, strict=False
+        (DISPLACEMENT, PRESSURE), target.recorded, expected, target.bars, strict=False
     ):
         with np.errstate(all="ignore"):
-            misfit = min(float(np.linalg.norm(values - expected_values)) / (bar.norm or 1.0), 1e6)
+            misfit = min(norm(values - expected_values) / (bar.norm or 1.0), 1e6)
         agrees = bar.holds(values - expected_values)
-        allowed = bar.allowed
-        words = f"the {name.replace('_', ' ')} alone " + (
-            "is the scene's" if agrees else f"is {100 * misfit:.3g} % off (digits and noise: {100 * allowed:.1g} %)"
-        )
-        measured.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": allowed}))
-    return measured
+        words = "is the scene's"
+        if not agrees:
+            words = f"is {100 * misfit:.3g} % off (digits and noise: {100 * bar.allowed:.1g} %)"
+        words = f"the {name.replace('_', ' ')} alone {words}"
+        measured.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": bar.allowed}))
+    return measured + _motion(target, expected[0])
 
 
 def _motion(target: Target, expected: Array) -> list[Stage]:
@@ -208,23 +190,17 @@ def _motion(target: Target, expected: Array) -> list[Stage]:
     if np.ptp(target.steps) > 1e-9 * target.steps[0] or len(set(steps[1:].tolist())) > 1:
         return [Stage(name, None, "not told by unequal rows", {}) for name in ("statics", "frequency", "damping")]
     step = float(target.steps[0]) * float(steps[-1])
-    theirs, ours = swing(target.displacement, step), swing(expected, step)
+    theirs = swing(target.displacement, step)
+    ours = swing(expected, step)
     close = target.bars[0].allowed
-    quantities = (
+    stages = [_beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, CLOSE_STATIC))]
+    for name, verb, unit, least in (
         ("frequency", "swings at", "rad/s", CLOSE_FREQUENCY),
         ("damping", "is damped by", "of critical", CLOSE_DAMPING),
-    )
-    return [
-        _beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, CLOSE_STATIC)),
-        *(
-            _beside(name, verb, unit, _part(theirs, name), _part(ours, name), max(close, least))
-            for name, verb, unit, least in quantities
-        ),
-    ]
-
-
-def _part(measured: Swing, name: str) -> float | None:
-    return None if measured.pole is None else float(getattr(measured.pole, name))
+    ):
+        file, scene = (None if each.pole is None else float(getattr(each.pole, name)) for each in (theirs, ours))
+        stages.append(_beside(name, verb, unit, file, scene, max(close, least)))
+    return stages
 
 
 def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from validation.diagnosis.causes import causes_of, values_of
+from validation.diagnosis.causes import LISTED, causes_of, values_of
+from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.readings import Slip
 from validation.diagnosis.search import Verdict
@@ -15,22 +16,7 @@ from validation.diagnosis.variant import Variant
 SAME_FACTOR = 1e-5  # relative
 SIDE = "load.gravity = 9.81: the weight is proportional to the area of the block"
 BESIDE_GRAVITY = "load.pressure beside the gravity: a reversed sign turns both, gravity upwards its own part"
-TELLS = {
-    "gg": "another time step: gg acts per step, a drag per second",
-    "scheme": "another time step",
-    "start": "another time step",
-    "springs-factor": "another contact stiffness, or the contact pressure if it is missing",
-    "base-compliance": "another contact stiffness: a base adds as many metres, springs by a factor as large a share",
-    "stiffness-damping": "another time step: the damping is per second, that of a scheme per step",
-    "width-factor": "load.eccentricity, or a printed mass: the width of the block and of its base",
-    "young-factor": "another contact stiffness: on stiff springs only the block deforms",
-    "load-factor": "the contact pressure if it is missing; load.gravity = 9.81 without pressure",
-    "density-factor": "load.gravity = 9.81 without pressure: density then acts on the static displacement",
-    "side-factor": "the contact pressure if it is missing; load.gravity = 9.81",
-    "reported-point": "stiff springs, on which the points of the block move most differently",
-    "poisson": "another Poisson's ratio in both codes",
-    "own-weight": "load.pressure = 0 with load.gravity = 9.81",
-}
+WIDER = "load.eccentricity, or a printed mass: the width of the block and of its base"
 
 
 def relatives(
@@ -43,28 +29,28 @@ def relatives(
     alike: list[dict[str, Any]] = []
     density = values.get("density-factor")
     if list(ids) == ["density-factor"] and density and not target.column.gravity:
-        numbers = {"step-factor": float(f"{1 / math.sqrt(density):.6g}")}
-        alike.append(_relative(["step-factor"], numbers, TELLS["density-factor"]))
+        numbers = {"step-factor": significant(1 / math.sqrt(density), 6)}
+        alike.append(_relative(["step-factor"], numbers, LISTED["density-factor"].further_scene))
     both = values.get("young-factor"), values.get("springs-factor")
     pair = sorted(ids) == ["springs-factor", "young-factor"]
     if pair and both[0] and both[1] and abs(both[0] / both[1] - 1) < SAME_FACTOR:
-        less, more = float(f"{1 / both[0]:.6g}"), float(f"{both[0]:.6g}")
+        less, more = significant(1 / both[0], 6), significant(both[0], 6)
         alike.append(_relative(["density-factor", "side-factor"], {"density-factor": more, "side-factor": less}, SIDE))
         if target.pressure is None:
             numbers = {"density-factor": less, "load-factor": less}
             alike.append(_relative(list(numbers), numbers, "the contact pressure: it shows the load"))
     if list(ids) == ["side-factor"] and target.pressure is None:
         side = values["side-factor"]
-        numbers = {"density-factor": float(f"{side**2:.6g}"), "load-factor": side}
-        alike.append(_relative(list(numbers), numbers, TELLS["side-factor"]))
+        numbers = {"density-factor": significant(side**2, 6), "load-factor": side}
+        alike.append(_relative(list(numbers), numbers, LISTED["side-factor"].further_scene))
     if list(ids) == ["stiffness-damping"]:
-        alike.append(_relative(["scheme"], {}, TELLS["stiffness-damping"]))
+        alike.append(_relative(["scheme"], {}, LISTED["stiffness-damping"].further_scene))
     if "base-compliance" in ids and variant.base == 0:
         alike.append(_springs_for_base(ids, values, variant))
     if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:
         # per unit of width, pressure, mass and stiffness of the block stay; the two springs share a wider base
-        wider = _six(math.exp(variant.softness))
-        alike.append(_relative(["width-factor"], {"width-factor": wider}, TELLS["width-factor"]))
+        wider = significant(math.exp(variant.softness), 6)
+        alike.append(_relative(["width-factor"], {"width-factor": wider}, WIDER))
     return alike
 
 
@@ -82,12 +68,8 @@ def _springs_for_base(ids: Sequence[str], values: Mapping[str, float], variant: 
     """Return the springs that give the rows of a base without mass: it stands in series with them."""
     others = [name for name in ids if name != "base-compliance"]
     numbers = {name: values[name] for name in others if name in values}
-    factor = _six(math.exp(-variant.softness))
-    return _relative([*others, "springs-factor"], numbers | {"springs-factor": factor}, TELLS["base-compliance"])
-
-
-def _six(value: float) -> float:
-    return float(f"{value:.6g}")
+    numbers["springs-factor"] = significant(math.exp(-variant.softness), 6)
+    return _relative([*others, "springs-factor"], numbers, LISTED["base-compliance"].further_scene)
 
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
@@ -96,7 +78,8 @@ def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
     for explanation in ([verdict.best] if verdict.alike else []) + list(verdict.alike):
         v = explanation.fit.variant
         ids = causes_of(target.column, explanation.ids, v, verdict.own.variant)
-        scene = next((TELLS[name] for name in ids if name in TELLS), "a scene with less damping, over more periods")
+        further = (LISTED[name].further_scene for name in ids)
+        scene = next(filter(None, further), "a scene with less damping, over more periods")
         equals.append(_relative(ids, values_of(target.column, ids, v), scene))
     return equals
 

@@ -11,22 +11,32 @@ import numpy as np
 
 from validation.diagnosis import causes, evidence, families, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, DIVERGED, UNEXPLAINED, all_benign
+from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Stage
+from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.forces import answer
+from validation.diagnosis.forces import answer as of_friction
+from validation.diagnosis.forces.answer import is_scene
 from validation.diagnosis.forces.judge import judge
 from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
-from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, readings_of, slips, words_of_slips
+from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
+from validation.diagnosis.readings import (
+    Reading,
+    exchanged,
+    has_swapped_columns,
+    readings_of,
+    remedy_of,
+    slips,
+    words_of_slips,
+)
 from validation.diagnosis.search import Verdict, beside, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.runs.history import Array
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -44,8 +54,20 @@ class Case:
     scene: Scene
     foreign: Foreign
     reading: Reading
-    target: Target
+    column: Rectangle
     own: Variant
+
+    @cached_property
+    def target(self) -> Target:
+        """What is to be explained."""
+        r = self.reading
+        columns = r.displacement, r.pressure, r.rounding, r.pressure_rounding
+        return Target(self.column, r.stepping.steps, r.stepping.rows, *columns)
+
+    @property
+    def time(self) -> Array:
+        """Times of the recorded rows [s]."""
+        return np.asarray(np.cumsum(self.target.steps)[self.target.rows])
 
     @cached_property
     def scene_run(self) -> Histories:
@@ -57,6 +79,11 @@ class Case:
         """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
         rows = self.target.rows
         return self.scene_run.displacement[rows, 0], self.scene_run.pressure[rows, 0]
+
+    @property
+    def rivals(self) -> tuple[str, ...]:
+        """Names of the other solvers of the scene."""
+        return RIVALS if self.scene.block.poisson == 0 else ("fem",)
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -72,6 +99,26 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
+    pair = (DISPLACEMENT, PRESSURE)
+    if has_swapped_columns(scene, foreign):
+        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
+    else:
+        answer = _judged(scene, foreign, tolerance)
+        pair = (DISPLACEMENT, SIDEWAYS)
+        is_frictional = features.FRICTION in features.of(scene)
+        if not (is_frictional and UNEXPLAINED in answer.causes and is_scene(scene, exchanged(foreign, *pair))):
+            return replace(answer, remedy=remedy_of(foreign, answer.slips))
+        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
+    one, other = (name.replace("_", " ") for name in pair)
+    foreign = exchanged(foreign, *pair)
+    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
+    remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
+    sentence = f"The {one} is in the column of the {other}, and the reverse. Read so: {answer.sentence}"
+    causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
+    return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
+
+
+def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
     if scene.column is not None:
@@ -96,25 +143,30 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         return _without_rectangle(scene, foreign)
     scene_variant = own_variant(scene)
     read = readings_of(scene, column, scene_variant, foreign)
-    likeliest = _case(scene, foreign, read[0], column, scene_variant)
-    factor = _growth(likeliest)
-    if factor is not None:
-        return _diverged(likeliest, factor)
-    case, verdict = _best(scene, foreign, read, column, scene_variant)
+    cases = [Case(scene, foreign, reading, column, scene_variant) for reading in read]
+    pairs = zip((read[0].displacement, read[0].pressure), cases[0].expected, strict=True)
+    for values, expected in pairs:
+        factor = None if values is None else evidence.growth(values, expected)
+        if factor is not None:
+            return _diverged(cases[0], factor)
+    case, verdict = _best(cases)
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
     theirs: RivalVerdict | None = None
-    if not (verdict.explained or verdict.reached) and scene.contact.law == "locked":
-        names = RIVALS if scene.block.poisson == 0 else ("fem",)
-        theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, names)
+    if not verdict.explains and scene.contact.law == "locked":
+        theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
         verdict = paired(case.target, scene_variant, verdict)
-    elif not (verdict.explained or verdict.reached):
+    elif not verdict.explains:
         verdict = beside(case.target, scene_variant, verdict)
-    linear = scene.contact.law == "locked"
-    return _answer(case, verdict, _others(scene, case, verdict, theirs.ranked if theirs else ()) if linear else [])
+    others: list[Rival] = []
+    if scene.contact.law == "locked" and np.ptp(case.target.steps) == 0:
+        v = verdict.best.fit.variant
+        at_hand = theirs.ranked if theirs else ()
+        others = rivals(case.reading.scene_of(scene), case.rivals, case.reading, [(v.alpha, v.delta)], at_hand)
+    return _answer(case, verdict, others)
 
 
 def _beyond(scene: Scene) -> list[str]:
@@ -126,52 +178,21 @@ def _beyond(scene: Scene) -> list[str]:
     return numbers or others or ["another contact.band"]
 
 
-# ---- reading --------------------------------------------------------------------------------------------------------
-
-
-def _case(scene: Scene, foreign: Foreign, reading: Reading, column: Rectangle, scene_variant: Variant) -> Case:
-    s = reading.stepping
-    columns = reading.displacement, reading.pressure, reading.rounding, reading.pressure_rounding
-    return Case(scene, foreign, reading, Target(column, s.steps, s.rows, *columns), scene_variant)
-
-
-def _growth(case: Case) -> float | None:
-    """Return the growth in a step of the displacement or the pressure, None if both are bounded."""
-    pairs = zip((case.reading.displacement, case.reading.pressure), case.expected, strict=True)
-    factors = [evidence.growth(values, expected) for values, expected in pairs if values is not None]
-    return next((factor for factor in factors if factor is not None), None)
-
-
-def _best(
-    scene: Scene, foreign: Foreign, read: Sequence[Reading], column: Rectangle, scene_variant: Variant
-) -> tuple[Case, Verdict]:
+def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
-    judged_readings: list[tuple[Case, Verdict]] = []
-    fewest = min(len(reading.corrected) for reading in read)
-    for reading in read:
-        case = _case(scene, foreign, reading, column, scene_variant)
-        verdict = simple(case.target, scene_variant)
-        judged_readings.append((case, verdict))
-        least = len(reading.corrected) == fewest
-        reached = verdict.reached or verdict.explained
+    fewest = min(len(case.reading.corrected) for case in cases)
+    verdicts: list[tuple[Case, Verdict]] = []
+    for case in cases:
+        verdict = simple(case.target, case.own)
+        verdicts.append((case, verdict))
         # a slip of sign or unit beside another cause is less likely than that of a datum alone
-        if reached and (least or verdict.same):
+        if verdict.explains and (len(case.reading.corrected) == fewest or verdict.same):
             return case, verdict
-        if verdict.best.fit.misfit < PLAIN and any(
-            len(other.reading.corrected) == fewest for other, _ in judged_readings
-        ):
+        is_fewest_judged = any(len(other.reading.corrected) == fewest for other, _ in verdicts)
+        if verdict.best.fit.misfit < PLAIN and is_fewest_judged:
             break
-    sound = [pair for pair in judged_readings if pair[1].reached or pair[1].explained]
-    return sound[0] if sound else min(judged_readings, key=lambda pair: pair[1].best.fit.misfit)
-
-
-def _others(scene: Scene, case: Case, verdict: Verdict, at_hand: Sequence[Rival]) -> list[Rival]:
-    """Return the other solvers' best answers, for the ranking."""
-    v, steps = verdict.best.fit.variant, case.reading.stepping.steps
-    names: tuple[str, ...] = RIVALS if scene.block.poisson == 0 else ("fem",)
-    if np.ptp(steps) > 0:
-        return []
-    return rivals(case.reading.scene_of(scene), names, case.reading, [(v.alpha, v.delta)], at_hand)
+    sound = [pair for pair in verdicts if pair[1].explains]
+    return sound[0] if sound else min(verdicts, key=lambda pair: pair[1].best.fit.misfit)
 
 
 # ---- answers --------------------------------------------------------------------------------------------------------
@@ -190,7 +211,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         target.column, verdict.best.ids, best_fit.variant, scene_variant, error
     )
     either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
-    unexplained = 0.0 if verdict.explained else float(f"{verdict.left:.4g}")
+    unexplained = 0.0 if verdict.explained else significant(verdict.left, 4)
     if either:
         verdict = replace(verdict, explained=False)
     ids = all_causes if verdict.explained else [UNEXPLAINED]
@@ -229,7 +250,6 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         sentence = sentences.not_explained(subject, nearest, unexplained, stages)
     else:
         sentence = sentences.sentence(subject)
-    time = np.cumsum(target.steps)[target.rows]
     best = histories(target.column, [best_fit.variant], target.steps)
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
@@ -244,7 +264,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         told=intervals(refitted) if verdict.explained else {},
         untold=untold(refitted) if verdict.explained else [],
         misfit=best_fit.misfit,
-        curves={name: (time, curve) for name, curve in curves.items()},
+        curves={name: (case.time, curve) for name, curve in curves.items()},
         values=values,
         unexplained=unexplained,
         nearest=nearest,
@@ -268,7 +288,6 @@ def _diverged(case: Case, factor: float) -> Answer:
     target, stages = case.target, _stages(case, factor)
     expected = case.expected[0]
     first_departure = evidence.unbounded(expected, target.displacement, target.rows)
-    time = np.cumsum(target.steps)[target.rows]
     v = case.own
     return Answer(
         scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
@@ -276,8 +295,8 @@ def _diverged(case: Case, factor: float) -> Answer:
         causes=[DIVERGED],
         sentence=sentences.diverged(first_departure, factor),
         notes=_notes(case.foreign, case.reading),
-        curves={"the file": (time, target.displacement), DDA: (time, expected)},
-        values={DIVERGED: float(f"{factor:.6g}")},
+        curves={"the file": (case.time, target.displacement), DDA: (case.time, expected)},
+        values={DIVERGED: significant(factor, 6)},
         evidence=tuple(stages),
     )
 
@@ -334,20 +353,20 @@ def _answer_of_rival(
 
 def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
-    read = answer.read(scene, foreign)
+    read = of_friction.read(scene, foreign)
     result = judge(scene, read.place, read.step, read.rounding)
-    ids = answer.ids_of(result, read)
+    ids = of_friction.ids_of(result, read)
     t = scene.time
-    unexplained = float(f"{min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])):.4g}")
+    unexplained = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
     near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
     softer = result.values.get("base-compliance", 0.0)
     return Answer(
         scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
         ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
-        departure=answer.departure_of(result, ids),
+        departure=of_friction.departure_of(result, ids),
         causes=ids,
         opened=result.opened if result.explained else None,
-        sentence=answer.sentence(scene, result, ids, read.corrected),
+        sentence=of_friction.sentence(scene, result, ids, read.corrected),
         notes=(*foreign.notes, *read.notes),
         misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
@@ -355,7 +374,7 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
         unexplained=0.0 if result.explained else unexplained,
         nearest=None if result.explained else near,
         alike=[_alone(one) for one in result.alike],
-        evidence=tuple(answer.stages(result, read)),
+        evidence=tuple(of_friction.stages(result, read)),
         slips=read.corrected,
     )
 
@@ -363,8 +382,10 @@ def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
 def _alone(change: OneChange) -> dict[str, Any]:
     """Return one of several changes that give the same rows, as plain data."""
     values = {} if change.value is None else {change.id: change.value}
-    scene = families.TELLS["springs-factor"] if "springs" in change.id else "another slope or coefficient of friction"
-    return {"causes": [change.id], "values": values, "further_scene": scene}
+    further = "another slope or coefficient of friction"
+    if "springs" in change.id:
+        further = CAUSES["springs-factor"].further_scene
+    return {"causes": [change.id], "values": values, "further_scene": further}
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:

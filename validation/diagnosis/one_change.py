@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
-import numpy as np
-
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.numbers import Values, numbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
@@ -127,13 +126,13 @@ def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted
     One without a number leaves what it leaves, one whose number has no effect infinitely much.
     """
     if not change.starts:
-        return Fitted(change, 0.0, float(np.linalg.norm(residual(0.0))))
+        return Fitted(change, 0.0, norm(residual(0.0)))
     residuals = {u: residual(u) for u in change.starts}
-    start = min(residuals, key=lambda u: float(np.linalg.norm(residuals[u])))
+    start = min(residuals, key=lambda u: norm(residuals[u]))
     there = residuals[start]
     slope = (residual(start + change.nudge) - there) / change.nudge
     size = float(slope @ slope)
-    linear = float(np.linalg.norm(there - slope * (slope @ there) / size)) if size > 0 else math.inf
+    linear = norm(there - slope * (slope @ there) / size) if size > 0 else math.inf
     return Fitted(change, start, linear)
 
 
@@ -166,11 +165,10 @@ def fitted(
         Remainder beyond which a fit is given up whose first rounds have not halved it, nor would its slope.
     """
     if not candidate.change.starts:
-        return replace(candidate, remainder=float(np.linalg.norm(residual(0.0))))
+        return replace(candidate, remainder=norm(residual(0.0)))
     first = _least_squares(residual, candidate, min(rounds, FIRST_ROUNDS), nudge, settled)
     if rounds <= FIRST_ROUNDS or (
-        min(first.remainder, candidate.remainder) > hopeless
-        and first.remainder > HALVED * float(np.linalg.norm(residual(candidate.u)))
+        min(first.remainder, candidate.remainder) > hopeless and first.remainder > HALVED * norm(residual(candidate.u))
     ):
         return first
     return _least_squares(residual, first, rounds - FIRST_ROUNDS, nudge, settled)
@@ -190,7 +188,7 @@ def _least_squares(
         xtol=settled,
         ftol=settled,
     )
-    return replace(candidate, u=float(solution.x[0]), remainder=float(np.linalg.norm(solution.fun)))
+    return replace(candidate, u=float(solution.x[0]), remainder=norm(solution.fun))
 
 
 # ---- the decision ---------------------------------------------------------------------------------------------------

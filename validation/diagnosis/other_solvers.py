@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
+from validation.diagnosis.fits.bar import norm, significant
 from validation.diagnosis.fits.fit import NAMED, fit, named
 from validation.diagnosis.fits.target import Bar, Target, joined
 from validation.diagnosis.numbers import Values
@@ -195,7 +196,7 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
         r for r in ranked if r.model == model and (r.alpha, r.delta) in ((t.alpha, t.delta), (None, None))
     )
     remainder, scene_run = _remainder(same_steps, model, reading)
-    plain = float(np.linalg.norm(remainder))
+    plain = norm(remainder)
     spread = Bar.of(reading.displacement, reading.rounding).allowed
     mesh = 0.0 if model == exact else MESH
     if plain <= min(max(mesh, spread), below):
@@ -213,7 +214,7 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
 
 def _causes(scene: Scene, rival: Rival) -> tuple[list[str], dict[str, float]]:
     """Return the causes by which a solver's answer differs from that on the scene."""
-    number = float(f"{rival.value:.6g}")
+    number = significant(rival.value, 6)
     if rival.cause != "springs-factor":
         return [rival.cause], {rival.cause: number}
     t = scene.time
@@ -261,6 +262,6 @@ def row_of(
         "alpha": alpha,
         "delta": delta,
         "gg": gg,
-        "misfit": float(f"{min(misfit, 1e6):.6g}"),
-        "compliance": None if soft is None else float(f"{soft:.4g}"),
+        "misfit": significant(min(misfit, 1000000.0), 6),
+        "compliance": None if soft is None else significant(soft, 4),
     }

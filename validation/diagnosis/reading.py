@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from validation.diagnosis.fits.bar import last_digits
 from validation.errors import InputError
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.regular import regular
 
@@ -32,7 +33,8 @@ class Foreign:
 
     `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
     (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
-    units of the last printed digit of each value, None where they are to be seen from the values.
+    units of the last printed digit of each value, None where they are to be seen from the values. `names` are the
+    file's own names of our columns, `scale` the factors by which its numbers were multiplied.
     """
 
     time: Array
@@ -44,6 +46,8 @@ class Foreign:
     pressure_rounding: Array | None = None  # [Pa]
     sideways: Array | None = None  # horizontal displacement [m]
     sideways_rounding: Array | None = None  # [m]
+    names: Mapping[str, str] = field(default_factory=dict)
+    scale: Mapping[str, float] = field(default_factory=dict)
 
 
 def parse_columns(text: str | None) -> dict[str, str]:
@@ -121,7 +125,8 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         for name in OURS[1:]
         if name in columns_of_file
     }
-    return _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
+    history = _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
+    return replace(history, names=columns, scale=scale)
 
 
 # ---- tables -------------------------------------------------------------------------------------------------------
@@ -210,7 +215,7 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     start = y[0] - math.copysign(size[0], vy[0])
     every = bool(step[0] == 1 and np.all(np.diff(step) == 1))
     moved = np.copysign(size, summed if every else y - start)
-    sideways = float(np.max(np.abs(moved - summed))) if every else 0.0
+    sideways = largest(moved - summed) if every else 0.0
     if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
         moved = summed
     aside = np.cumsum(vx * dt) if every else x - (x[0] - vx[0] * dt[0])

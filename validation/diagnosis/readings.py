@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
-from validation.diagnosis.reading import Foreign, Stepping, steppings
+from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
+from validation.solvers.user import UNITS
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
 FURTHEST = 1e3  # times its first row, beyond which the history of a scene of one block is unstable
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
+FIELDS = {DISPLACEMENT: "displacement", PRESSURE: "pressure", SIDEWAYS: "sideways"}  # of `Foreign`
+ROUNDINGS = {"displacement": "rounding", "pressure": "pressure_rounding", "sideways": "sideways_rounding"}
+NEAR, FAR = (
+    3.5,
+    4.5,
+)  # powers of ten: of swapped columns from the size of the other one, units allowed for, and of its own
 
 
 @dataclass(frozen=True)
@@ -34,13 +43,49 @@ class Slip:
         name = self.column.replace("_", " ")
         if self.cause == "sign":
             return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
-        return f"the {name} is in other units, {self.factor:g} times the scene's"
+        unit = UNITS[self.column].get(self.factor)
+        return f"the {name} is in other units, {self.factor:g} times the scene's" + (f" ({unit}?)" if unit else "")
+
+
+def remedy_of(foreign: Foreign, slips: Sequence[Slip]) -> str:
+    """Return the option by which a history is read without its errors of sign and unit, empty without such errors."""
+    factors: dict[str, float] = {}
+    for slip in slips:
+        factors[slip.column] = factors.get(slip.column, foreign.scale.get(slip.column, 1.0)) / slip.factor
+    typed = {name: factor for name, factor in foreign.scale.items() if factor != 1} | factors
+    return f"--scale {','.join(f'{name}={factor:g}' for name, factor in typed.items())}" if factors else ""
 
 
 def words_of_slips(slips: Sequence[Slip]) -> dict[str, str]:
     """Return the words of the errors of sign and of unit, by their causes."""
     causes = sorted({slip.cause for slip in slips})
     return {cause: " and ".join(slip.words for slip in slips if slip.cause == cause) for cause in causes}
+
+
+def exchanged(foreign: Foreign, one: str, other: str) -> Foreign:
+    """Return a history with two columns in each other's place."""
+    names = {one: foreign.names.get(other, other), other: foreign.names.get(one, one)}
+    scale = {one: foreign.scale.get(other, 1.0), other: foreign.scale.get(one, 1.0)}
+    field, other_field = FIELDS[one], FIELDS[other]
+    places = {field: other_field, other_field: field}
+    places |= {ROUNDINGS[field]: ROUNDINGS[other_field], ROUNDINGS[other_field]: ROUNDINGS[field]}
+    columns = {place: getattr(foreign, source) for place, source in places.items()}
+    return replace(foreign, names=foreign.names | names, scale=foreign.scale | scale, **columns)
+
+
+def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:
+    """Whether displacement and pressure have each other's size, and far from their own."""
+    if foreign.pressure is None or np.max(np.abs(foreign.displacement)) <= np.max(np.abs(foreign.pressure)):
+        return False  # metres are smaller numbers than pascals
+    run = get_solver("dda").solve(scene)
+    if run.history is None:
+        return False
+    with np.errstate(all="ignore"):
+        expected = np.log10([np.max(np.abs(run.displacement)), np.max(np.abs(run.contact_pressure))])
+        recorded = np.log10([np.max(np.abs(foreign.displacement)), np.max(np.abs(foreign.pressure))])
+        near = np.abs(recorded[::-1] - expected) < NEAR
+        far = np.abs(recorded - expected) > FAR
+    return bool(np.all(near & far))
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +173,6 @@ def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[flo
         most = furthest * abs(reference[0] or 1.0)
         bounded = np.clip(np.nan_to_num(reference), -most, most)
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
-    ratio = math.log10(float(np.max(np.abs(values))) / (float(np.max(np.abs(bounded))) or 1.0) or 1.0)
+    ratio = math.log10(largest(values) / (largest(bounded) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
     return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]

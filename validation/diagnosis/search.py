@@ -14,11 +14,12 @@ from itertools import combinations
 
 import numpy as np
 
-from validation.diagnosis.causes import LISTED, OUTSIDE, benign_springs
+from validation.diagnosis.causes import LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
+from validation.diagnosis.moves import fitted as fitted_move
 from validation.diagnosis.variant import Variant
 
 PERIODS = 5.0  # of the first mode, over which a fit does not go astray
@@ -48,17 +49,7 @@ MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apa
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
 HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
-USUAL = (
-    *("density-factor", "young-factor", "springs-factor", "load-factor", "own-weight", "contact-opened", "start"),
-    *("viscous-damping", "gravity-factor"),
-    *("gg", "gg-in-one-formula", "scheme", "time-shift", "pressure-shift", "pressure-factor", "reported-point"),
-)
-OTHER_PROGRAMS = ("reopening", 1e-3)  # of ntdda and its relatives, whose other habits stand beside it
-# tried by themselves only: beside another cause they are rare, and the pairs grow with the square of what is tried
-SINGLE = (
-    *("dead-band", "hht", "generalised-alpha", "substeps", "exact-in-time", "velocity", "stiffness-damping"),
-    *("load-ramp", "inertia", "one-spring"),
-)
+OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
 
@@ -132,7 +123,7 @@ def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
 
 def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
     """Return the variants from which the fits of a combination may begin: one number at a time."""
-    fixed = changed(scene, {name: value for move in combo for name, value in move.changes})
+    fixed = changed(scene, {name: value for move in combo for name, value in move.changes.items()})
     if len(combo) == 1:
         (move,) = combo
         return [changed(fixed, {move.free[0]: value}) for value in move.starts] or [fixed]
@@ -167,6 +158,11 @@ class Verdict:
     single: tuple[Explanation, ...] = ()  # every cause by itself, the best first
     around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
+
+    @property
+    def explains(self) -> bool:
+        """Whether something leaves digits and noise only, named or not."""
+        return self.explained or self.reached
 
     @property
     def same(self) -> bool:
@@ -259,21 +255,22 @@ def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
 
     Where noise hides a share of it, another cause that leaves less than that share would look the same.
     """
-    if any(name in OUTSIDE for name in explanation.ids):
+    if any(LISTED[name].outside for name in explanation.ids):
         return False
     if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
         return True
     single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
     if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
         return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
-    usual = single and explanation.ids[0] in USUAL
+    usual = single and LISTED[explanation.ids[0]].usual
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
     return explanation.fit.misfit <= limit * scene_fit.misfit
 
 
 def _rare(move: Move, among: int) -> bool:
     """Whether people rarely make a cause; a factor on one column is one that they make by itself."""
-    return move.id not in (*USUAL, *SURROUNDINGS) or (among > 1 and "displacement_factor" in move.free)
+    is_frequent = LISTED[move.id].usual or move.id in SURROUNDINGS
+    return not is_frequent or (among > 1 and "displacement_factor" in move.free)
 
 
 def _sensible(explanation: Explanation) -> bool:
@@ -284,7 +281,7 @@ def _sensible(explanation: Explanation) -> bool:
             value = getattr(explanation.fit.variant, name)
             if name not in ("alpha", "delta", "gg", "spectral") and abs(value - getattr(plain, name)) < 1e-7:
                 return False
-    return all(name in LISTED for name in explanation.ids)
+    return True
 
 
 def score(target: Target, candidate: Fit, moves: Sequence[Move] = ()) -> float:
@@ -353,7 +350,7 @@ def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
     few = _few(target, scene, before.single)
     faults = [move for move in few if move.id not in SURROUNDINGS]
     around = tuple(_surroundings(target, scene))
-    faults += [move for move in moves(target, scene) if move.id == "dead-band" and OTHER_PROGRAMS in move.changes]
+    faults += [move for move in moves(target, scene) if move.changes.get("reopening") == OTHER_PROGRAMS]
     explanations = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
     explanations = [*explanations[:3], *_heavy(target, explanations[:3])]
     fine = [f for f in explanations if accepted(target, before.own, f.fit)]
@@ -372,7 +369,7 @@ def _around(target: Target, scene: Variant) -> list[Explanation]:
 
 def _surroundings(target: Target, scene: Variant) -> list[Move]:
     plain = {move.id: move for move in moves(target, scene) if move.id in SURROUNDINGS}
-    plain["springs-factor"] = Move("springs-factor", (), ("softness",), (0.0, 0.02))
+    plain["springs-factor"] = fitted_move("springs-factor", "softness", (0.0, 0.02))
     return [plain[name] for name in SURROUNDINGS]
 
 
@@ -392,7 +389,7 @@ def _without_excess(target: Target, scene_fit: Fit, explanation: Explanation) ->
     for move in [m for m in explanation.moves if m.id in SURROUNDINGS]:
         rest = tuple(m for m in explanation.moves if m is not move)
         plain = Variant(scene_fit.variant.alpha, scene_fit.variant.delta, scene_fit.variant.gg)
-        names = [name for name, _ in move.changes] + list(move.free) + (["base"] if "softness" in move.free else [])
+        names = [*move.changes, *move.free, *(["base"] if "softness" in move.free else [])]
         back = changed(explanation.fit.variant, {name: getattr(plain, name) for name in names})
         free = tuple(name for name in explanation.fit.free if name not in names)
         (less,) = fit(target, [(back, free)], rounds=12)
@@ -407,7 +404,8 @@ def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[
     few = []
     alone = {f.ids[0]: f.fit.variant for f in reversed(single)}
     for move in moves(target, scene):
-        if move.id in SINGLE or move.id in OUTSIDE or move.free == ("alpha", "delta"):
+        cause = LISTED[move.id]
+        if cause.alone or cause.outside or move.free == ("alpha", "delta"):
             continue
         if move.id == "reported-point" and not move.free:
             continue
@@ -418,6 +416,6 @@ def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[
 
 def _together(combo: Sequence[Move]) -> bool:
     """Whether causes can be in one computation: different ones that change different things."""
-    names = [name for move in combo for name in [*(name for name, _ in move.changes), *move.free]]
+    names = [name for move in combo for name in (*move.changes, *move.free)]
     ids = [move.id for move in combo]
     return len(set(names)) == len(names) and len(set(ids)) == len(ids)

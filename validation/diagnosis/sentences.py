@@ -16,11 +16,6 @@ if TYPE_CHECKING:
     from validation.diagnosis.fits.fit import Interval
     from validation.diagnosis.other_solvers import RivalVerdict
 
-INTEGRATOR = (
-    *("scheme", "gg", "gg-in-one-formula", "start", "hht", "generalised-alpha", "substeps"),
-    *("exact-in-time", "velocity"),
-)
-OUTPUT = ("sign", "unit", "time-shift", "pressure-shift", "pressure-factor", "reported-point")
 NEAR = 0.5  # share of the difference: what leaves more is near to nothing
 
 
@@ -101,12 +96,12 @@ def sentence(subject: Subject) -> str:
     words = listed([subject.words[name] for name in faults])
     if len(faults) == 1 and faults[0] in ("pressure-shift", "pressure-factor"):
         words += ", the displacement is right"
-    if set(faults) & set(INTEGRATOR):
+    if any(CAUSES[name].integrator for name in faults):
         return (
             f"Departs{subject.where}: {words}{same}; the history matches {subject.scheme}{allowed}; "
             f"{subject.remainder}."
         )
-    model = ", same model" if set(faults) <= set(OUTPUT) else ""
+    model = ", same model" if all(CAUSES[name].output for name in faults) else ""
     return (
         f"Same scheme{model}: {subject.scheme}, but departs{subject.where}: {words}{same}{allowed}; "
         f"{subject.remainder}."

@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,8 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
     started = [j for j, v in enumerate(variants) if v.ramp and v.start == "consistent"]
     requested = variants
     variants = [*requested, *(replace(requested[j], start="zero") for j in started)]
-    longer = np.concatenate([steps, np.repeat(steps[-1:], further_steps(variants))])
+    beyond = max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))  # steps that the last rows report of
+    longer = np.concatenate([steps, np.repeat(steps[-1:], beyond)])
     equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
     groups: dict[tuple[bool, bool, int, int, bool], list[int]] = {}
     for j, v in enumerate(variants):
@@ -108,54 +110,43 @@ class Stepper:
     def __init__(self, rectangle: Rectangle, variants: Sequence[Variant], unknowns: int) -> None:
         self.rectangle, self.variants, self.d = rectangle, variants, unknowns
 
-        def each(name: str) -> Array:
-            return np.array([getattr(v, name) for v in variants], dtype=float)
-
+        # every number of the variants by its name, one array each
+        numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
+        self.of = of = SimpleNamespace(**numbers)
         self.alpha, self.delta, self.mean_mass, self.mean_force = np.array([v.scheme for v in variants]).T
-        gg, formulas = each("gg"), np.array([v.discounted for v in variants])
-        self.gg_displacement = np.where(formulas == "velocity", 1.0, gg)[:, None]
-        self.gg_velocity = np.where(formulas == "displacement", 1.0, gg)[:, None]
-        self.secant = each("secant").astype(bool)
-        self.viscous, self.structural = each("viscous"), each("structural")
-        self.consistent = np.array([v.start == "consistent" for v in variants], dtype=float)
-        self.updated, self.opens = each("updated"), each("opens").astype(bool)
-        self.reset = each("reset").astype(bool)
-        self.closing, self.opening = each("band"), each("band") * each("reopening")
-        self.coupling, self.strain_load, self.point = each("coupling"), each("strain_load"), each("point")
-        self.keeps_stress = np.array([v.kept != "springs" for v in variants], dtype=float)
-        self.keeps_springs = np.array([v.kept != "stress" for v in variants], dtype=float)
-        self.density, self.inertia, self.load = each("density"), each("inertia"), each("load")
-        self.gravity = each("gravity") * rectangle.gravity + each("weight") * GRAVITY
-        softness = each("softness")
-        heavy = (each("base") > 0) & (softness > 0)
-        soft = np.where(heavy, 0.0, softness)
-        self.heavy = heavy.astype(float)
-        self.normal, self.tangential = np.exp(-soft), np.exp(-soft * each("tied"))  # over the scene's
-        self.base_mass = np.where(heavy, each("base"), 1.0)
-        self.base_spring = np.where(heavy, rectangle.normal / np.expm1(np.where(heavy, softness, 1.0)), 1.0)
+        self.gg_displacement = np.where(of.discounted == "velocity", 1.0, of.gg)[:, None]
+        self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
+        self.keeps_stress = of.kept != "springs"
+        self.keeps_springs = of.kept != "stress"
+        self.gravity = of.gravity * rectangle.gravity + of.weight * GRAVITY
+        is_heavy = (of.base > 0) & (of.softness > 0)
+        soft = np.where(is_heavy, 0.0, of.softness)
+        self.heavy = is_heavy.astype(float)
+        self.normal = np.exp(-soft)  # over the scene's
+        self.tangential = np.exp(-soft * of.tied)
+        self.base_mass = np.where(is_heavy, of.base, 1.0)
+        self.base_spring = np.where(is_heavy, rectangle.normal / np.expm1(np.where(is_heavy, of.softness, 1.0)), 1.0)
         self.elasticity = rectangle.elasticity(variants)
-        self.wide, self.high = each("side"), each("side") * each("tall")  # at rest, over the scene's
-        self.damped = bool(np.any(self.viscous) or np.any(self.structural))
-        self._scene_matrices()
-
-    # ---- matrices ---------------------------------------------------------------------------------------------------
-
-    def _scene_matrices(self) -> None:
-        """Keep what the scene's own matrices hold of every variant's."""
-        rectangle, model = self.rectangle, self.rectangle.model
+        self.wide = of.side  # at rest, over the scene's
+        self.high = of.side * of.tall
+        self.damped = bool(np.any(of.viscous) or np.any(of.structural))
+        # what the scene's own matrices hold of every variant's
+        model = rectangle.model
         normal, shear = dda.spring_vectors(model.block, 0)
         if self.d == 6:  # the springs of the first corner alone
             self.corner = normal[0]
             self.without_gap = model.block.elastic() + rectangle.shear / 2 * np.outer(shear[0], shear[0])
             return
-        self.masses = model.mass[PLACES, PLACES][:, None] * self.density
-        self.masses[1:] *= self.inertia
+        self.masses = model.mass[PLACES, PLACES][:, None] * of.density
+        self.masses[1:] *= of.inertia
         self.moduli = model.block.section.area * self.elasticity
         self.lever, self.top = normal[0, 4], model.block.corners[2, 1] / 2
         self.springs = rectangle.normal * self.normal
         self.shear_springs = rectangle.shear * self.tangential * shear[0, 3] ** 2
-        self.pressed = self.load * rectangle.pressure * rectangle.width * self.wide
+        self.pressed = of.load * rectangle.pressure * rectangle.width * self.wide
         self.base_inertia = self.base_mass * self.masses[0] * self.wide * self.high
+
+    # ---- matrices ---------------------------------------------------------------------------------------------------
 
     def equations(self, on: Flags, wide: Array, high: Array) -> Equations:
         """Return the equations of a step.
@@ -184,7 +175,7 @@ class Stepper:
         kx = self.shear_springs * wide**2 * on
         F = np.zeros((n, d))
         F[:, 0] = -self.pressed - M[:, 0, 0] * self.gravity
-        F[:, 1] = -self.pressed * self.strain_load * self.top * high
+        F[:, 1] = -self.pressed * self.of.strain_load * self.top * high
         if d > 2:
             M[:, 2, 2] = self.masses[2] * area * wide**2
             K[:, 2, 2] += kx
@@ -194,7 +185,7 @@ class Stepper:
             K[:, 3, 3] = carried[:, 3, 3] = self.base_spring
             F[:, 3] = -self.heavy * M[:, 3, 3] * self.gravity
         K += k[:, None, None] * c[:, :, None] * c[:, None, :]
-        lost = k * (1 - self.coupling) * c[:, 1]  # of the springs' entry between v and ey
+        lost = k * (1 - self.of.coupling) * c[:, 1]  # of the springs' entry between v and ey
         K[:, 0, 1] -= lost
         K[:, 1, 0] -= lost
         carried[:, 0, 1] -= lost * self.keeps_springs
@@ -202,16 +193,11 @@ class Stepper:
         return Equations(M, K, carried, k * self.keeps_springs, kx * self.keeps_springs, c, F)
 
     def _on_one_spring(self, n: int) -> Equations:
-        model, p = self.rectangle.model, self.rectangle.normal / 2
-        whole = self.without_gap + p * np.outer(self.corner, self.corner)
-
-        def repeated(array: Array) -> Array:
-            return np.repeat(array[None], n, axis=0)
-
-        zero = np.zeros(n)
-        parts = (model.mass, whole, self.without_gap)
-        M, K, carried = (repeated(part) for part in parts)
-        return Equations(M, K, carried, zero + p, zero, repeated(self.corner), repeated(model.force))
+        model = self.rectangle.model
+        spring = self.rectangle.normal / 2
+        whole = self.without_gap + spring * np.outer(self.corner, self.corner)
+        one = (model.mass, whole, self.without_gap, np.array(spring), np.zeros(()), self.corner, model.force)
+        return Equations(*(np.repeat(array[None], n, axis=0) for array in one))
 
     # ---- one step ---------------------------------------------------------------------------------------------------
 
@@ -233,13 +219,13 @@ class Stepper:
             right = right - dt * times(self._damping(q), (1 - af) * rate + af * discounted)
         W1 = times(inverse, right)
         increment = ahead + alpha * W1
-        U1 = np.where(self.secant[:, None], increment, rate + delta * W1)
+        U1 = np.where(self.of.secant[:, None], increment, rate + delta * W1)
         gap = state[..., 0] + np.sum(q.gap * increment, axis=-1)
         sheared = state[..., 1] + (increment[..., 2] if d > 2 else 0.0)
         return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
 
     def _damping(self, q: Equations) -> Array:
-        return self.viscous[:, None, None] * q.mass + self.structural[:, None, None] * q.stiffness
+        return self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness
 
     def matrix(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step, by stepping the unit vectors, (variants, 3 + 3 d, 3 + 3 d)."""
@@ -259,7 +245,7 @@ class Stepper:
         n, d = len(self.variants), self.d
         state = np.zeros((n, 3 + 3 * d))
         acceleration = times(np.linalg.inv(q.mass), q.load)
-        state[:, 2 + 2 * d : 2 + 3 * d] = dt * dt * self.consistent[:, None] * acceleration
+        state[:, 2 + 2 * d : 2 + 3 * d] = dt * dt * (self.of.start == "consistent")[:, None] * acceleration
         state[:, -1] = 1.0
         return state
 
@@ -268,11 +254,11 @@ class Stepper:
         rows = np.zeros((len(self.variants), 2, 3 + 3 * self.d))
         if self.d == 6:
             rows[:, 0, 3] = 1.0
-            rows[:, 0, 6] = self.point * self.rectangle.height / 2
+            rows[:, 0, 6] = self.of.point * self.rectangle.height / 2
             rows[:, 1, 0] = -self.rectangle.normal / 2 / self.rectangle.width
             return rows
         rows[:, 0, 2] = 1.0
-        rows[:, 0, 3] = self.point * self.rectangle.height * self.high / 2
+        rows[:, 0, 3] = self.of.point * self.rectangle.height * self.high / 2
         rows[:, 1, 0] = -self.rectangle.normal * self.normal / (self.rectangle.width * self.wide)
         return rows
 
@@ -322,7 +308,7 @@ class Stepper:
 
     def loop(self, steps: Array) -> tuple[Array, Array, Flags]:
         """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
-        n, moves = len(self.variants), bool(np.any(self.updated))
+        n, moves = len(self.variants), bool(np.any(self.of.updated))
         wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
         first = self.equations(on, wide, high)
         state, observers = self.start(first, float(steps[0])), self.observers(first)
@@ -343,19 +329,19 @@ class Stepper:
                 else:
                     T = np.where(on[:, None, None], closed, opened)
                     end = times(T, state)
-                limit = np.where(on, self.opening, -self.closing)
-                new = np.where(self.opens, end[:, 0] < limit, True)
+                limit = np.where(on, self.of.band * self.of.reopening, -self.of.band)
+                new = np.where(self.of.opens, end[:, 0] < limit, True)
                 if np.array_equal(new, on):
                     break
                 on = new
-            landing = on & ~was_closed & ~self.reset
+            landing = on & ~was_closed & ~self.of.reset
             if self.d > 2 and np.any(landing):
                 T = self.matrix(q, dt) if moves else T
                 end += landing[:, None] * _shear_from_touch(T, state, end)[:, None] * T[:, :, 1]
             if moves:
                 strain = end[:, 2 : 2 + self.d] - state[:, 2 : 2 + self.d]
-                high = high * (1 + self.updated * strain[:, 1])
-                wide = wide * (1 + self.updated * (strain[:, 2] if self.d > 2 else 0.0))
+                high = high * (1 + self.of.updated * strain[:, 1])
+                wide = wide * (1 + self.of.updated * (strain[:, 2] if self.d > 2 else 0.0))
             end[:, 1] = np.where(on, end[:, 1], 0.0)
             state = end
             observed = times(observers, state)
@@ -388,29 +374,22 @@ def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) 
 # ---- what is written ------------------------------------------------------------------------------------------------
 
 
-def further_steps(variants: Sequence[Variant]) -> int:
-    """Return how many steps beyond the last row the variants report of."""
-    return max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))
-
-
-def reported(histories_of_steps: Histories, variants: Sequence[Variant], n: int) -> Histories:
+def reported(computed: Histories, variants: Sequence[Variant], n: int) -> Histories:
     """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
-    displacement, pressure, opened = (
-        histories_of_steps.displacement,
-        histories_of_steps.pressure,
-        histories_of_steps.open,
-    )
     for j, v in enumerate(variants):
         if v.late:
-            whole, part = math.floor(v.late), v.late - math.floor(v.late)
-            P = pressure[:, j]
-            pressure[:, j] = (1 - part) * _shifted(P, whole) + (part * _shifted(P, whole + 1) if part else 0.0)
+            whole = math.floor(v.late)
+            part = v.late - whole
+            P = computed.pressure[:, j]
+            computed.pressure[:, j] = (1 - part) * _shifted(P, whole) + (part * _shifted(P, whole + 1) if part else 0.0)
         if v.shift:
-            for values in (displacement, pressure):
+            for values in (computed.displacement, computed.pressure, computed.open):
                 values[:, j] = _shifted(values[:, j], v.shift)
-            opened[:, j] = _shifted(opened[:, j].astype(float), v.shift) > 0
-    scale = np.array([v.displacement_factor for v in variants]), np.array([v.pressure_factor for v in variants])
-    return Histories(scale[0] * displacement[:n], scale[1] * pressure[:n], opened[:n])
+    displacement_factors = np.array([v.displacement_factor for v in variants])
+    pressure_factors = np.array([v.pressure_factor for v in variants])
+    return Histories(
+        displacement_factors * computed.displacement[:n], pressure_factors * computed.pressure[:n], computed.open[:n]
+    )
 
 
 def _ramped(values: Array, steps: float) -> Array:
@@ -422,7 +401,7 @@ def _ramped(values: Array, steps: float) -> Array:
     return np.asarray(np.convolve(values, shares)[: len(values)])
 
 
-def _shifted(values: Array, late: int) -> Array:
+def _shifted(values: NDArray[Any], late: int) -> NDArray[Any]:
     """Return the rows some steps late (the first rows at rest) or early."""
     shifted = np.roll(values, late)
     shifted[: max(late, 0)] = 0

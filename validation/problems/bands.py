@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis.numbers import Values, layers, numbers
+from validation.metrics.values import largest
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
@@ -210,7 +211,7 @@ def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | Non
 
 def moved_by(other: Array, column: Array) -> Array:
     """Return ||other - column|| / ||column|| over the first n rows, for every n; 0 where both are zero so far."""
-    size = float(np.max(np.abs(column))) or 1.0
+    size = largest(column) or 1.0
     difference, size_so_far = (np.sqrt(np.cumsum(np.square(x / size))) for x in (other - column, column))
     return np.asarray(
         np.divide(difference, size_so_far, out=np.where(difference > 0, np.inf, 0.0), where=size_so_far > 0)

@@ -16,6 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.fits.bar import norm, significant
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import Values, laws
 from validation.diagnosis.one_change import (
@@ -32,6 +33,7 @@ from validation.diagnosis.one_change import (
 )
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
+from validation.metrics.values import largest
 from validation.problems.bands import Standard
 from validation.problems.models import Base, Columns, Runs, runs_of
 from validation.problems.problem import Problem
@@ -243,7 +245,7 @@ def _plain(answer: Columns, reference: Standard) -> Cause | None:
         if not np.isfinite(x).all():
             row = int(np.argmin(np.isfinite(x))) + 1
             return Cause(f"{name} is not a number from step {row} on", ("not-finite",), left=0.0)
-    if all(float(np.max(np.abs(x))) <= NOTHING * _size(name, reference) for name, x in answer.items()):
+    if all(largest(x) <= NOTHING * _size(name, reference) for name, x in answer.items()):
         return Cause("nothing moves", ("nothing-moves",), left=0.0)
     return None
 
@@ -272,7 +274,7 @@ def _units(answer: Columns, runs: Runs) -> Cause | None:
 
 
 def _size(name: str, reference: Standard) -> float:
-    return float(np.max(np.abs(reference.exact.columns[name])))
+    return largest(reference.exact.columns[name])
 
 
 @dataclass(eq=False)
@@ -341,7 +343,7 @@ class Search:
             parts = []
             for name, x in self.answer.items():
                 band = self.runs.standard.bands[name]
-                size = float(np.linalg.norm(self.runs.standard.exact.columns[name][: band.rows])) * band.high
+                size = norm(self.runs.standard.exact.columns[name][: band.rows]) * band.high
                 other = np.full(band.rows, np.inf) if columns is None else columns[name][: band.rows]
                 parts.append((x[: band.rows] - other) / size)
             return np.nan_to_num(np.clip(np.concatenate(parts), -FARTHEST, FARTHEST), nan=FARTHEST)
@@ -370,7 +372,7 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
 
 
 def _of_change(change: Change, u: float, remainder: float, base: Base, scene: Scene) -> Cause:
-    value = float(f"{change.value(u):.6g}")
+    value = significant(change.value(u), 6)
     words = change.words(value) + springs_alike(scene, change.id, value)
     return _with(change.id, words, {change.id: value}, remainder, base, scene)
 
@@ -388,7 +390,7 @@ def _named(causes: Sequence[Cause]) -> Cause:
     fewest = min(len(one.ids) for one in near)
     distinct: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
     for one in sorted((one for one in near if len(one.ids) == fewest), key=_rank):
-        distinct.setdefault((one.ids, *(float(f"{value:.2g}") for value in one.values.values())), one)
+        distinct.setdefault((one.ids, *(significant(value, 2) for value in one.values.values())), one)
     best, *others = distinct.values()
     if not others:
         return best

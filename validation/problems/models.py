@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.numbers import accurate
 from validation.diagnosis.sentences import scheme_words
@@ -113,9 +114,9 @@ class Runs:
         shares = [0.0]
         for name, band in self.standard.bands.items():
             if name in answer and name in columns:
-                size = float(np.linalg.norm(self.standard.exact.columns[name][: band.rows]))
+                size = norm(self.standard.exact.columns[name][: band.rows])
                 with np.errstate(all="ignore"):
-                    gap = float(np.linalg.norm(answer[name][: band.rows] - columns[name][: band.rows]))
+                    gap = norm(answer[name][: band.rows] - columns[name][: band.rows])
                 shares.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
         return max(shares)
 

@@ -13,6 +13,7 @@ from functools import cache
 
 import numpy as np
 
+from validation.metrics.values import largest
 from validation.runs.history import Array
 
 DOUBLE = 15  # decimal digits from which on nothing is seen of a rounding
@@ -52,10 +53,20 @@ def _places(value: float) -> tuple[int, int]:
     return top, top - max(len(digits_of_mantissa), 1) + 1 if exponent or digits else top
 
 
+def norm(values: Array) -> float:
+    """Return the root of the sum of squares."""
+    return float(np.linalg.norm(values))
+
+
+def significant(value: float, digits: int) -> float:
+    """Return a number rounded to significant digits."""
+    return float(f"{value:.{digits}g}")
+
+
 def noise(values: Array) -> float:
     """Return the standard deviation of what no recurrence of low order predicts, zero if the rows are too few."""
     y = np.asarray(values[:LONGEST], dtype=float)
-    size = float(np.max(np.abs(y))) if len(y) else 0.0
+    size = largest(y) if len(y) else 0.0
     if len(y) < FEWEST or size == 0:
         return 0.0
     return size * _beyond(y / size) / _bias(len(y))

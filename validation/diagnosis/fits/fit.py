@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.target import ROUNDING, Target
 from validation.diagnosis.variant import Variant
 from validation.runs.history import Array
@@ -117,7 +118,7 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
         ]
         jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
         residual = goal - base
-        fits.append(Fit(variant, free, float(np.linalg.norm(residual)), residual, jacobian))
+        fits.append(Fit(variant, free, norm(residual), residual, jacobian))
         at += 1 + len(free)
     return fits
 

@@ -12,6 +12,7 @@ import numpy as np
 from validation.diagnosis.fits import bar
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.metrics.values import largest
 from validation.runs.history import Array
 
 LEAST_ROWS = 24  # of a history that is fitted in part
@@ -20,7 +21,7 @@ ROUNDING = 1e-10  # relative L2 that no recorded history comes below
 
 def norm(values: Array) -> float:
     """Return the root of the sum of squares, one for zeros throughout."""
-    return float(np.linalg.norm(values)) or 1.0
+    return bar.norm(values) or 1.0
 
 
 def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: Array | None) -> Array:
@@ -44,7 +45,7 @@ class Bar:
     def of(cls, values: Array, rounding: Array | None) -> Bar:
         """Derive it from the column itself."""
         rounding = bar.last_digits(values) if rounding is None else rounding
-        return cls(rounding, float(np.max(np.abs(values))), norm(values), bar.noise(values))
+        return cls(rounding, largest(values), norm(values), bar.noise(values))
 
     @property
     def allowed(self) -> float:
@@ -68,6 +69,11 @@ class Target:
     pressure: Array | None = None  # [Pa]
     rounding: Array | None = None  # of the displacement [m], seen from the values if not given
     pressure_rounding: Array | None = None  # [Pa]
+
+    @property
+    def recorded(self) -> list[Array]:
+        """The displacement and, if given, the pressure."""
+        return [self.displacement] if self.pressure is None else [self.displacement, self.pressure]
 
     @property
     def values(self) -> Array:

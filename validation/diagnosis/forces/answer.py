@@ -14,12 +14,13 @@ from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding
 from validation.diagnosis.forces.laws import body_of
-from validation.diagnosis.forces.runs import at_step, displacements
+from validation.diagnosis.forces.runs import agreement, at_step, displacements
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, words_of_slips
 from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -103,11 +104,18 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
 def _unit(scene: Scene, step: float, place: Array) -> float:
     """Return the power of ten by which both displacements are larger than those of the scene's own run, else one."""
     run = displacements(at_step(scene, step, len(place)))
-    size = 0.0 if run is None else float(np.max(np.abs(run)))
+    size = 0.0 if run is None else largest(run)
     if size == 0 or not np.any(place):
         return 1.0
-    ratio = math.log10(float(np.max(np.abs(place))) / size)
+    ratio = math.log10(largest(place) / size)
     return next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
+
+
+def is_scene(scene: Scene, foreign: Foreign) -> bool:
+    """Whether a history is the scene's own as it is read, no sign or unit corrected."""
+    reading = read(scene, foreign)
+    exact = at_step(scene, reading.step, len(reading.place))
+    return not reading.corrected and agreement(exact, reading.place, reading.rounding).same
 
 
 def _check(scene: Scene) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.diagnosis.causes import round_factor
+from validation.diagnosis.fits.bar import norm, significant
 from validation.diagnosis.forces.laws import Body, Followed, body_of, follow, motion_of
 from validation.diagnosis.forces.runs import (
     NO_RUN,
@@ -103,7 +104,7 @@ def _springs_or_base(result: ContactFinding, around: Surrounded, scene_run: Agre
     if "base-compliance" not in result.causes:
         return result
     name = "springs-factor" if around.along else "normal-springs-factor"
-    factor = float(f"{around.springs:.6g}")
+    factor = significant(around.springs, 6)
     words = f"the {'springs' if around.along else 'normal springs alone'} are {factor:.4g} times the scene's"
     springs = OneChange(name, factor, words, around.run)
     if not round_factor(around.springs, around.error):
@@ -188,7 +189,7 @@ def _fitted(body: Body, time: TimeSection, place: Array) -> tuple[float, float]:
         return np.asarray((run.given - run.shown)[:, 1] / run.scale)
 
     starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
-    start = min(starts, key=lambda z: float(np.linalg.norm(left(z))))
+    start = min(starts, key=lambda z: norm(left(z)))
     solution = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
     return float(solution.x[0]), float(solution.x[1])
 
@@ -281,4 +282,4 @@ def _causes(
     if abs(weight) > NONE:
         names.append("own-weight" if abs(weight - 1) <= WHOLE else "own-weight?")
         values["own-weight"] = weight
-    return names, {name: float(f"{value:.4g}") for name, value in values.items()}
+    return names, {name: significant(value, 4) for name, value in values.items()}

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, white
+from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, significant, white
 from validation.diagnosis.fits.fit import NAMED, NORMAL_95
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
@@ -314,7 +314,7 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
     for fit in best:
         run = agreement(scene.with_values(fit.change.changed(fit.u)), place, rounding)
         if run.same:
-            value = float(f"{fit.change.value(fit.u):.6g}") if fit.change.starts else None
+            value = significant(fit.change.value(fit.u), 6) if fit.change.starts else None
             explanations.append(OneChange(fit.change.id, value, fit.change.words(fit.change.value(fit.u)), run))
     clear = alike(explanations, lambda change: change.run.left, CLEAR)
     ids = {change.id for change in clear}
