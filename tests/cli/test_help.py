@@ -1,8 +1,12 @@
 """Every command's help page has an example; its options exist, and it runs as it stands."""
 
+import itertools
 import re
 import shlex
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -12,7 +16,11 @@ from oracles.pages import write_my_solver
 from oracles.submissions import right_answer
 
 from validation import load_scene, solve
-from validation.cli.entry import app
+from validation.cli import verdicts, work
+from validation.cli.entry import GROUPS, app
+from validation.cli.printing import costs
+from validation.errors import InputError
+from validation.studies.catalogue import STUDIES
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 FAIL = [["judge", "locked", "--solver", "my_solver:solve"]]  # by the damping of the scheme that the scene names
@@ -64,3 +72,40 @@ def test_examples_run_as_they_stand(
             (tmp_path / "main/verdicts.json").write_bytes((tmp_path / "reports/results/verdicts.json").read_bytes())
         done = typed(*words, cwd=tmp_path)
         assert done.returncode == (words in FAIL), f"{words}\n{done.stdout}{done.stderr}"
+
+
+def test_every_command_stands_in_one_group_of_the_help() -> None:
+    assert sorted(itertools.chain.from_iterable(GROUPS.values())) == sorted({*COMMANDS, "merge"})
+    page = typed("--help").stdout
+    for group in GROUPS:
+        assert group in page
+
+
+def test_a_long_run_says_its_length_by_a_table_that_has_every_study() -> None:
+    assert list(costs.COSTS) == list(STUDIES)
+    assert costs.announcement(["core"]) is None and costs.announcement(["my-scene"]) is None
+    sentence = costs.announcement(list(STUDIES))
+    minutes = sum(costs.COSTS.values()) * costs.SECONDS / 60
+    assert sentence is not None and f"about {minutes:.0f} min where core takes 20 s" in sentence
+    assert "stability is 3" in sentence  # per cent
+
+
+@pytest.mark.parametrize(("module", "title"), [(verdicts, "export-pack"), (work, "work-precision")])
+def test_what_takes_long_shows_a_bar(
+    module: ModuleType, title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[tuple[str, bool]] = []
+
+    @contextmanager
+    def bar(title: str, visible: bool = True, *, between_calls: bool = False) -> Iterator[None]:
+        shown.append((title, between_calls))
+        raise InputError("stop")
+        yield
+
+    monkeypatch.setattr(module, "_progress", bar)
+    with pytest.raises(InputError, match="stop"):
+        if module is work:
+            work.record(results=tmp_path)
+        else:
+            verdicts.export_pack(tmp_path / "pack")
+    assert shown == [(title, True)]
