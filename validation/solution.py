@@ -14,11 +14,9 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from validation.report.figures.solution import Figure
 
 ENDINGS = (".svg", ".pdf", ".png")  # of a file that a figure is written to
-ROW = 42.0, 17.0  # mm: height of a panel, gap below it
-MARGINS = 20.0, 24.0, 10.0, 9.5  # mm: left, right, top, bottom of the figure
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,10 +69,8 @@ class Solution(Run):
         ValueError
             The run has no history.
         """
-        from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-        from validation.report.figures.curves import COLUMNS
-        from validation.report.figures.histories import Margins
         from validation.report.figures.response import save_as
+        from validation.report.figures.solution import solution_figure
 
         history = self._finished()
         names = list(history.columns) if columns is None else list(columns)
@@ -84,13 +80,7 @@ class Solution(Run):
         target = None if path is None else Path(path)
         if target is not None and target.suffix.lower() not in ENDINGS:
             raise InputError(f"must end in {', '.join(ENDINGS)}", field="path", value=repr(target.name))
-        panels = []
-        for name in names:
-            words, unit = COLUMNS.get(name, (name, ""))
-            label = f"{words} [{unit}]" if unit else words
-            line = ChartLine(self.solver, history.time, history.columns[name])
-            panels.append(ChartPanel(words, "Time [s]", label, [line]))
-        figure = chart_figure(panels, [ROW] * len(panels), Margins(*MARGINS))
+        figure = solution_figure(history, names, self.solver)
         if target is not None:
             save_as(figure, target)
         return figure
@@ -102,7 +92,7 @@ def _unit(column: str) -> str:
     return f" {unit}" if unit else ""
 
 
-def solve(scene: Scene, solver: str | Solver = "dda", full: bool = False) -> Solution:
+def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Solution:
     """Run one scene with one solver.
 
     Parameters

@@ -3,10 +3,8 @@
 import itertools
 import re
 import shlex
-from collections.abc import Iterator
-from contextlib import contextmanager
+import threading
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -16,7 +14,7 @@ from oracles.pages import write_my_solver
 from oracles.submissions import right_answer
 
 from validation import load_scene, solve
-from validation.cli import verdicts, work
+from validation.cli import app as command_line
 from validation.cli.entry import GROUPS, app
 from validation.cli.printing import costs
 from validation.errors import InputError
@@ -90,22 +88,20 @@ def test_a_long_run_says_its_length_by_a_table_that_has_every_study() -> None:
     assert "stability is 3" in sentence  # per cent
 
 
-@pytest.mark.parametrize(("module", "title"), [(verdicts, "export-pack"), (work, "work-precision")])
+@pytest.mark.parametrize(
+    ("work_of", "words"),
+    [("studies.pack.write_pack", ["export-pack", "pack"]), ("engine.run.finish", ["record", "--results", "results"])],
+)
 def test_what_takes_long_shows_a_bar(
-    module: ModuleType, title: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    work_of: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shown: list[tuple[str, bool]] = []
+    """The bar starts while the first piece of work is still busy."""
+    started = threading.Event()
 
-    @contextmanager
-    def bar(title: str, visible: bool = True, *, between_calls: bool = False) -> Iterator[None]:
-        shown.append((title, between_calls))
-        raise InputError("stop")
-        yield
+    def work(*arguments: object, **options: object) -> None:
+        raise InputError("the bar is there" if started.wait(60) else "no bar")
 
-    monkeypatch.setattr(module, "_progress", bar)
-    with pytest.raises(InputError, match="stop"):
-        if module is work:
-            work.record(results=tmp_path)
-        else:
-            verdicts.export_pack(tmp_path / "pack")
-    assert shown == [(title, True)]
+    monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
+    monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
+    monkeypatch.setattr(f"validation.{work_of}", work)
+    assert typed(*words, cwd=tmp_path).stderr == "error: the bar is there\n"

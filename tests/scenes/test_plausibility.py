@@ -1,4 +1,4 @@
-"""Values that were probably not meant: which are warned of, what is said to write, and that built-in scenes are left."""
+"""Values that were probably not meant: which are warned of, and what to write; built-in scenes are left alone."""
 
 from __future__ import annotations
 

@@ -121,11 +121,11 @@ def stated_scene(source: str, assignments: list[str] | None) -> Scene:
 
 def print_warnings(scene: Scene) -> None:
     """Print a line on standard error for each value of a scene that was probably not meant."""
-    from validation.cli.printing.output import echo
+    from validation.runs.text import visible
     from validation.scenes.plausibility import plausibility_warnings
 
     for sentence in plausibility_warnings(scene):
-        echo(f"warning: {scene.name}: {sentence}", err=True)
+        typer.echo(visible(f"warning: {scene.name}: {sentence}"), err=True)
 
 
 def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:

@@ -182,7 +182,7 @@ def _strain(body: _Body) -> Iterator[Implausible]:
         "velocity": f"write {name} in m/s",
     }.get(name, f"write {name} in Pa, 5e6 for 5 MPa, and young in Pa")
     sentence = (
-        f"{cause} strains {body.place} by {100 * total:.3g} % at rest, above {100 * LARGEST_STRAIN:g} %, beyond what is "
+        f"{cause} strains {body.place} by {100 * total:.3g} % at rest, above {100 * LARGEST_STRAIN:g} %, and is not "
         f"linear elastic: {_or_meant(advice)}"
     )
     yield Implausible(cause, "strain", sentence)
