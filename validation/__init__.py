@@ -5,32 +5,82 @@ Nothing heavy is imported here: names are loaded when they are first used.
 
 from __future__ import annotations
 
+import functools
 import importlib
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from validation.advice.advice import advise as advise
+    from validation.advice.response import response as response
+    from validation.advice.spectra import damping as damping
+    from validation.errors import InputError as InputError
+    from validation.errors import PlausibilityWarning as PlausibilityWarning
+    from validation.errors import SceneError as SceneError
+    from validation.runs.history import History as History
+    from validation.runs.modes import Mode as Mode
+    from validation.runs.run import Outcome as Outcome
+    from validation.runs.run import Run as Run
+    from validation.scenes.scene import Scene as Scene
+    from validation.scenes.scene import load_scene as load_scene
+    from validation.solution import Solution as Solution
+    from validation.solution import solve as solve
+    from validation.solvers.contract import Solver as Solver
+    from validation.solvers.registry import get_solver as get_solver
+
+    __version__: str
 
 _NAMES = {
     "History": "runs.history",
     "InputError": "errors",
     "Mode": "runs.modes",
     "Outcome": "runs.run",
+    "PlausibilityWarning": "errors",
     "Run": "runs.run",
     "Scene": "scenes.scene",
     "SceneError": "errors",  # the name of InputError in version 0.1
+    "Solution": "solution",
     "Solver": "solvers.contract",
     "advise": "advice.advice",
     "damping": "advice.spectra",
     "get_solver": "solvers.registry",
     "load_scene": "scenes.scene",
     "response": "advice.response",
-    "solve": "solvers.registry",
+    "solve": "solution",
 }
+_OF_A_SCENE = ("advise", "damping", "response", "solve")  # they warn of values that were probably not meant
 __all__ = sorted(_NAMES)
 
 
+def __dir__() -> list[str]:
+    """Return the public names."""
+    return [*__all__, "__version__"]
+
+
 def __getattr__(name: str) -> Any:
+    """Load a public name, or the version of the installed distribution."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("dda-validation")
     if name not in _NAMES:
         raise AttributeError(f"module 'validation' has no attribute {name!r}")
     from validation.entry.siblings import check
 
     check()
-    return getattr(importlib.import_module(f"validation.{_NAMES[name]}"), name)
+    loaded = getattr(importlib.import_module(f"validation.{_NAMES[name]}"), name)
+    return _warning(loaded) if name in _OF_A_SCENE else loaded
+
+
+@functools.cache
+def _warning(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of a scene that warns of the scene's implausible values before it runs."""
+
+    @functools.wraps(function)
+    def warned(scene: Any, *arguments: Any, **options: Any) -> Any:
+        from validation.scenes.plausibility import warn_implausible
+
+        warn_implausible(scene)
+        return function(scene, *arguments, **options)
+
+    return warned

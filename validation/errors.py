@@ -44,4 +44,8 @@ class InputError(ValueError):
         self.advice = advice
 
 
+class PlausibilityWarning(UserWarning):
+    """A value of a scene that no rock, soil or concrete has, most often one in another unit."""
+
+
 SceneError = InputError  # its name in version 0.1

@@ -1,7 +1,9 @@
 """Every command's help page has an example; its options exist, and it runs as it stands."""
 
+import itertools
 import re
 import shlex
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,11 @@ from oracles.pages import write_my_solver
 from oracles.submissions import right_answer
 
 from validation import load_scene, solve
-from validation.cli.entry import app
+from validation.cli import app as command_line
+from validation.cli.entry import GROUPS, app
+from validation.cli.printing import costs
+from validation.errors import InputError
+from validation.studies.catalogue import STUDIES
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 FAIL = [["judge", "locked", "--solver", "my_solver:solve"]]  # by the damping of the scheme that the scene names
@@ -64,3 +70,38 @@ def test_examples_run_as_they_stand(
             (tmp_path / "main/verdicts.json").write_bytes((tmp_path / "reports/results/verdicts.json").read_bytes())
         done = typed(*words, cwd=tmp_path)
         assert done.returncode == (words in FAIL), f"{words}\n{done.stdout}{done.stderr}"
+
+
+def test_every_command_stands_in_one_group_of_the_help() -> None:
+    assert sorted(itertools.chain.from_iterable(GROUPS.values())) == sorted({*COMMANDS, "merge"})
+    page = typed("--help").stdout
+    for group in GROUPS:
+        assert group in page
+
+
+def test_a_long_run_says_its_length_by_a_table_that_has_every_study() -> None:
+    assert list(costs.COSTS) == list(STUDIES)
+    assert costs.announcement(["core"]) is None and costs.announcement(["my-scene"]) is None
+    sentence = costs.announcement(list(STUDIES))
+    minutes = sum(costs.COSTS.values()) * costs.SECONDS / 60
+    assert sentence is not None and f"about {minutes:.0f} min where core takes 20 s" in sentence
+    assert "stability is 3" in sentence  # per cent
+
+
+@pytest.mark.parametrize(
+    ("work_of", "words"),
+    [("studies.pack.write_pack", ["export-pack", "pack"]), ("engine.run.finish", ["record", "--results", "results"])],
+)
+def test_what_takes_long_shows_a_bar(
+    work_of: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The bar starts while the first piece of work is still busy."""
+    started = threading.Event()
+
+    def work(*arguments: object, **options: object) -> None:
+        raise InputError("the bar is there" if started.wait(60) else "no bar")
+
+    monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
+    monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
+    monkeypatch.setattr(f"validation.{work_of}", work)
+    assert typed(*words, cwd=tmp_path).stderr == "error: the bar is there\n"

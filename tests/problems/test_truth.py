@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles.joints import slipping_spring_joint
 
 from validation.errors import InputError
 from validation.problems.bands import standard
@@ -15,7 +16,6 @@ from validation.problems.truth import exact, truth_of
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
 from validation.solvers.rigid.rocking import friction_needed
-from validation.theory.joints import slipping_spring_joint
 
 ROCKING = load_scene("field-rocking")
 

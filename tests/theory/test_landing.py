@@ -36,30 +36,33 @@ def on_springs(ratio: float, **values: Any) -> Scene:
     return UNLOADED.with_values({"contact.stiffness": ratio * UNLOADED.block.young, **values})
 
 
-def restitution_of(scene: Scene, solver: str) -> float:
-    row, _ = execute(Case(scene, solver), "", "")
-    value = row.metrics["contact.restitution"]
-    assert isinstance(value, float)
-    return value
+def measured(scene: Scene, solver: str, *metrics: str) -> list[float]:
+    """Return metrics of a run, no others of which are measured."""
+    row, _ = execute(Case(scene, solver, only=frozenset(metrics)), "", "")
+    return [float(row.metrics[metric]) for metric in metrics]  # type: ignore[arg-type]
 
 
-def stepped_by_dda(ratio: float, scheme: dict[str, Any], step: float, phase: float, transits: float = 30.0) -> float:
+def stepped_by_dda(ratio: float, scheme: dict[str, Any], step: float, phase: float) -> float:
     """Return the restitution of a landing that `dda` steps: it starts above the springs by the rest of the step."""
-    scene = on_springs(ratio, **scheme, **{"time.step": step, "time.steps": math.ceil(transits * TRANSIT / step)})
+    contact = landing.own_landing(2 * ratio).duration
+    steps = math.ceil((2 * contact + landing.FLIGHT) * TRANSIT / step)
+    scene = on_springs(ratio, **scheme, **{"time.step": step, "time.steps": landing.FEWEST + steps})
     gap = scene.time.discount * step * (1 - phase)
-    return restitution_of(scene.with_values({"contact.gap": gap}), "dda")
+    (restitution,) = measured(scene.with_values({"contact.gap": gap}), "dda", "contact.restitution")
+    return restitution
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 3.0, 10.0, 100.0])
 def test_the_own_landing_is_that_of_the_exact_motion(ratio: float) -> None:
     own = landing.own_landing(2 * ratio)
     scene = on_springs(ratio, **{"time.step": 0.05 * TRANSIT, "time.steps": 200})
-    row, _ = execute(Case(scene, "block-events"), "", "")
-    assert row.metrics["contact.restitution"] == pytest.approx(own.restitution, abs=1e-12)
-    assert row.metrics["contact.restitution_first"] == pytest.approx(own.first_rate, abs=1e-11)
-    assert row.metrics["switches.first_opening"] == pytest.approx(own.duration * TRANSIT, rel=1e-12)
+    names = ("contact.restitution", "contact.restitution_first", "switches.first_opening", "contact.penetration")
+    restitution, first_rate, opening, depth = measured(scene, "block-events", *names)
+    assert restitution == pytest.approx(own.restitution, abs=1e-12)
+    assert first_rate == pytest.approx(own.first_rate, abs=1e-11)
+    assert opening == pytest.approx(own.duration * TRANSIT, rel=1e-12)
     quarter = math.sqrt(scene.block.mass / (8 * scene.contact.stiffness))
-    assert row.metrics["contact.penetration"] == pytest.approx(own.depth * quarter, rel=2e-2)  # sampled in the row
+    assert depth == pytest.approx(own.depth * quarter, rel=2e-2)  # sampled in the row
 
 
 def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
@@ -67,8 +70,8 @@ def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
     scene = on_springs(1.0)
     stiff, soft, middle = (landing.contact_frequency(scene, r * scene.block.young) for r in (1e5, 1e-5, 1.0))
     assert stiff == pytest.approx(landing.quarter_mass_frequency(scene, 1e5 * scene.block.young), rel=1e-4)
-    assert soft == pytest.approx(landing.whole_mass_frequency(scene, 1e-5 * scene.block.young), rel=1e-4)
-    whole = landing.whole_mass_frequency(scene)
+    assert soft == pytest.approx(landing.quarter_mass_frequency(scene, 1e-5 * scene.block.young) / 2, rel=1e-4)
+    whole = landing.quarter_mass_frequency(scene) / 2
     assert middle < 0.9 * whole < 0.5 * landing.quarter_mass_frequency(scene)
     assert landing.own_landing(2e5).first_rate == pytest.approx(1.0, abs=1e-4)
     assert landing.own_landing(2e-5).restitution == pytest.approx(1.0, abs=1e-6)
@@ -90,20 +93,20 @@ def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(landing._Motion, "gap", ring)
     assert landing.own_landing(1.08e-16).duration == pytest.approx(math.pi / math.sqrt(1.08e-16))
     rigid_block = load_scene("rebound-constant").expand()[0]
-    expected = landing.whole_mass_frequency(rigid_block)
+    expected = landing.quarter_mass_frequency(rigid_block) / 2
     assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
 
 
 def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
     """Over V sqrt(p m / 2): 2 in the soft limit, 1.47 in the stiff one, whose second impact is the deepest."""
-    depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 60)]
+    depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 29)]
     assert depths[0] == pytest.approx(2.0, abs=1e-2) and depths[-1] == pytest.approx(1.4755, abs=1e-2)
     assert min(depths) > 1.46 and max(depths) < 2.0
     assert landing.rigid_stop() == pytest.approx((1.0, 1.475549201, 1.307094874, 0.89132203751993), abs=1e-9)
 
 
 def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> None:
-    kept = [landing.own_landing(2 * ratio).restitution for ratio in np.geomspace(1e-2, 1e4, 60)]
+    kept = [landing.own_landing(2 * ratio).restitution for ratio in np.geomspace(1e-2, 1e4, 25)]
     assert 0.8 < min(kept) < 0.83 and 0.999 < max(kept) < 1
     assert landing.own_landing(2e9).restitution == pytest.approx(landing.rigid_stop()[-1], abs=1e-4)
 
@@ -112,11 +115,10 @@ def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> Non
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
 def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
     stepping = Stepping.of(on_springs(ratio, **scheme))
-    for omega in (0.1, 0.7, 3.0):
+    for omega, phase in ((0.1, 0.5), (0.7, 0.8), (3.0, 0.15), (3.0, 0.8)):
         step = omega / landing.contact_frequency(on_springs(ratio))
-        for phase in (0.15, 0.5, 0.8):
-            expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
-            assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
+        expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
+        assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
 
 
 def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
@@ -194,7 +196,7 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
     assert landing._Settling.of(undamped, free_gap) is None
 
 
-@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("ratio", [0.1, 10.0])
 @pytest.mark.parametrize("scheme", [SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]])
 def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does_not(
     ratio: float, scheme: dict[str, Any]
@@ -212,7 +214,7 @@ def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does
         largest[factor] = off.max()
         if factor in (1.0, 1.2):
             worst = min(float(phases[int(np.argmax(off))]), 0.999)  # at 1 the step before ends on the springs
-            by_dda = stepped_by_dda(ratio, scheme, step, worst, 12.0)
+            by_dda = stepped_by_dda(ratio, scheme, step, worst)
             assert abs(by_dda - own) == pytest.approx(off.max(), abs=2e-3)
     assert max(largest[factor] for factor in (0.5, 0.8, 1.0)) < 1.03 * error  # a kink may lie between two phases
     assert max(largest[factor] for factor in (1.02, 1.05, 1.2)) > error  # the error rises, not in every stretch
@@ -238,17 +240,16 @@ def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
 def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
     for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
         stepping = Stepping(1.0, alpha, delta, 1.0)
-        coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-4, 2e-6))
+        coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-3, 2e-6))
         assert coarse is not None and fine is not None
-        assert math.log(coarse / fine, 100) == pytest.approx(1 / order, rel=0.1)
+        assert math.log(coarse / fine, 1000) == pytest.approx(1 / order, rel=0.1)
 
 
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:
-    for depth in (1e-4, 1e-3, 5e-3):
+    for depth in (1e-4, 5e-3):
         p = landing.springs_for(UNLOADED, 1.0, depth)
-        scene = on_springs(p / UNLOADED.block.young, **{"time.step": 0.01 * TRANSIT, "time.steps": 1000})
-        row, _ = execute(Case(scene, "block-events"), "", "")
-        assert row.metrics["contact.penetration"] == pytest.approx(depth, rel=2e-2)
+        scene = on_springs(p / UNLOADED.block.young, **{"time.step": 0.02 * TRANSIT, "time.steps": 400})
+        assert measured(scene, "block-events", "contact.penetration")[0] == pytest.approx(depth, rel=2e-2)
     soft = landing.springs_for(UNLOADED, 1.0, 1.0) / (UNLOADED.block.mass / 2)
     stiff = landing.springs_for(UNLOADED, 1.0, 1e-5) / (UNLOADED.block.mass / 8e-10)
     assert soft == pytest.approx(1.0, rel=1e-2) and stiff == pytest.approx(1.4755**2, rel=1e-2)

@@ -102,13 +102,30 @@ SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file
 def one_case(source: str, assignments: list[str] | None) -> Scene:
     """Return the single case of a scene, with values set; say which are to be picked where a sweep is left."""
     from validation.scenes import features
+
+    scene = stated_scene(source, assignments)
+    features.refuse_sweep(scene, source)
+    print_warnings(scene)
+    return scene
+
+
+def stated_scene(source: str, assignments: list[str] | None) -> Scene:
+    """Return a scene with values set, all its names known."""
     from validation.scenes.scene import load_scene, parse_assignment
     from validation.solvers.names import check_names
 
     scene = load_scene(source).with_values(dict(map(parse_assignment, assignments or [])))
     check_names(scene, source)
-    features.refuse_sweep(scene, source)
     return scene
+
+
+def print_warnings(scene: Scene) -> None:
+    """Print a line on standard error for each value of a scene that was probably not meant."""
+    from validation.runs.text import visible
+    from validation.scenes.plausibility import plausibility_warnings
+
+    for sentence in plausibility_warnings(scene):
+        typer.echo(visible(f"warning: {scene.name}: {sentence}"), err=True)
 
 
 def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
@@ -153,7 +170,7 @@ def _progress(
         transient=True,
         expand=True,
     )
-    task = bar.add_task(title, label="")
+    task = bar.add_task(title, total=1, label="")
 
     def show(completed: int, total: int, label: str) -> None:
         if visible and time.monotonic() - start > PROGRESS_DELAY and not bar.live.is_started:

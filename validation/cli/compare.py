@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import SetOption, app, one_case
+from validation.cli.app import SetOption, _progress, app, one_case
 from validation.cli.printing.output import echo
 
 if TYPE_CHECKING:
@@ -54,7 +54,9 @@ def compare(
     from validation.diagnosis.reading import parse_columns, parse_scale, read
 
     case = one_case(scene, assignments)
-    answer = judge(case, read(history, parse_columns(columns), parse_scale(scale)), tolerance)
+    foreign = read(history, parse_columns(columns), parse_scale(scale))
+    with _progress("compare", between_calls=True):
+        answer = judge(case, foreign, tolerance)
     if report is not None:
         from validation.report.chapters.compare import write_page
 

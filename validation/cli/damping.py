@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, app, one_case
+from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, _progress, app, one_case
 from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import broken, echo, terminal_width
 
@@ -141,8 +141,9 @@ def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) 
     from validation.advice.advice import advise as solve_for_damping
     from validation.advice.advice import expected_errors
 
-    advice = solve_for_damping(case, damping, solve_for)
-    errors = [expected_errors(case, solution) for solution in advice.solutions]
+    with _progress("advise", between_calls=True):
+        advice = solve_for_damping(case, damping, solve_for)
+        errors = [expected_errors(case, solution) for solution in advice.solutions]
     if as_json:
         data = advice.as_dict()
         for solution, error in zip(data["solutions"], errors, strict=True):

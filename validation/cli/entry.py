@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 import sys
 import warnings
 from collections.abc import Callable
@@ -30,33 +31,26 @@ COMMANDS = (
     waves,
     work,
 )  # importing them declares their commands
-FIRST = (
-    "list",
-    "show",
-    "run",
-    "solve",
-    "report",
-    "figures",
-    "gallery",
-    "compare",
-    "judge",
-    "damping",
-    "advise",
-)  # of the help
+GROUPS = {  # of the help, each with its commands, in their order
+    "Scenes and runs": ("list", "show", "run", "merge", "solve"),
+    "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
+    "Your own code or program": ("judge", "compare", "export-pack"),
+    "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
+}
+ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (
     "the numbers leave the range of double precision; a value of the scene or an option is far too large or too small"
 )
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
-def _position(name: str | None) -> int:
-    return FIRST.index(name) if name in FIRST else len(FIRST)
-
-
-for command in app.registered_commands:  # typer keeps the line breaks of a docstring, which are not those of a terminal
+for command in app.registered_commands:
+    command.name = command.name or getattr(command.callback, "__name__", "")
+    command.rich_help_panel = next(group for group, names in GROUPS.items() if command.name in names)
+    # typer keeps the line breaks of a docstring, which are not those of a terminal
     paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
-app.registered_commands.sort(key=lambda command: _position(command.name or getattr(command.callback, "__name__", None)))
+app.registered_commands.sort(key=lambda command: ORDER.index(command.name or ""))
 
 
 @interruptible()

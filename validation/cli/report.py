@@ -10,7 +10,7 @@ import typer
 if TYPE_CHECKING:
     from validation.runs.results import Results
 
-from validation.cli.app import RESULTS, ResultsOption, app
+from validation.cli.app import RESULTS, ResultsOption, _progress, app
 from validation.cli.printing.output import echo
 
 
@@ -30,7 +30,8 @@ def report(
     if out.suffix.lower() != ".pdf":
         raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
     store = Results(results)
-    page = build(store, out)
+    with _progress("report", between_calls=True):
+        page = build(store, out)
     print_unread(store)
     echo(f"wrote {page}")
 

@@ -116,6 +116,7 @@ def run(
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
     from validation.cli.printing.answer import RunAnswer, as_data
+    from validation.cli.printing.costs import print_before_run
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run
     from validation.engine.measured import complaints, missing_gates
@@ -148,6 +149,7 @@ def run(
     store.check()
     before = None if baseline is None else read_verdicts(baseline)
 
+    print_before_run(studies, quiet)
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
     with errors_only() if quiet else nullcontext():
         runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)

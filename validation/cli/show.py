@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from validation.cli.app import SceneArgument, SetOption, app
+from validation.cli.app import SceneArgument, SetOption, app, print_warnings, stated_scene
 from validation.cli.damping import JsonOption
 from validation.cli.printing.output import echo
 
@@ -20,11 +20,9 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
     """
     from validation.cli.printing import scene_page
     from validation.cli.printing.output import terminal_width
-    from validation.scenes.scene import load_scene, parse_assignment
-    from validation.solvers.names import check_names
 
-    stated = load_scene(scene).with_values(dict(map(parse_assignment, assignments or [])))
-    check_names(stated, scene)
+    stated = stated_scene(scene, assignments)
+    print_warnings(stated)
     if as_json:
         echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
     else:

@@ -179,13 +179,14 @@ def rayleigh(
     from validation.advice import rayleigh as advice
 
     check_figure(figure)
-    scheme = _scheme(scene, assignments, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg})
+    case = None if scene is None else one_case(scene, assignments)
+    scheme = _scheme(case, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg})
     points: list[tuple[float, float]] = []
     if ratios or a0 is not None or a1 is not None:
         points = advice.points(ratios or [], a0, a1)
         scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
     ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
-    tables = None if scene is None else one_case(scene, assignments).damping
+    tables = None if case is None else case.damping
     if tables is not None and tables.present:
         rayleigh_terms = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
         echo(f"note: the scene's own damping tables, {rayleigh_terms}, come on top of what the step hides")
@@ -198,14 +199,14 @@ def rayleigh(
         _draw_ratios(scheme, band, figure)
 
 
-def _scheme(scene: str | None, assignments: list[str] | None, options: dict[str, float | None]) -> Stepping:
+def _scheme(scene: Scene | None, options: dict[str, float | None]) -> Stepping:
     """Return the scheme of a scene, or of the options, which go before it."""
     from validation.advice.rayleigh import scheme_of
     from validation.theory.stepping import Stepping
 
     values = {name: value for name, value in options.items() if value is not None}
     if scene is not None:
-        stepping = Stepping.of(one_case(scene, assignments))
+        stepping = Stepping.of(scene)
         values = {name: getattr(stepping, name) for name in options} | values
     return scheme_of(values)
 

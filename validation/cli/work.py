@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, app
+from validation.cli.app import GATE_FAILED, RESULTS, ResultsOption, _progress, app
 from validation.cli.printing.output import echo
 from validation.cli.signals import promise_rows
 
@@ -75,7 +75,8 @@ def record(
         )
     recorded = {} if update else work_record.load()["cases"]  # before the runs: without a record they are for nothing
     promise_rows()
-    finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results))
+    with _progress(WORK_PRECISION.name, between_calls=True) as progress:
+        finished = finish(WORK_PRECISION.cases(), WORK_PRECISION, Results(results), progress=progress)
     if update:
         work_record.update(finished, study_cases(), reason)
         echo(f"wrote {work_record.PATH}")

@@ -5,6 +5,7 @@ A solver says which of them it handles; a scene that has another one is refused 
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -110,7 +111,14 @@ def clash(scene: Scene, apart: Apart) -> str | None:
 
 
 def refuse_sweep(scene: Scene, source: str = "") -> None:
-    """Refuse a scene with a sweep where one case is asked for; it is named by its `source` where that is known.
+    """Refuse a scene with a sweep where one case is needed.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    source
+        What the command line was given; empty for who calls from Python, whose remedy is another.
 
     Raises
     ------
@@ -118,12 +126,16 @@ def refuse_sweep(scene: Scene, source: str = "") -> None:
         One value must be picked for a swept field.
     """
     if scene.sweep:
-        fields = ", ".join(field for field in scene.sweep if field != "mode")
+        swept = {field: values for field, values in scene.sweep.items() if field != "mode"}
+        advice = "use --set KEY=VALUE"
+        if not source:
+            first_values = {field: values[0] for field, values in swept.items()}
+            advice = f"take scene.with_values({json.dumps(first_values)}), or a case of scene.expand()"
         raise InputError(
-            f"one value must be picked for {fields}",
+            f"one value must be picked for {', '.join(swept)}",
             source=source or scene.name,
             field="sweep",
-            advice="use --set KEY=VALUE",
+            advice=advice,
         )
 
 

@@ -36,6 +36,7 @@ class SceneTables(Section):
 
     name: str = "scene"
     title: str = ""
+    extreme: str = ""  # why its values are meant that no rock has; `scenes.plausibility` warns of those of other scenes
     stated_block: BlockSection | None = Field(None, alias="block")
     stated_contact: ContactSection | None = Field(None, alias="contact")
     stated_load: LoadSection | None = Field(None, alias="load")

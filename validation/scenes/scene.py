@@ -7,6 +7,7 @@ A scene holds problem data only; no solver is imported here. Every defect of a s
 from __future__ import annotations
 
 import difflib
+import functools
 import itertools
 import json
 import math
@@ -23,6 +24,7 @@ from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
 from validation.scenes.kinds import SceneTables
 from validation.scenes.tables import GateSection, RunSection, TimeSection
+from validation.scenes.unknown import clip, refuse_unknown_keys
 
 SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
@@ -207,6 +209,12 @@ def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str
     return tables
 
 
+@functools.cache
+def _all_tables() -> dict[str, type[Section]]:
+    """Return the tables that a scene may have, and the scene itself under the empty name."""
+    return {"": Scene} | tables_of_scenes()
+
+
 def _sweepable() -> set[str]:
     """Return the dotted keys of the tables that a sweep may vary."""
     tables = {place: table for place, table in tables_of_scenes().items() if place != "run" and "." not in place}
@@ -235,6 +243,8 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
         With one line: source, field, rule and value of the first defect.
     """
     try:
+        # A file must not state the scene's name, which is that of the file; plain data have it.
+        refuse_unknown_keys({key: value for key, value in data.items() if key != "name"}, _all_tables(), source)
         return Scene.model_validate(data)
     except ValidationError as error:
         raise first_defect(error, source) from None
@@ -269,16 +279,8 @@ def first_defect(error: ValidationError, source: str) -> InputError:
         rule,
         source=source,
         field=field or None,
-        value=(value or _clip(first["input"])) + (f" (and {more} more)" if more else ""),
+        value=(value or clip(first["input"])) + (f" (and {more} more)" if more else ""),
     )
-
-
-def _clip(value: object, width: int = 60) -> str:
-    try:
-        text = repr(value)
-    except (RecursionError, ValueError):  # too many levels, or an integer of too many digits
-        text = f"a {type(value).__name__} too large to print"
-    return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
 def scene_names() -> list[str]:
@@ -303,8 +305,7 @@ def load_scene(source: str | Path) -> Scene:
     if path.suffix != ".toml" and str(source) in scene_names():
         path = SCENE_DIRECTORY / f"{source}.toml"
     data = _read_toml(path)
-    if "name" in data:
-        raise InputError("unknown key", source=path.name, field="name", value=_clip(data["name"]))
+    refuse_unknown_keys(data, _all_tables(), path.name)
     _beside(path.parent, data)
     return parse_scene({"name": path.stem} | data, path.name)
 

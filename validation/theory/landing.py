@@ -61,11 +61,6 @@ def quarter_mass_frequency(scene: Scene, stiffness: float | None = None) -> floa
     return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / scene.block.mass)
 
 
-def whole_mass_frequency(scene: Scene, stiffness: float | None = None) -> float:
-    """Return sqrt(2 p / m), of springs much softer than the block, p << E, or of a rigid block [rad/s]."""
-    return quarter_mass_frequency(scene, stiffness) / 2
-
-
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
     """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
     modulus, _ = statics.moduli(scene)

@@ -15,6 +15,7 @@ from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
 from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
+from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.scene import Scene
 
 INSIDE = 15  # characters of a block's width in the drawing
@@ -66,6 +67,7 @@ def as_data(scene: Scene) -> dict[str, Any]:
         "cases": len(scene.expand()),
         "numbers": {r.name: {"low": r.low, "high": r.high, "unit": r.unit} for r in numbers.ranges(derived)},
         "remarks": dict(_remarks(sampled_cases, derived)),
+        "warnings": plausibility_warnings(scene),
     }
 
 

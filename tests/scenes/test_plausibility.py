@@ -1,0 +1,137 @@
+"""Values that were probably not meant: which are warned of, and what to write; built-in scenes are left alone."""
+
+from __future__ import annotations
+
+import json
+import re
+import warnings
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import typed
+
+import validation
+from validation.errors import PlausibilityWarning
+from validation.scenes.plausibility import implausible_values, plausibility_warnings
+from validation.scenes.scene import Scene, load_scene, parse_scene, scene_names
+
+ROCK = {"block": {"side": 2.0, "density": 2700.0, "young": 3e10}, "contact": {"stiffness": 1e9}}
+SLIDING = {"law": "unilateral", "stiffness": 1e9}
+COLUMN = {
+    "column": {"motion": "pressure", "layer": [{"thickness": 1.0, "density": 2700.0, "young": 3e10}]},
+    "input": {"shape": "ricker", "velocity": 0.1, "frequency": 10.0},
+    "time": {"step": 1e-3, "steps": 1},
+}
+# what a scene states otherwise than rock: its field and kind, and the line that is said to write
+CASES = [
+    ({"block.density": 2.7}, "block.density", "density", "write density = 2700"),
+    ({"block.density": 26.5}, "block.density", "density", "write density = 2701"),
+    ({"block.young": 30}, "block.young", "modulus", "write young = 30e9"),
+    ({"block.young": 30000}, "block.young", "modulus", "write young = 30000e6"),
+    ({"block.young": 5e6, "load.pressure": 1e5}, "block.young", "wave", "write young = 5e+09"),
+    ({"block.young": 3e13}, "block.young", "wave", "write young = 3e+10"),
+    ({"load.pressure": 5e9}, "load.pressure", "strain", "write pressure in Pa"),
+    ({"load.pressure": 0.0, "load.traction": 2e9}, "load.traction", "strain", "write traction in Pa"),
+    ({"load.gravity": 9.81e5, "block.young": 3e10}, "load.gravity", "strain", "write gravity = 9.81"),
+    ({"contact": SLIDING | {"friction": 0.577}}, "contact.friction", "friction", "write friction = 29.98"),
+    ({"contact": SLIDING | {"friction": 4.9}}, "contact.friction", "friction", "write the angle in degrees"),
+]
+PLAUSIBLE = [
+    {},
+    {"contact": SLIDING | {"friction": 0.0}},  # without friction, on purpose
+    {"contact": SLIDING | {"friction": 5.0}},
+    {"block.density": 301.0},  # at 10 km/s
+    {"block.density": 100.0, "block.young": 9.9e9},
+    {"block.young": 2.7e7 * 1.0001, "load.pressure": 1e5},  # 100 m/s
+    {"block.young": 2.7e11 * 0.9999},  # 10 km/s
+    {"load.pressure": 2.99e9},
+]
+
+
+def rock(**tables: Any) -> Scene:
+    """Return a block of rock under a pressure."""
+    data = ROCK | {"load": {"pressure": 5e6}, "time": {"step": 0.002, "steps": 5}} | tables
+    return parse_scene({"name": "rock"} | data, "rock.toml")
+
+
+@pytest.mark.parametrize(("values", "field", "kind", "advice"), CASES)
+def test_a_value_in_another_unit_is_named_with_what_to_write(
+    values: dict[str, Any], field: str, kind: str, advice: str
+) -> None:
+    (found,) = implausible_values(rock().with_values(values))
+    assert (found.field, found.kind) == (field, kind)
+    assert advice in found.sentence and 'extreme = "why"' in found.sentence
+
+
+@pytest.mark.parametrize("values", PLAUSIBLE)
+def test_rock_soil_and_no_friction_are_left_alone(values: dict[str, Any]) -> None:
+    assert implausible_values(rock().with_values(values)) == []
+
+
+def test_the_limits_are_those_of_the_model_that_is_run() -> None:
+    """In plane strain a wave is faster; a layer's by its modulus for the motion."""
+    near = rock().with_values({"block.young": 2.7e7 * 0.95, "block.poisson": 0.3, "load.pressure": 1e5})
+    assert [value.kind for value in implausible_values(near)] == ["wave"]
+    assert implausible_values(near.with_values({"block.hypothesis": "plane strain"})) == []
+
+
+def test_columns_are_looked_at_layer_by_layer() -> None:
+    layers = [dict(COLUMN["column"]["layer"][0], **more) for more in ({}, {"density": 2.7}, {"young": 30})]
+    data = COLUMN | {"column": {"motion": "shear", "layer": layers}}
+    fields = [value.field for value in implausible_values(parse_scene(data, "x.toml"))]
+    assert fields == ["column.layer.1.density", "column.layer.2.young"]
+    hit = parse_scene(COLUMN, "x.toml").with_values({"input.velocity": 500.0})  # 500 m/s of 3333 m/s
+    assert [(value.field, value.kind) for value in implausible_values(hit)] == [("input.velocity", "strain")]
+    pressed = {"at": "top", "shape": "ricker", "pressure": 5e9, "frequency": 10.0}
+    (strained,) = implausible_values(parse_scene(COLUMN | {"input": pressed}, "x.toml"))
+    assert strained.field == "input.pressure"
+    slipping = {"motion": "shear", "law": "frictional", "gravity": 9.81, "stiffness": 1e9, "friction": 0.5}
+    slips = parse_scene(COLUMN | {"column": COLUMN["column"] | slipping}, "x.toml")
+    assert [value.field for value in implausible_values(slips)] == ["column.friction"]
+
+
+def test_a_rigid_layer_has_no_wave() -> None:
+    stack = {"law": "unilateral", "gravity": 9.81, "stiffness": 1e9}
+    rigid = [{"thickness": 1.0, "density": 2700.0, "young": "inf"}]
+    scene = parse_scene({"column": COLUMN["column"] | stack | {"layer": rigid}, "time": COLUMN["time"]}, "x.toml")
+    assert implausible_values(scene) == []
+
+
+def test_a_sweep_says_in_how_many_cases() -> None:
+    swept = rock(sweep={"block.young": [3e4, 3e10, 4e4]})
+    (sentence,) = plausibility_warnings(swept)
+    assert sentence.endswith("(in 2 of 3 cases)") and "young = 30000 Pa" in sentence
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_built_in_scenes_are_plausible_or_say_that_they_are_extreme(name: str) -> None:
+    scene = load_scene(name)
+    assert plausibility_warnings(scene) == []
+    if scene.extreme:  # and not without need
+        assert plausibility_warnings(scene.with_values({"extreme": ""}))
+
+
+def test_python_warns_once_a_scene_and_not_once_a_solver() -> None:
+    scene = rock().with_values({"block.young": 31234.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        for solver in ("dda", "bar"):
+            validation.solve(scene, solver)
+        validation.damping(scene)
+    assert [(warning.category, warning.filename) for warning in caught] == [(PlausibilityWarning, "rock")]
+
+
+def test_commands_warn_on_standard_error_once(tmp_path: Path) -> None:
+    lines = ['title = "t"', "[block]", "side = 2.0", "density = 2.7", "young = 3e10", "[contact]", "stiffness = 1e9"]
+    scene = tmp_path / "mine.toml"
+    scene.write_text("\n".join([*lines, "[load]", "pressure = 5e6", "[time]", "step = 0.002", "steps = 5\n"]))
+    results = ["--results", str(tmp_path / "results")]
+    for words in (["show"], ["solve"], ["damping"], ["advise", "--damping", "0.05"], ["rayleigh"], ["run", *results]):
+        done = typed(words[0], str(scene), *words[1:])
+        assert re.findall(r"^warning: mine: (\S+)", done.stderr, re.M) == ["block.density"], words
+        assert done.returncode == 0, words
+    data = json.loads(typed("show", str(scene), "--json").stdout)
+    assert len(data["warnings"]) == 1
+    scene.write_text('extreme = "foam"\n' + scene.read_text())
+    assert typed("solve", str(scene)).stderr.count("warning") == 0

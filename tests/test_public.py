@@ -1,0 +1,101 @@
+"""The names that Python's users import: their list, version, types, the shape of a solution and its errors."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import validation
+from validation import InputError, Outcome, Run, Scene, Solution, load_scene, solve
+
+DOCS = Path(__file__).parents[1] / "docs/python.md"
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 20})
+
+
+@pytest.fixture
+def solution(scene: Scene) -> Solution:
+    return solve(scene, "dda")
+
+
+def test_dir_lists_the_public_names_and_all_of_them_load() -> None:
+    assert set(validation.__all__) < set(dir(validation)) and "__version__" in dir(validation)
+    assert not {name for name in dir(validation) if name.startswith("_")} - {"__version__"}
+    assert all(getattr(validation, name) is not None for name in dir(validation))
+    assert validation.__version__ == version("dda-validation")
+
+
+def test_type_checkers_see_the_names_that_are_loaded() -> None:
+    """The names behind `TYPE_CHECKING` are those of the table, from the modules of the table."""
+    tree = ast.parse(Path(str(validation.__file__)).read_text(encoding="utf-8"))
+    imports = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.names[0].asname:
+            imports[node.names[0].name] = str(node.module).removeprefix("validation.")
+    assert imports == validation._NAMES
+
+
+def test_the_page_of_python_names_each_of_them() -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    assert [name for name in dir(validation) if name != "SceneError" and f"`{name}" not in text] == []
+
+
+def test_a_solution_is_a_run_with_a_short_text(scene: Scene, solution: Solution) -> None:
+    assert isinstance(solution, Run) and (solution.scene, solution.solver) == (scene, "dda")
+    peak = min(solution.displacement)
+    assert repr(solution).startswith(f"<Solution: dda on {scene.name}, 20 steps, peak displacement {peak:.4g} m, ")
+    assert repr(solution).endswith(" s>")
+    unstable = {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 0.1, "time.steps": 2000, "time.allow_unstable": True}
+    grown = solve(scene.with_values(unstable), "dda")
+    assert grown.outcome is not Outcome.COMPLETED and str(grown.outcome) in repr(grown)
+
+
+def test_columns_are_plotted_with_labelled_axes(solution: Solution, tmp_path: Path) -> None:
+    figure = solution.plot(path=tmp_path / "history.svg")
+    labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
+    assert labels == [("Time [s]", "Displacement [m]"), ("Time [s]", "Contact pressure [Pa]")]
+    drawn = figure.axes[0].get_lines()[0]
+    assert list(drawn.get_xdata()) == list(solution.time) and list(drawn.get_ydata()) == list(solution.displacement)
+    assert (tmp_path / "history.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
+    assert len(solution.plot(["contact_pressure"]).axes) == 1
+
+
+@pytest.mark.parametrize(("options", "field"), [({"columns": ["speed"]}, "columns"), ({"path": "x.gif"}, "path")])
+def test_what_cannot_be_plotted_is_refused(solution: Solution, options: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        solution.plot(**options)  # type: ignore[arg-type]
+    assert refused.value.field == field
+
+
+def test_a_sweep_is_refused_with_the_remedy_of_python() -> None:
+    swept = load_scene("figures-3-4")
+    with pytest.raises(InputError) as refused:
+        solve(swept, "dda")
+    assert refused.value.field == "sweep" and "--set" not in str(refused.value)
+    remedy = str(refused.value.advice).partition("take scene")[2].partition(", or")[0]
+    picked = eval("scene" + remedy, {"scene": swept})
+    assert not picked.sweep and solve(picked, "dda").outcome is Outcome.COMPLETED
+
+
+def test_what_is_no_name_of_the_package_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = validation.nothing
+
+
+def test_a_folder_of_the_users_named_dda_is_named_by_python_too(tmp_path: Path) -> None:
+    (tmp_path / "dda").mkdir()
+    (tmp_path / "dda/__init__.py").touch()
+    code = "import validation\ntry:\n    validation.solve\nexcept ImportError as error:\n    print(error)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith(f"{tmp_path / 'dda'} is in the way of the package dda") and "rename it" in done.stdout
+    command = [sys.executable, "-P", "-m", "dda_validation", "list", "studies"]  # as an installed command starts
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "core" in done.stdout, done.stderr

@@ -1,0 +1,164 @@
+"""Unknown keys of a scene: all of them, each with the key that was probably meant."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from validation.errors import InputError
+from validation.scenes.keys import Section, keys_of
+
+# What other programs, and the symbols of the text, call a key; compared in lower case without separators.
+OTHER_NAMES = {
+    "title": ("name", "description"),
+    "time.step": ("timestep", "deltat", "g1"),
+    "time.steps": ("nsteps", "numberofsteps", "nstep", "n"),
+    "time.gg": ("dynamic", "discount", "kineticdamping"),
+    "time.alpha": ("beta", "newmarkbeta"),
+    "time.delta": ("gamma", "newmarkgamma"),
+    "block.side": ("size", "length"),
+    "block.density": ("rho", "mass", "unitweight"),
+    "block.young": ("e", "youngsmodulus", "modulus", "emodulus", "elasticity"),
+    "block": ("material", "geometry"),
+    "block.poisson": ("nu", "mu", "poissonsratio", "poissonratio"),
+    "block.subdivide": ("subblocks",),
+    "contact.stiffness": ("penalty", "normalstiffness", "spring", "springs", "g0", "kn"),
+    "contact.shear_stiffness": ("shearpenalty", "tangentialstiffness", "ks"),
+    "contact.friction": ("phi", "frictionangle", "frictioncoefficient"),
+    "load.pressure": ("load", "stress", "q"),
+    "load.gravity": ("weight",),
+    "load.slope": ("angle", "inclination", "dip"),
+    "damping.mass": ("a0",),
+    "damping.stiffness": ("a1",),
+    "fem.degree": ("order",),
+    "time": ("scheme", "newmark", "numerics"),
+}
+SHORTEST = 3  # letters of a name that another may be spelt like
+CLOSE = 0.6  # similarity of two names from which on one may be meant for the other
+NAMED = 30  # unknown keys that are named in full
+
+
+def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Section]], source: str) -> None:
+    """Refuse all keys that are none, in one error.
+
+    Parameters
+    ----------
+    data
+        What a scene file states.
+    tables
+        The tables that a scene may have, the scene itself under the empty name.
+    source
+        The file or the scene.
+
+    Raises
+    ------
+    InputError
+        With the keys as its field, and those that were probably meant as its advice.
+    """
+    unknown = list(_unknown_keys(data, "", "", tables))
+    if not unknown:
+        return
+    absent = ("block", "contact", "load") if "column" in data else ("column", "input")
+    known_keys = []
+    for place, table in tables.items():
+        if place and place.partition(".")[0] not in absent:
+            known_keys += [f"{place}.{key}" for key in _names(table)]
+    suggestions = {}
+    for place, stated_at, name, value in unknown:
+        # What stands in a table of an unknown name is not looked up: the table's name comes first.
+        candidates = [] if isinstance(value, dict) else known_keys
+        if meant := _meant(place, name, tables, candidates):
+            suggestions[f"{stated_at}{name}"] = meant
+    fields = [f"{stated_at}{name}" for _, stated_at, name, _ in unknown]
+    more = f" and {len(fields) - NAMED} more" if len(fields) > NAMED else ""
+    if len(fields) == 1:
+        meant = suggestions.get(fields[0])
+        advice = "dda-validate list keys names all" if meant is None else f"did you mean {meant}?"
+        raise InputError("unknown key", source=source, field=fields[0], value=clip(unknown[0][3]), advice=advice)
+    questions = [f"{suggestions[field]} for {field}" for field in fields[:NAMED] if field in suggestions]
+    advice = f"did you mean {', '.join(questions)}? " if questions else ""
+    raise InputError(
+        "unknown keys",
+        source=source,
+        field=", ".join(fields[:NAMED]) + more,
+        advice=f"{advice}dda-validate list keys names all",
+    )
+
+
+def _names(table: type[Section]) -> list[str]:
+    """Return the names of a table's keys as a file states them; the name of a scene is that of its file."""
+    return [field.alias or name for name, field in table.model_fields.items() if name != "name"]
+
+
+def _unknown_keys(
+    data: Mapping[str, Any], place: str, stated_at: str, tables: Mapping[str, type[Section]]
+) -> Iterator[tuple[str, str, str, Any]]:
+    """Yield table, its place in the file, name and value of the unknown keys of a table and of those in it."""
+    names = _names(tables[place])
+    for name, value in data.items():
+        inside = f"{place}.{name}" if place else name
+        if name not in names:
+            yield place, stated_at, name, value
+        elif inside == "sweep" and isinstance(value, dict):
+            keys = {"mode", "name", *tables, *_names(tables[""])}  # what is no key of a table is refused elsewhere
+            keys |= {f"{table}.{key}" for table, model in tables.items() for key in _names(model)}
+            unknown = (field for field in value if field not in keys)
+            yield from (("sweep", "sweep.", field, value[field]) for field in unknown)
+        elif inside in tables and isinstance(value, dict):
+            yield from _unknown_keys(value, inside, f"{stated_at}{name}.", tables)
+        elif inside in tables and isinstance(value, list):
+            for number, entry in enumerate(value):
+                if isinstance(entry, dict):
+                    yield from _unknown_keys(entry, inside, f"{stated_at}{name}.{number}.", tables)
+
+
+def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere: list[str]) -> str | None:
+    """Return the key that a name in a table was probably meant for.
+
+    In this order: a key of this table, a key elsewhere, of which it is the name or another one; a name in this table
+    that is spelt alike, and one elsewhere.
+    """
+    if place == "sweep":
+        place, _, name = name.rpartition(".")
+        if place not in tables:
+            return None
+    prefix = f"{place}." if place else ""
+    here = [f"{prefix}{key}" for key in _names(tables[place])]
+    named_here = _fields_by_name(here, tables)
+    named_elsewhere = _fields_by_name(elsewhere, tables)
+    plain = _plain(name)
+    for fields in (named_here, named_elsewhere):
+        if plain in fields:
+            return fields[plain]
+    for fields in (named_here, named_elsewhere):
+        words = [known for known in fields if len(known) >= SHORTEST]
+        if near := difflib.get_close_matches(plain, words, n=1, cutoff=CLOSE):
+            return fields[near[0]]
+    return None
+
+
+def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> dict[str, str]:
+    """Return fields by all that they are called, plainly: their names, symbols, and other programs' names."""
+    by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
+    for field in reversed(fields):
+        place, _, name = field.rpartition(".")
+        symbols = [key.symbol for known, _, key in keys_of(tables[place]) if known == name]
+        known = field.replace("column.layer.", "block.")  # a layer's material is called as a block's
+        for other in (*OTHER_NAMES.get(known, ()), *filter(None, symbols)):
+            by_name.setdefault(_plain(other), field)
+    return by_name
+
+
+def _plain(name: str) -> str:
+    """Return a name in lower case without separators."""
+    return "".join(character for character in name.casefold() if character.isalnum())
+
+
+def clip(value: object, width: int = 60) -> str:
+    """Return a value as it is shown in an error."""
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # too many levels, or an integer of too many digits
+        text = f"a {type(value).__name__} too large to print"
+    return text if len(text) <= width else f"{text[: width - 3]}..."
