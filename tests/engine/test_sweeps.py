@@ -101,7 +101,7 @@ def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(
     """The first worker dies on its first case; what no worker had begun goes to another pool."""
     parent = os.getpid()
     alone: list[str] = []
-    run, in_own_process = executor.execute, executor._in_own_process
+    run, in_own_process = executor.execute, executor.run_in_own_process
 
     def deadly(case: Case, key: str, study: str) -> executor.Ending:
         if os.getpid() != parent and not (tmp_path / "killed").exists():
@@ -114,7 +114,7 @@ def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(
         return in_own_process(task)
 
     monkeypatch.setattr(executor, "execute", deadly)
-    monkeypatch.setattr(executor, "_in_own_process", noted)
+    monkeypatch.setattr(executor, "run_in_own_process", noted)
     (ended,) = run_cases([study_cases(sweep(scene, "sweep", 12))], Results(tmp_path / "r"), jobs=2)
     assert {row.outcome for row in ended.rows.values()} == {Outcome.COMPLETED} and len(ended.rows) == 12
     assert 1 <= len(alone) <= 2
@@ -128,9 +128,9 @@ def test_a_case_beyond_a_worker_s_share_of_the_memory_runs_after_the_others(
     )
     monkeypatch.setattr(memory, "available", lambda: 12.0)
     pooled: list[int] = []
-    on_processes = executor._on_processes
+    on_processes = executor.run_on_processes
     monkeypatch.setattr(
-        executor, "_on_processes", lambda tasks, *more: pooled.append(len(tasks)) or on_processes(tasks, *more)
+        executor, "run_on_processes", lambda tasks, *more: pooled.append(len(tasks)) or on_processes(tasks, *more)
     )
     order: list[str] = []
     (ended,) = run_cases(

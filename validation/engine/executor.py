@@ -88,17 +88,17 @@ def executed(pending: Sequence[Pending], jobs: int = 1, executor: Executor | Non
     large = {task.key for task in pending if task.memory() > share}
     remaining = {task.key: task for task in pending if task.key not in large}
     while remaining:
-        with TemporaryDirectory() as notes, closing(_on_processes(remaining, jobs, Path(notes))) as endings:
+        with TemporaryDirectory() as notes, closing(run_on_processes(remaining, jobs, Path(notes))) as endings:
             for row, history in endings:
                 del remaining[row.key]
                 yield row, history
             suspects = [path.read_text() for path in Path(notes).iterdir()]
         running = [key for key in suspects if key in remaining] or list(remaining)[:1]
         for key in running:
-            yield _in_own_process(remaining.pop(key))
+            yield run_in_own_process(remaining.pop(key))
     for task in pending:
         if task.key in large:
-            yield _in_own_process(task)
+            yield run_in_own_process(task)
 
 
 def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Iterator[Ending]:
@@ -109,12 +109,12 @@ def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Iterator[Endi
         if error is None:
             yield future.result()
         elif isinstance(error, BrokenExecutor):
-            yield _in_own_process(futures[future])
+            yield run_in_own_process(futures[future])
         else:  # on its way there or back: what a worker runs never raises
             yield futures[future].failed(error_text(error))
 
 
-def _on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Iterator[Ending]:
+def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Iterator[Ending]:
     """Run cases on worker processes; those that a lost worker has taken with it are left out.
 
     Each worker keeps a note of the case that it runs, in a file of its own in the directory `notes`.
@@ -137,7 +137,7 @@ def _run_with_note(task: Pending) -> Ending:
         _note_file.unlink()
 
 
-def _in_own_process(task: Pending) -> Ending:
+def run_in_own_process(task: Pending) -> Ending:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
     with TemporaryDirectory() as notes, _pool(1, Path(notes)) as pool:
         try:
