@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - so that both libraries are loaded
+from conftest import thinned
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from validation.engine.case import Case
@@ -90,7 +91,7 @@ def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
     assert threads() == {MANY}
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+@pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
 def test_a_worker_process_has_one_thread(many_threads: None, tmp_path: Path, method: str) -> None:
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method(method, force=True)
@@ -150,6 +151,7 @@ try:
 except SystemExit:
     pass
 import numpy, scipy.linalg
+from conftest import thinned
 from threadpoolctl import threadpool_info
 print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_NUM_THREADS"))
 """
@@ -159,6 +161,7 @@ def test_a_command_has_one_thread_as_typed() -> None:
     assert run_python(TYPED) == "{1} 1"
 
 
+@pytest.mark.long
 def test_a_command_has_as_many_as_the_user_says() -> None:
     assert run_python(TYPED, OMP_NUM_THREADS="2") == "{2} 2"
 
