@@ -81,6 +81,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_site_program",
     "test_slipping_pack",
     "test_subblocks_chapter",
+    "test_sweeps",
     "test_submissions",
     "test_turning_chapter",
     "test_user_solvers",

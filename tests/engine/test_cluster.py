@@ -1,6 +1,7 @@
 """Sweeps over processes and over a Dask cluster: the same rows, streamed into the same results directory."""
 
 import itertools
+import os
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -58,38 +59,30 @@ def test_an_absent_package_is_named(monkeypatch):
         pass
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")  # another package's own
-def test_a_dask_cluster_gives_the_same_rows(tmp_path):
+def test_a_dask_cluster_gives_the_same_rows_and_a_lost_worker_costs_none(tmp_path):
     distributed = pytest.importorskip("distributed")
     run_study(STUDY, Results(tmp_path / "serial"))
+    lost = []
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as workers:
+
+        def lose(done: int, total: int, label: str) -> None:
+            if not lost:
+                lost.append(next(iter(workers.workers.values())).pid)
+                os.kill(lost[0], 9)
+
         address = workers.scheduler_address
         with cluster.executor(address) as pool:
-            run_study(STUDY, Results(tmp_path / "dask"), executor=pool)
+            run_study(STUDY, Results(tmp_path / "dask"), executor=pool, progress=lose)
         arguments = ["run", "poisson-statics", "--scheduler", address, "--results", str(tmp_path / "cli")]
         assert CliRunner().invoke(app, arguments).exit_code == 0
+    assert lost
     assert rows(tmp_path / "serial") == rows(tmp_path / "dask")
     assert same_histories(tmp_path / "serial", tmp_path / "dask")
 
 
-@pytest.mark.filterwarnings("ignore")
-def test_a_lost_worker_costs_its_row_only(tmp_path):
-    distributed = pytest.importorskip("distributed")
-    workers = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-    lost = []
-
-    def lose(done: int, total: int, label: str) -> None:
-        if not lost:
-            lost.append(next(iter(workers.workers.values())).pid)
-            __import__("os").kill(lost[0], 9)
-
-    with workers, cluster.executor(workers.scheduler_address) as pool:
-        run_study(STUDY, Results(tmp_path), executor=pool, progress=lose)
-    assert lost
-    assert all(row.outcome == "completed" for row in rows(tmp_path).values())
-    assert len(rows(tmp_path)) == len(STUDY.cases())
-
-
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_nobody_at_the_address_is_said(monkeypatch):
     pytest.importorskip("distributed")

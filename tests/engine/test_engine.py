@@ -20,7 +20,6 @@ from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, judge, rounded, value_text
-from validation.runs.files import read_csv, write_csv
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row
@@ -263,18 +262,6 @@ def test_what_is_no_rounding_is_said_in_digits() -> None:
         "undefined",
         "-",
     ]
-
-
-def test_csv_keeps_every_bit(tmp_path: Path) -> None:
-    rng = np.random.default_rng(0)
-    history = History(
-        np.arange(1, 5) * 0.1, {"displacement": rng.normal(size=4), "contact_pressure": rng.normal(size=4) * 1e300}
-    )
-    write_csv(history, tmp_path / "h.csv")
-    back = read_csv(tmp_path / "h.csv")
-    assert np.array_equal(back.time, history.time)
-    assert all(np.array_equal(back.columns[name], values) for name, values in history.columns.items())
-    assert [path.name for path in tmp_path.iterdir()] == ["h.csv"]
 
 
 def test_columns_that_are_asked_are_kept_and_no_others(scene: Scene) -> None:

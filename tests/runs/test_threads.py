@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - so that both libraries are loaded
+from conftest import thinned
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from validation.engine.case import Case
@@ -90,12 +91,12 @@ def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
     assert threads() == {MANY}
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
-def test_a_worker_process_has_one_thread(many_threads: None, monkeypatch: pytest.MonkeyPatch, method: str) -> None:
+@pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
+def test_a_worker_process_has_one_thread(many_threads: None, tmp_path: Path, method: str) -> None:
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method(method, force=True)
     try:
-        with _pool(None, 1) as pool:
+        with _pool(1, tmp_path) as pool:
             assert pool.submit(threads_of_worker).result() == {1}
     finally:
         multiprocessing.set_start_method(before, force=True)
@@ -106,13 +107,13 @@ def threads_of_worker() -> set[int]:
     return threads()
 
 
-def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_process_logs_what_this_one_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for log in solver_logs():
         monkeypatch.setattr(log, "level", logging.ERROR)
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method("spawn", force=True)
     try:
-        with _pool(None, 1) as pool:
+        with _pool(1, tmp_path) as pool:
             assert pool.submit(log_levels).result() == [logging.ERROR] * 2
     finally:
         multiprocessing.set_start_method(before, force=True)
@@ -150,6 +151,7 @@ try:
 except SystemExit:
     pass
 import numpy, scipy.linalg
+from conftest import thinned
 from threadpoolctl import threadpool_info
 print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_NUM_THREADS"))
 """
@@ -159,6 +161,7 @@ def test_a_command_has_one_thread_as_typed() -> None:
     assert run_python(TYPED) == "{1} 1"
 
 
+@pytest.mark.long
 def test_a_command_has_as_many_as_the_user_says() -> None:
     assert run_python(TYPED, OMP_NUM_THREADS="2") == "{2} 2"
 

@@ -138,7 +138,8 @@ def test_scenes_and_methods_of_the_study_have_their_own_names() -> None:
 def finished(**histories: Any) -> Any:
     rows = {("a", name): made_row(name, {}, "a", work={"unknowns": 6, "solves": 40}, seconds={"stepping": 1.0})
             for name in histories}  # fmt: skip
-    return SimpleNamespace(rows=rows, history=lambda case, name: histories.get(name))
+    history = lambda case, name: histories.get(name)  # noqa: E731
+    return SimpleNamespace(rows=rows, history=history, needed_history=history)
 
 
 def test_the_record_measures_models_against_the_bar_and_the_bar_against_the_continuum() -> None:
@@ -179,7 +180,7 @@ def test_the_grid_convergence_index_is_that_of_the_last_change() -> None:
     """Values 1 + n^-2 change by (3/4) n^-2: order 2, index 1.25 |last change| / (2^2 - 1)."""
     recipe, index = work_precision.grid_convergence(), work_precision.named("work-h-poisson").expand()
     values = {case.name: 1 + n**-2 for case, n in zip(index, work_precision.MESHES, strict=True)}
-    made = SimpleNamespace(history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3))
+    made = SimpleNamespace(needed_history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3))
     metrics = recipe.compute(made)
     change = 0.75 * 32**-2 / values[index[-1].name]
     assert metrics["order.displacement"] == pytest.approx(2.0, abs=0.02)

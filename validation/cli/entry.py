@@ -11,7 +11,7 @@ from functools import cache
 
 import typer
 
-from validation.cli import compare, contact, damping, gallery, judge, report, run, show, verdicts, waves, work
+from validation.cli import compare, contact, damping, gallery, judge, merge, report, run, show, verdicts, waves, work
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import end, interruptible
@@ -20,6 +20,7 @@ from validation.runs.text import printable
 
 COMMANDS = (
     run,
+    merge,
     show,
     report,
     gallery,

@@ -6,19 +6,23 @@ import itertools
 import json
 import os
 import time
-from contextlib import nullcontext, suppress
+from collections import Counter
+from contextlib import closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from validation.cli.printing.answer import RunAnswer
     from validation.engine.measured import JudgedStudy
+    from validation.engine.run import StudyCases
+    from validation.engine.shards import RunOptions, Shard
     from validation.gates.gate import Verdict
+    from validation.runs.records import BaselineVerdict
     from validation.runs.results import Results
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
@@ -46,6 +50,13 @@ from validation.cli.app import (
 from validation.cli.printing.output import echo
 from validation.cli.signals import promise_rows
 
+RequireOption = Annotated[
+    list[str] | None,
+    typer.Option("--require", help="Fail if gates of this solver were NOT RUN, or if there are none.", metavar="NAME"),
+]
+VerboseOption = Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")]
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
@@ -99,15 +110,16 @@ def run(
     scheduler: Annotated[
         str | None, typer.Option(help="Run on the workers of this Dask scheduler instead.", metavar="tcp://HOST:PORT")
     ] = None,
-    require: Annotated[
-        list[str] | None,
-        typer.Option(help="Fail if gates of this solver were NOT RUN, or if there are none.", metavar="NAME"),
-    ] = None,
+    require: RequireOption = None,
     summary: SummaryOption = None,
     baseline: BaselineOption = None,
-    verbose: Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")] = False,
+    verbose: VerboseOption = False,
+    as_json: JsonOption = False,
+    quiet: QuietOption = False,
+    shard: Annotated[
+        str | None,
+        typer.Option(help="Run this part of all cases only, for `dda-validate merge` to judge.", metavar="I/N"),
+    ] = None,
 ) -> None:
     """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
@@ -115,57 +127,112 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.cli.printing.answer import RunAnswer, as_data
     from validation.cli.printing.costs import print_before_run
-    from validation.cli.printing.output import tolerate_closed_pipe
-    from validation.cli.printing.tables import after_run
-    from validation.engine.measured import complaints, missing_gates
+    from validation.engine.shards import Shard
     from validation.errors import InputError
-    from validation.gates.changes import read_verdicts
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.solvers.logs import errors_only
-    from validation.solvers.registry import is_solver, solver_names
-    from validation.studies.catalogue import STUDIES, resolve
-    from validation.studies.field.programs import known
+    from validation.studies.catalogue import resolve
 
-    output_options = {"--verbose": verbose, "--json": as_json, "--quiet": quiet}
-    exclusive = [option for option, is_set in output_options.items() if is_set]
-    if len(exclusive) > 1:
-        raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other", value="both")
+    judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
+    part = None if shard is None else Shard.parse(shard)
+    if part is not None and (require or summary or baseline or verbose):
+        raise InputError(
+            "goes without --require, --summary, --baseline and --verbose", field="--shard", advice="give them to merge"
+        )
+    before = judging.check()
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     store = Results(results)
-    required = require or []
-    # What would be refused at the end is refused before anything runs.
-    adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
-    for name in required:
-        if not is_solver(name) and name not in adapters:
-            raise InputError(
-                f"must be among {', '.join(solver_names())}, or module:attribute", field="--require", value=repr(name)
-            )
-    if summary is not None and (summary.is_dir() or not summary.parent.is_dir()):
-        raise InputError("must be a file in an existing directory", field="--summary", value=repr(str(summary)))
     store.check()
-    before = None if baseline is None else read_verdicts(baseline)
-
-    print_before_run(studies, quiet)
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
-    with errors_only() if quiet else nullcontext():
-        runs, seconds = _run_studies(studies, store, machine, show_progress=not quiet)
+    if part is not None:
+        options: RunOptions = {
+            "targets": targets or ["core"],
+            "assignments": assignments or [],
+            "full": full,
+            "ranks": ranks,
+        }
+        raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
+    print_before_run(studies, quiet)
+    runs, seconds = _run_studies(studies, store, machine, judging)
+    answer_and_exit(runs, seconds, store, judging, before)
+
+
+@dataclass(frozen=True)
+class Judging:
+    """What a run must satisfy beside its gates, and how its answer is printed."""
+
+    required: list[str]
+    summary: Path | None
+    baseline: Path | None
+    verbose: bool
+    as_json: bool
+    quiet: bool
+
+    def check(self) -> list[BaselineVerdict] | None:
+        """Refuse before anything runs what would be refused at the end; return the baseline, None without one."""
+        from validation.errors import InputError
+        from validation.gates.changes import read_verdicts
+        from validation.solvers.registry import is_solver, solver_names
+        from validation.studies.field.programs import known
+
+        output_options = {"--verbose": self.verbose, "--json": self.as_json, "--quiet": self.quiet}
+        exclusive = [option for option, is_set in output_options.items() if is_set]
+        if len(exclusive) > 1:
+            raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other", value="both")
+        adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
+        for name in self.required:
+            if not is_solver(name) and name not in adapters:
+                raise InputError(
+                    f"must be among {', '.join(solver_names())}, or module:attribute",
+                    field="--require",
+                    value=repr(name),
+                )
+        if self.summary is not None and (self.summary.is_dir() or not self.summary.parent.is_dir()):
+            raise InputError(
+                "must be a file in an existing directory", field="--summary", value=repr(str(self.summary))
+            )
+        return None if self.baseline is None else read_verdicts(self.baseline)
+
+
+def answer_and_exit(
+    runs: list[JudgedStudy],
+    seconds: list[float],
+    results: Results,
+    judging: Judging,
+    before: list[BaselineVerdict] | None,
+) -> NoReturn:
+    """Print what studies have shown, and exit with the status of a run.
+
+    Parameters
+    ----------
+    runs, seconds
+        The studies as they were judged, and the seconds that each took.
+    results
+        Where their rows and verdicts are.
+    judging, before
+        The options, and the verdicts of the baseline.
+    """
+    from validation.cli.printing.answer import RunAnswer, as_data
+    from validation.cli.printing.output import tolerate_closed_pipe
+    from validation.cli.printing.tables import after_run
+    from validation.engine.measured import complaints, missing_gates
+    from validation.studies.catalogue import STUDIES
+
     names = [judged.study.name for judged in runs]
-    records = list(itertools.chain.from_iterable(map(store.verdicts, names)))
-    changes = after_run(records, names, summary, before)
+    records = list(itertools.chain.from_iterable(map(results.verdicts, names)))
+    changes = after_run(records, names, judging.summary, before)
     worse = None if changes is None else any(change.worse for change in changes)
-    messages = [*complaints(runs), *missing_gates(runs, required)]
+    messages = [*complaints(runs), *missing_gates(runs, judging.required)]
     verdicts = list(itertools.chain.from_iterable(judged.verdicts for judged in runs))
-    status = _status(verdicts, required, any(judged.refused for judged in runs), worse, messages)
-    answer = RunAnswer(runs, seconds, store, messages, changes, frozenset(names) - set(STUDIES), status)
+    status = _status(verdicts, judging.required, any(judged.refused for judged in runs), worse, messages)
+    answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(STUDIES), status)
     with tolerate_closed_pipe():
-        if as_json:
+        if judging.as_json:
             echo(json.dumps(as_data(answer), indent=1, allow_nan=False))
-        elif not quiet:
-            _print_answer(answer, verbose)
+        elif not judging.quiet:
+            _print_answer(answer, judging.verbose)
     raise typer.Exit(status)
 
 
@@ -179,33 +246,83 @@ class Machine:
     scheduler: str | None
 
 
-def _run_studies(
-    studies: Sequence[Study], results: Results, machine: Machine, show_progress: bool
-) -> tuple[list[JudgedStudy], list[float]]:
-    """Run the studies one after the other; return what was judged and the seconds of each."""
-    from validation.cli.printing.tables import outcomes
+@contextmanager
+def _running(
+    groups: Sequence[StudyCases], results: Results, machine: Machine, judging: Judging
+) -> Iterator[Iterator[StudyCases]]:
+    """Yield the cases of each study as they have ended, run on one pool with one progress bar."""
     from validation.engine.cluster import executor
-    from validation.engine.measured import JudgedStudy
-    from validation.engine.run import run_study
+    from validation.engine.run import run_cases
+    from validation.solvers.logs import errors_only
 
+    title = groups[0].study.name if len(groups) == 1 else f"{len(groups)} studies"
+    solvers = {case.solver for group in groups for case in group.cases}
+    with (
+        errors_only() if judging.quiet else nullcontext(),
+        executor(machine.scheduler, sorted(solvers)) as pool,
+        _progress(title, not judging.quiet) as progress,
+        closing(run_cases(groups, results, jobs=machine.jobs, executor=pool, progress=progress)) as ended,
+    ):
+        yield ended
+
+
+def _run_studies(
+    studies: Sequence[Study], results: Results, machine: Machine, judging: Judging
+) -> tuple[list[JudgedStudy], list[float]]:
+    """Run the studies; return them judged, and the seconds from the end of one that ended before to its own end."""
+    from validation.engine.run import judge_study, study_cases
+
+    last = time.monotonic()
+    groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
+    runs: dict[str, JudgedStudy] = {}
+    seconds: dict[str, float] = {}
+    with _running(groups, results, machine, judging) as ended:
+        for group in ended:
+            runs[group.study.name] = judge_study(group, results)
+            now = time.monotonic()
+            seconds[group.study.name] = now - last
+            last = now
+    return [runs[study.name] for study in studies], [seconds[study.name] for study in studies]
+
+
+def _run_shard(
+    shard: Shard,
+    options: RunOptions,
+    studies: Sequence[Study],
+    results: Results,
+    machine: Machine,
+    judging: Judging,
+) -> int:
+    """Run a part of the studies' cases, keep its record, print what it did and return the status."""
+    from validation.cli.printing.answer import how_it_ended
+    from validation.engine import shards
+    from validation.engine.measured import JudgedStudy
+    from validation.engine.run import study_cases
+
+    groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
+    part = shard.part(groups)
+    shards.begin(shard, results)
     runs: list[JudgedStudy] = []
-    seconds: list[float] = []
-    with executor(machine.scheduler) as pool:
-        for study in studies:
-            start = time.monotonic()
-            with _progress(study.name, show_progress) as progress:
-                verdicts = run_study(
-                    study,
-                    results,
-                    full=machine.full,
-                    ranks=machine.ranks,
-                    jobs=machine.jobs,
-                    executor=pool,
-                    progress=progress,
-                )
-            runs.append(JudgedStudy(study, verdicts, outcomes(results, study.name)))
-            seconds.append(time.monotonic() - start)
-    return runs, seconds
+    with _running(part, results, machine, judging) as ended:
+        for group in ended:
+            rows = group.finished(results).rows
+            run = JudgedStudy(group.study, (), {case: row.outcome for case, row in rows.items()})
+            runs.append(run)
+            if not judging.quiet and not judging.as_json:
+                for case in run.failed:
+                    echo(how_it_ended(*case, rows[case]))
+    shards.write(shards.record_of(shard, options, groups), results)
+    counted = len(set(shards.all_keys(part)))
+    total = len(set(shards.all_keys(groups)))
+    status = _status([], [], any(run.refused for run in runs), None, [str(run.failed) for run in runs if run.failed])
+    if judging.as_json:
+        outcomes = Counter(str(outcome) for run in runs for outcome in run.outcomes.values())
+        data = {"status": status, "results": str(results.directory), "shard": str(shard), "cases": counted}
+        echo(json.dumps(data | {"of_cases": total, "outcomes": dict(outcomes)}, indent=1))
+    elif not judging.quiet:
+        echo(f"shard {shard}: {counted} of {total} cases, results: {results.directory}")
+        echo("next: dda-validate merge with the directories of all shards judges them")
+    return status
 
 
 def _print_answer(answer: RunAnswer, verbose: bool) -> None:

@@ -6,93 +6,155 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from validation.engine.case import Case
 from validation.engine.measure import execute, failed_row
-from validation.engine.study import Study
 from validation.runs.history import History
 from validation.runs.row import Row
 from validation.runs.text import error_text
 from validation.runs.threads import limit_process
+from validation.solvers import memory
 from validation.solvers.logs import solver_logs
 from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 PARENT_CHECK_INTERVAL = 0.25  # s
+Ending = tuple[Row, History | None]
+_note_file = Path()  # of a worker: which case it runs
 
 
-def executed(
-    pending: dict[str, Case], study: Study, jobs: int, executor: Executor | None
-) -> Iterator[tuple[Row, History | None]]:
-    """Run the pending cases, in this process where one worker or one case is all there is.
+@dataclass(frozen=True)
+class Pending:
+    """A case that is to be run, the key that its row is kept under, and the study whose name the row gets."""
+
+    case: Case
+    key: str
+    study: str
+
+    def run(self) -> Ending:
+        """Run the case on a worker, which may be another machine: a row under this key is made by what the key covers.
+
+        What fails outside the solver, memory included, is a named outcome as well.
+        """
+        try:
+            if self.case.key() != self.key:
+                return self.failed("the worker holds other sources, versions or files")
+            return execute(self.case, self.key, self.study)
+        except Exception as error:
+            return self.failed(error_text(error))
+
+    def failed(self, note: str) -> Ending:
+        """Return the row of this case where it ended by an error."""
+        return failed_row(self.case, self.key, self.study, note), None
+
+    def memory(self) -> float:
+        """Return the bytes that the case will take, as far as they are known."""
+        try:
+            return memory.needed(self.case.scene, self.case.make_solver())[0]
+        except Exception:  # anybody's solver: its failure is a row of its own
+            return 0.0
+
+
+def executed(pending: Sequence[Pending], jobs: int = 1, executor: Executor | None = None) -> Iterator[Ending]:
+    """Run cases and yield their rows as they end: in this process where one worker or one case is all there is.
+
+    A worker that is killed takes the pool with it. The cases that were on its workers then run once more, each in a
+    process of its own, so that the one that kills its worker is a row like any other; the remainder gets a new pool.
+    Cases that take more than a worker's share of the memory follow the others, one after the other.
 
     Parameters
     ----------
     pending
-        The cases by key.
-    study
-        Whose name the rows get; a study of timings runs its cases one after the other in this process.
+        The cases, in the order in which they are begun.
     jobs
         Worker processes; ignored where an executor is given.
     executor
         That of a cluster, or None.
     """
-    if study.timed or (executor is None and min(jobs, len(pending)) <= 1):
-        for key, case in pending.items():
-            yield _checked(case, key, study.name)
+    jobs = min(jobs, len(pending))
+    if executor is not None:
+        yield from _on_cluster(pending, executor)
         return
-    lost = []
-    with _pool(executor, min(jobs, len(pending))) as pool:
-        futures = {pool.submit(_checked, case, key, study.name): key for key, case in pending.items()}
+    if jobs <= 1:
+        for task in pending:
+            yield task.run()
+        return
+    share = memory.available() / jobs
+    large = {task.key for task in pending if task.memory() > share}
+    remaining = {task.key: task for task in pending if task.key not in large}
+    while remaining:
+        with TemporaryDirectory() as notes, closing(run_on_processes(remaining, jobs, Path(notes))) as endings:
+            for row, history in endings:
+                del remaining[row.key]
+                yield row, history
+            suspects = [path.read_text() for path in Path(notes).iterdir()]
+        running = [key for key in suspects if key in remaining] or list(remaining)[:1]
+        for key in running:
+            yield run_in_own_process(remaining.pop(key))
+    for task in pending:
+        if task.key in large:
+            yield run_in_own_process(task)
+
+
+def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Iterator[Ending]:
+    """Run cases on an executor, which itself sees to workers that are lost."""
+    futures = {executor.submit(task.run): task for task in pending}
+    for future in as_completed(futures):
+        error = future.exception()
+        if error is None:
+            yield future.result()
+        elif isinstance(error, BrokenExecutor):
+            yield run_in_own_process(futures[future])
+        else:  # on its way there or back: what a worker runs never raises
+            yield futures[future].failed(error_text(error))
+
+
+def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Iterator[Ending]:
+    """Run cases on worker processes; those that a lost worker has taken with it are left out.
+
+    Each worker keeps a note of the case that it runs, in a file of its own in the directory `notes`.
+    """
+    with _pool(min(jobs, len(pending)), notes) as pool:
+        futures = {pool.submit(_run_with_note, task): task for task in pending.values()}
         for future in as_completed(futures):
             error = future.exception()
-            key = futures[future]
-            if isinstance(error, BrokenExecutor):
-                lost.append(key)
-            elif error is not None:  # on its way there or back: what a worker runs never raises
-                yield failed_row(pending[key], key, study.name, error_text(error)), None
-            else:
+            if error is None:
                 yield future.result()
-    for key in lost:
-        yield _in_own_process(pending[key], key, study)
+            elif not isinstance(error, BrokenExecutor):
+                yield futures[future].failed(error_text(error))
 
 
-def _checked(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case on a worker, which may be another machine: a row under this key is made by what the key covers.
-
-    What fails outside the solver, memory included, is a named outcome as well.
-    """
+def _run_with_note(task: Pending) -> Ending:
+    _note_file.write_text(task.key)
     try:
-        if case.key() != key:
-            return failed_row(case, key, study, "the worker holds other sources, versions or files"), None
-        return execute(case, key, study)
-    except Exception as error:
-        return failed_row(case, key, study, error_text(error)), None
+        return task.run()
+    finally:
+        _note_file.unlink()
 
 
-def _in_own_process(case: Case, key: str, study: Study) -> tuple[Row, History | None]:
+def run_in_own_process(task: Pending) -> Ending:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
-    with _pool(None, 1) as pool:
+    with TemporaryDirectory() as notes, _pool(1, Path(notes)) as pool:
         try:
-            return pool.submit(_checked, case, key, study.name).result()
+            return pool.submit(task.run).result()
         except BrokenExecutor:
-            note = "worker killed (out of memory or a signal)"
-            return failed_row(case, key, study.name, note), None
+            return task.failed("worker killed (out of memory or a signal)")
 
 
 @contextmanager
-def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
-    """Yield the given executor, or one of processes that goes down at once on an interruption."""
-    if executor is not None:
-        yield executor
-        return
-    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=(os.getpid(), solver_logs()[0].level))
+def _pool(jobs: int, notes: Path) -> Iterator[Executor]:
+    """Yield a pool of processes that goes down at once on an interruption."""
+    arguments = (os.getpid(), solver_logs()[0].level, notes)
+    pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=arguments)
     wait = True
     try:
         yield pool
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, GeneratorExit):
         # A worker that ends while it hands over a result leaves the pool's thread waiting for the rest of it.
         wait = False
         for process in (pool._processes or {}).values():
@@ -102,8 +164,10 @@ def _pool(executor: Executor | None, jobs: int) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _initialize_worker(parent: int, log_level: int) -> None:
+def _initialize_worker(parent: int, log_level: int, notes: Path) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
+    global _note_file
+    _note_file = notes / str(os.getpid())
     limit_process()
     for log in solver_logs():
         log.setLevel(log_level)

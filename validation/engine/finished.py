@@ -10,6 +10,7 @@ from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.runs.text import error_text
+from validation.scenes.scene import Scene
 
 
 class NothingToDerive(Exception):
@@ -76,7 +77,41 @@ class Finished:
         except Exception as error:  # numbers that a faulty run leaves without meaning
             return Row("", "", scene, name, Outcome.RAISED, {}, notes=(error_text(error),))
 
+    def needed_history(self, scene: str, solver: str) -> History:
+        """Return the history of a case that a derived row needs.
+
+        Raises
+        ------
+        ValueError
+            There is none.
+        """
+        history = self.history(scene, solver)
+        if history is None:
+            raise ValueError(f"{scene}: must have a history of {solver}, got none")
+        return history
+
     def history(self, scene: str, solver: str) -> History | None:
         """Return the history of a case, or None."""
         row = self.rows.get((scene, solver))
         return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)
+
+
+def from_history(
+    case: Scene, solver: str, name: str, compute: Callable[[Scene, History], Mapping[str, Value]]
+) -> Derived:
+    """Return a row that is computed from the history of one case.
+
+    Parameters
+    ----------
+    case, solver
+        The case whose history is read.
+    name
+        Of the row.
+    compute
+        Function of the case and its history that returns metrics.
+    """
+
+    def compute_row(finished: Finished) -> Mapping[str, Value]:
+        return compute(case, finished.needed_history(case.name, solver))
+
+    return Derived(case.name, name, ((case.name, solver),), compute_row)

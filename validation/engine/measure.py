@@ -12,6 +12,7 @@ import numpy as np
 
 from validation.engine import horizon, origin, stability
 from validation.engine.case import Case
+from validation.engine.cluster import worker_memory
 from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
@@ -138,7 +139,7 @@ def attempt(
     try:
         if reason := solver.refusal(scene):
             return None, Run(Outcome.NOT_APPLICABLE, notes=(reason,))
-        memory.check(scene, solver)
+        memory.check(scene, solver, worker_memory())
         narrowed_scene, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         prepared = solver.prepare(narrowed_scene, full)

@@ -1,22 +1,26 @@
-"""The engine: runs every case of a study once, keeps the histories, compares and judges."""
+"""The engine: runs every case of some studies once on one pool, keeps the histories, compares and judges."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
+from contextlib import closing
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from validation.engine.case import Case
-from validation.engine.executor import executed
+from validation.engine.executor import Pending, executed
 from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate, existing, plain
 from validation.engine.measure import columns_of
+from validation.engine.measured import JudgedStudy
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
 from validation.runs.case_name import scene_of
+from validation.runs.history import History
 from validation.runs.records import (
     AlarmRecord,
     Annotations,
@@ -37,6 +41,53 @@ Progress = Callable[[int, int, str], None]
 RUN_AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 
 
+@dataclass
+class StudyCases:
+    """The cases of a study with their keys, and the rows of those that have ended.
+
+    Attributes
+    ----------
+    study
+        The study, whose names the rows get.
+    keyed
+        The cases with their keys.
+    rows
+        The rows by key.
+    """
+
+    study: Study
+    keyed: Sequence[tuple[Case, str]]
+    rows: dict[str, Row] = field(default_factory=dict)
+
+    @property
+    def cases(self) -> list[Case]:
+        """The cases."""
+        return [case for case, _ in self.keyed]
+
+    def pending(self) -> list[Pending]:
+        """Return the cases that have no row."""
+        pending = {key: Pending(case, key, self.study.name) for case, key in self.keyed if key not in self.rows}
+        return list(pending.values())
+
+    def finished(self, results: Results) -> Finished:
+        """Return the finished cases; a row that another scene or study has brought gets the names of this one."""
+        rows = {}
+        for case, key in self.keyed:
+            row = replace(self.rows[key], scene=case.scene.name, study=self.study.name, solver=case.solver)
+            rows[case.scene.name, case.solver] = row
+        return Finished(rows, results, self.study.recipes())
+
+
+def study_cases(study: Study, full: bool = False, ranks: int = 1) -> StudyCases:
+    """Return the cases of a study with their keys; the parameters are those of `Study.cases`."""
+    return keyed_cases(study.cases(full, ranks), study)
+
+
+def keyed_cases(cases: Sequence[Case], study: Study) -> StudyCases:
+    """Return cases with their keys, and the study whose names their rows get."""
+    return StudyCases(study, [(case, case.key()) for case in cases])
+
+
 def run_study(
     study: Study,
     results: Results,
@@ -46,7 +97,7 @@ def run_study(
     jobs: int = 1,
     executor: Executor | None = None,
     progress: Progress | None = None,
-) -> list[Verdict]:
+) -> Sequence[Verdict]:
     """Run what is not finished yet, then compare and judge; everything is kept in the results directory.
 
     Parameters
@@ -66,15 +117,9 @@ def run_study(
     progress
         Called with (done, total, label) after each case.
     """
-    cases = study.cases(full, ranks)
-    finished = finish(cases, study, results, jobs=jobs, executor=executor, progress=progress)
-    scenes = list({case.scene.name: case.scene for case in cases}.values())
-    annotations = _annotated(study, scenes, finished)
-    manifest = _manifest(study, cases, finished, list(compare(finished, study.pairs)), annotations)
-    verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
-    results.write_json(f"studies/{study.name}.json", manifest)
-    results.write_verdicts(study.name, [_record(verdict, study, annotations["alarms"]) for verdict in verdicts])
-    return verdicts
+    group = study_cases(study, full, ranks)
+    (ended,) = run_cases([group], results, jobs=jobs, executor=executor, progress=progress)
+    return judge_study(ended, results).verdicts
 
 
 def finish(
@@ -86,31 +131,86 @@ def finish(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Finished:
-    """Take finished cases from the results directory and run the others, each kept as soon as it ends.
+    """Take finished cases from the results directory and run the others; the parameters are those of `run_study`."""
+    group = keyed_cases(cases, study)
+    (ended,) = run_cases([group], results, jobs=jobs, executor=executor, progress=progress)
+    return ended.finished(results)
+
+
+def run_cases(
+    groups: Sequence[StudyCases],
+    results: Results,
+    *,
+    jobs: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Iterator[StudyCases]:
+    """Run the cases of all studies on one pool, each case once and its row kept as soon as it ends.
+
+    No worker waits for the last case of a study. Studies of timings follow the others, in this process, one case
+    after the other.
 
     Parameters
     ----------
-    cases, study
-        The cases, and the study whose names their rows get.
+    groups
+        The studies' cases; their rows are filled in.
     results, jobs, executor, progress
         As in `run_study`.
+
+    Yields
+    ------
+    The cases of each study as soon as the last of them has ended.
     """
-    keyed = [(case, case.key()) for case in cases]
-    rows_by_key = {} if study.timed else _valid_rows(keyed, results)
-    pending = {key: case for case, key in keyed if key not in rows_by_key}
-    restored = len(keyed) - len(pending)
-    for number, (row, history) in enumerate(executed(pending, study, jobs, executor), start=restored + 1):
+    finished_rows = results.rows()
+    untimed = [group for group in groups if not group.study.timed]
+    timed = [group for group in groups if group.study.timed]
+    pooled: dict[str, Pending] = {}
+    missing: dict[str, list[StudyCases]] = {}  # by key, the studies that wait for its row
+    for group in untimed:
+        group.rows.update(_valid_rows(group.keyed, finished_rows, results))
+        for task in group.pending():
+            pooled.setdefault(task.key, task)
+            missing.setdefault(task.key, []).append(group)
+    total = sum(len(group.keyed) for group in groups)
+    numbers = itertools.count(total - len(pooled) - sum(len(group.pending()) for group in timed) + 1)
+
+    def keep(row: Row, history: History | None) -> None:
         results.append(row, history)
-        rows_by_key[row.key] = row
         if progress:
-            progress(number, len(keyed), f"{row.scene} {row.solver}")
-    rows = {(case.scene.name, case.solver): _relabelled(rows_by_key[key], case, study) for case, key in keyed}
-    return Finished(rows, results, study.recipes())
+            progress(next(numbers), total, f"{row.scene} {row.solver}")
+
+    waiting = {group.study.name: len(group.pending()) for group in untimed}
+    yield from (group for group in untimed if not waiting[group.study.name])
+    with closing(executed(list(pooled.values()), jobs, executor)) as endings:
+        for row, history in endings:
+            keep(row, history)
+            for group in missing[row.key]:
+                group.rows[row.key] = row
+                waiting[group.study.name] -= 1
+                if not waiting[group.study.name]:
+                    yield group
+    for group in timed:
+        for row, history in executed(group.pending()):
+            keep(row, history)
+            group.rows[row.key] = row
+        yield group
 
 
-def _valid_rows(keyed: Sequence[tuple[Case, str]], results: Results) -> dict[str, Row]:
+def judge_study(group: StudyCases, results: Results) -> JudgedStudy:
+    """Compare and judge the finished cases of a study; manifest and verdicts are kept in the results directory."""
+    study = group.study
+    finished = group.finished(results)
+    scenes = list({case.scene.name: case.scene for case in group.cases}.values())
+    annotations = _annotated(study, scenes, finished)
+    manifest = _manifest(study, group.cases, finished, list(compare(finished, study.pairs)), annotations)
+    verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
+    results.write_json(f"studies/{study.name}.json", manifest)
+    results.write_verdicts(study.name, [_record(verdict, study, annotations["alarms"]) for verdict in verdicts])
+    return JudgedStudy(study, verdicts, {case: row.outcome for case, row in finished.rows.items()})
+
+
+def _valid_rows(keyed: Sequence[tuple[Case, str]], rows: Mapping[str, Row], results: Results) -> dict[str, Row]:
     """Return the rows of the results directory that need not be made again."""
-    rows = results.rows()
     return {key: rows[key] for case, key in keyed if key in rows and _is_valid(rows[key], case, results)}
 
 
@@ -119,11 +219,6 @@ def _is_valid(row: Row, case: Case, results: Results) -> bool:
     if row.outcome in RUN_AGAIN or not row.provenance or not case.make_solver().cached:
         return False
     return results.sound(row, case.scene.time.steps, columns_of(case))
-
-
-def _relabelled(row: Row, case: Case, study: Study) -> Row:
-    """Give a row that another scene or study has brought the names of this one."""
-    return replace(row, scene=case.scene.name, study=study.name, solver=case.solver)
 
 
 @np.errstate(divide="raise", invalid="raise")

@@ -61,8 +61,8 @@ def _blocks(scene: Scene) -> tuple[float, str]:
     return COPIES * NUMBER * unknowns**2, "block.subdivide"
 
 
-def check(scene: Scene, solver: Solver) -> None:
-    """Refuse a scene whose run cannot fit.
+def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
+    """Refuse a scene whose run cannot fit into the memory, or into the bytes that a worker is allowed.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def check(scene: Scene, solver: Solver) -> None:
         With the field, the estimate and what is available.
     """
     required_bytes, field = needed(scene, solver)
-    available_bytes = available()
+    available_bytes = min(available(), limit)
     if required_bytes > available_bytes:
         section, _, key = field.partition(".")
         value = getattr(getattr(scene, section), key)

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+import operator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
+from validation.metrics.catalogue import pair
+from validation.metrics.values import or_nan
+from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 
 OTHER = "other code"  # the kind of a reference that an independent program computed
@@ -43,6 +49,37 @@ def near(value: float, relative: float) -> tuple[float, float]:
 def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
     """Return the order, with its sign, fitted on all levels of a refinement: error = C size^order."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
+def order_row(
+    name: str, solvers: tuple[str, str], key: str, quantities: tuple[str, ...] = ("displacement",)
+) -> Derived:
+    """Return the row `order` of a scene that is refined: the order of one solver's error against another.
+
+    Parameters
+    ----------
+    name
+        The scene, and so of the row.
+    solvers
+        The one that converges, and the one that it converges to.
+    key
+        The swept value that is refined, such as ``time.step``.
+    quantities
+        Those whose order is fitted to the relative L2 error.
+    """
+    levels = load_scene(name).expand()
+
+    def compute(finished: Finished) -> Mapping[str, Value]:
+        errors: dict[str, list[float]] = {quantity: [] for quantity in quantities}
+        for case in levels:
+            history, exact = (finished.needed_history(case.name, solver) for solver in solvers)
+            for quantity, norms in errors.items():
+                norms.append(or_nan(pair(f"{quantity}.l2", history, exact)))
+        sizes = [float(operator.attrgetter(key)(case)) for case in levels]
+        return {quantity: fitted_order(sizes, norms) for quantity, norms in errors.items()}
+
+    needs = itertools.product((case.name for case in levels), solvers)
+    return Derived(name, "order", tuple(needs), compute)
 
 
 def decimals(value: float) -> float:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
-import operator
 from collections.abc import Iterator, Mapping
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, from_history
 from validation.gates.gate import Gate
-from validation.metrics.catalogue import pair
-from validation.metrics.values import or_nan
+from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import fitted_order
+from validation.studies.bands import order_row
 from validation.studies.declaration import Study
 
 NAME = "opening"
@@ -75,43 +72,13 @@ SECOND_CODE = ((f"{LEDGER}[contact.stiffness=1e+09]", "fenicsx"),)
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    return (*sampled(), *(refined(name) for name in REFINED))
+    pairs = itertools.product(cases().values(), KINDS)
+    sampled = [from_history(case, f"{kind}-events", f"{kind} samples", samples) for case, kind in pairs]
+    return (*sampled, *(order_row(name, solvers, key) for name, (solvers, key, _) in REFINED.items()))
 
 
-def refined(name: str) -> Derived:
-    """Return the row of the order in a scene whose step or mesh is refined."""
-    solvers, key, _ = REFINED[name]
-    levels = load_scene(name).expand()
-    needs = tuple(itertools.product((case.name for case in levels), solvers))
-    return Derived(name, "order", needs, functools.partial(order, levels, solvers, key))
-
-
-def order(levels: tuple[Scene, ...], solvers: tuple[str, str], key: str, finished: Finished) -> Mapping[str, Value]:
-    """Return the order, with its sign, fitted to the displacement's error of one solver against the other."""
-    errors = []
-    for case in levels:
-        histories = [finished.history(case.name, solver) for solver in solvers]
-        if histories[0] is None or histories[1] is None:
-            return {}
-        errors.append(or_nan(pair("displacement.l2", histories[0], histories[1])))
-    sizes = [float(operator.attrgetter(key)(case)) for case in levels]
-    return {"displacement": fitted_order(sizes, errors)}
-
-
-def sampled() -> tuple[Derived, ...]:
-    """Return a row of samples for every case and both exact motions."""
-    rows = []
-    for case, kind in itertools.product(cases().values(), KINDS):
-        needs = ((case.name, f"{kind}-events"),)
-        rows.append(Derived(case.name, f"{kind} samples", needs, functools.partial(samples, case, kind)))
-    return tuple(rows)
-
-
-def samples(case: Scene, kind: str, finished: Finished) -> Mapping[str, Value]:
+def samples(case: Scene, history: History) -> Mapping[str, Value]:
     """Return displacement and contact pressure at the instants."""
-    history = finished.history(case.name, f"{kind}-events")
-    if history is None:
-        return {}
     values: dict[str, Value] = {}
     for n in INSTANTS:
         values[f"displacement.{n}"] = float(history.displacement[n - 1])

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, Finished, from_history
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
@@ -74,17 +74,11 @@ def derived() -> tuple[Derived, ...]:
     spalls = [(load_scene(SPALL_BARS), solver) for solver in (known.BARS, known.EVENTS, "fem")]
     spalls += [(case, DDA) for case in cases(SPALL_BLOCKS)]
     spalls += [(load_scene(CRADLE), solver) for solver in (known.BARS, "fem")]
-    for scene, solver in spalls:
-        name = f"{solver} {PIECES}"
-        rows.append(Derived(scene.name, name, ((scene.name, solver),), functools.partial(pieces, scene, solver)))
+    rows += [from_history(scene, solver, f"{solver} {PIECES}", pieces) for scene, solver in spalls]
     for _, scene in jointed():
-        for solver in (DDA, known.BARS):
-            name = f"{solver} {PARTS}"
-            rows.append(Derived(scene.name, name, ((scene.name, solver),), functools.partial(parts, scene, solver)))
-    for case in cases(SETTLE):
-        rows.append(Derived(case.name, REST, ((case.name, DDA),), functools.partial(rest, case)))
-    for case in cases(SLIPS):
-        rows.append(Derived(case.name, SAMPLES, ((case.name, DDA),), functools.partial(residual, case)))
+        rows += [from_history(scene, solver, f"{solver} {PARTS}", parts) for solver in (DDA, known.BARS)]
+    rows += [from_history(case, DDA, REST, rest) for case in cases(SETTLE)]
+    rows += [from_history(case, DDA, SAMPLES, residual) for case in cases(SLIPS)]
     return tuple(rows)
 
 
@@ -95,9 +89,7 @@ def sample_name(sample: known.Sample) -> str:
 
 def samples(scene: str, solver: str, finished: Finished) -> Mapping[str, Value]:
     """Return the values of a history at the instants of the printed numbers."""
-    history = finished.history(scene, solver)
-    if history is None:
-        return {}
+    history = finished.needed_history(scene, solver)
     values: dict[str, Value] = {}
     for sample in known.KNOWN:
         if (sample.scene, sample.solver) == (scene, solver):
@@ -110,9 +102,7 @@ def order(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     """Return the order in the time step, fitted to the displacement's error of the blocks over the whole history."""
     errors = []
     for case in levels:
-        history, exact = (finished.history(case.name, solver) for solver in (DDA, known.EVENTS))
-        if history is None or exact is None:
-            return {}
+        history, exact = (finished.needed_history(case.name, solver) for solver in (DDA, known.EVENTS))
         errors.append(_error(history, exact))
     return {"displacement": fitted_order([case.time.step for case in levels], errors)}
 
@@ -124,11 +114,8 @@ def _error(history: History, exact: History) -> float:
     return float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names))
 
 
-def pieces(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
+def pieces(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the velocities of the equal pieces of a column over the last 2 h / c, in which their waves average out."""
-    history = finished.history(scene.name, solver)
-    if history is None:
-        return {}
     column = column_of(scene)
     layer = column.layer[0]
     middles = [name for name in history.columns if name.startswith("displacement_")]
@@ -142,15 +129,12 @@ def pieces(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]
     return values
 
 
-def parts(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
+def parts(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return transmitted, reflected and absorbed parts of the energy of a sine at a joint, as square roots.
 
     Above the joint there is the transmitted wave alone, below it the incident one, which is known, and the reflected
     one. They are measured over one period in which no wave from the top has arrived.
     """
-    history = finished.history(scene.name, solver)
-    if history is None:
-        return {}
     below, above = column_of(scene).heights
     drive = scene.input
     frequency, size = drive.frequency or 1.0, drive.velocity or 1.0
@@ -170,11 +154,8 @@ def parts(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
     }
 
 
-def rest(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def rest(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the time after which the top stays within a thousandth of its settlement."""
-    history = finished.history(scene.name, DDA)
-    if history is None:
-        return {}
     moved = history.displacement
     settled = settlement(scene)
     outside = np.flatnonzero(np.abs(moved - settled) > 1e-3 * abs(settled))
@@ -195,11 +176,8 @@ def settlement(scene: Scene) -> float:
     return -sum(force / contact.stiffness for force, contact in zip(forces, column.contacts, strict=True))
 
 
-def residual(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def residual(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the slips that remain of the lowest and the highest joint [m]."""
-    history = finished.history(scene.name, DDA)
-    if history is None:
-        return {}
     return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
 
 

@@ -1,15 +1,17 @@
 """The register of the paper's statements and slips: what it says, how that is tested, what comes out.
 
-A claim is data: the cases that it needs, the numbers measured on them, and bands for these numbers. It is *confirmed*
-where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that carry the
-condition, and *refuted* otherwise. The expected verdict is a gate of the study `paper`.
+A claim is data of the file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
+*confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that
+carry the condition, and *refuted* otherwise. The expected verdict is a gate of the study `paper`.
 """
 
 from __future__ import annotations
 
 import enum
+import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -80,6 +82,10 @@ class Evidence:
         return step if isinstance(step, float) else np.nan
 
 
+Measure = Callable[[Evidence], dict[str, float]]
+Tests = Mapping[str, tuple[Iterable[str], Measure]]  # by a claim's id: the cases that DDA runs for it, what it measures
+
+
 @dataclass(frozen=True)
 class Claim:
     """One statement of the paper, in our words, and its test.
@@ -92,24 +98,27 @@ class Claim:
         The (case, solver) pairs that it is tested on.
     measure
         Function of the evidence that returns named numbers.
-    printed
-        Bands that hold if the statement holds as printed.
     expected, why
         The verdict that is expected, and why in one sentence.
+    printed
+        Bands that hold if the statement holds as printed.
     condition, conditional
         The condition under which it holds, and the bands that hold then.
+    numbers
+        What an independent program gives: number, value, and half a unit of its last digit.
     """
 
     id: str
     place: str
     says: str
     needs: Needs
-    measure: Callable[[Evidence], dict[str, float]]
-    printed: tuple[Band, ...]
+    measure: Measure
     expected: Finding
     why: str
+    printed: tuple[Band, ...]
     condition: str = ""
     conditional: tuple[Band, ...] = ()
+    numbers: tuple[tuple[str, float, float], ...] = ()
 
     def finding(self, numbers: Mapping[str, float]) -> Finding:
         """Return the verdict on measured numbers."""
@@ -150,9 +159,22 @@ def named(*scenes: str) -> dict[str, Scene]:
     return {case.name: case for case in cases(*scenes)}
 
 
-def by_dda(names: Iterable[str]) -> Needs:
-    """Return the needs of a claim that looks at DDA alone."""
-    return tuple((name, "dda") for name in names)
+def read_claims(tests: Tests) -> tuple[Claim, ...]:
+    """Return the claims of ``claims.toml`` with their tests."""
+    findings = {finding.words: finding for finding in Finding}
+    claims = []
+    for entry in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["claim"]:
+        names, measure = tests[entry["id"]]
+        claim = entry | {
+            "needs": tuple((name, "dda") for name in names),
+            "measure": measure,
+            "expected": findings[entry["expected"]],
+            "printed": tuple(Band(*band) for band in entry["printed"]),
+            "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
+            "numbers": tuple(entry.get("numbers", ())),
+        }
+        claims.append(Claim(**claim))
+    return tuple(claims)
 
 
 # ---- the page -----------------------------------------------------------------------------------------------------

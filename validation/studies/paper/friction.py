@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.studies.paper.claims import Band, Claim, Evidence, Finding, by_dda, named
+from validation.studies.paper.claims import Evidence, Tests, named
 from validation.theory import friction
 
 CREEP = named("creep-claim")
@@ -12,8 +12,6 @@ RULES = {"lagged": LAGGED, "consistent": CONSISTENT}
 # Of the cases of a rule, by time step
 COARSE = 0
 FINE = -1
-STANDS = 1e-9  # m/s, rounding
-PLACE = "not in the paper: said where block codes are checked on inclines"
 
 
 def standing(e: Evidence) -> dict[str, float]:
@@ -47,39 +45,8 @@ def beyond(e: Evidence) -> dict[str, float]:
     return offsets
 
 
-ON_SLOPES = (
-    Claim(
-        "C20",
-        PLACE,
-        "A block below its angle of friction stands.",
-        by_dda((*LAGGED, *CONSISTENT)),
-        standing,
-        tuple(Band(f"greatest slip a second at the end, {rule}, m/s", 0, STANDS) for rule in RULES),
-        Finding.CONDITIONAL,
-        "constant acceleration damps the ringing that lets it slip, and it comes to rest; where friction is that of "
-        "the pass before it creeps, and the exact block, whose ringing nothing damps, creeps as well",
-        "where stick and slip are states of the iteration, under constant acceleration",
-        (Band("greatest slip a second at the end, consistent, m/s", 0, STANDS),),
-    ),
-    Claim(
-        "C21",
-        PLACE,
-        "Penalty springs put a systematic error into the run-out of a sliding block.",
-        by_dda(SLIDES),
-        beyond,
-        tuple(Band(f"over tan(phi) x settlement at dt = {s.time.step:g}", 0.999, 1.001) for s in SLIDES.values()),
-        Finding.CONFIRMED,
-        "it is tan(phi) times the settlement on the springs, whatever time step and distance",
-    ),
-    Claim(
-        "C22",
-        PLACE,
-        "A block below its angle of friction stands the better the finer the time step.",
-        by_dda((*LAGGED, *CONSISTENT)),
-        refined,
-        tuple(Band(f"slip at the finest step over that at the coarsest, {rule}", 0, 1) for rule in RULES),
-        Finding.REFUTED,
-        "by either rule it slides the farther the finer the step, by consistent ones about as 1/dt: what stops it is "
-        "the damping of its ringing by the step",
-    ),
-)
+TESTS: Tests = {
+    "C20": ((*LAGGED, *CONSISTENT), standing),
+    "C21": (SLIDES, beyond),
+    "C22": ((*LAGGED, *CONSISTENT), refined),
+}

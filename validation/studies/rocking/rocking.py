@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, from_history
 from validation.gates.gate import Gate
+from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import cases
@@ -26,14 +26,11 @@ PUSH = 5.0  # acceleration [m/s2]
 DURATION = 0.36  # s
 
 
-def swing(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def swing(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return quarter period over that of a rigid block, and the rate after the impact over that before it.
 
     The rate is that of a rigid block which rises to the greatest tilt on the other side.
     """
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     block = rectangle(scene)
     tilt = math.radians(scene.block.tilt)
     landed = landing(history.time, history.columns["gap_n"])
@@ -47,11 +44,8 @@ def swing(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     }
 
 
-def passage(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def passage(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the greatest tilt over that of a rigid block, or the time at which the block passes over its corner."""
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     rotation = history.columns["rotation"]
     exact = after_pulse(scene)
     if overturns(scene):
@@ -74,8 +68,8 @@ def after_pulse(scene: Scene) -> Callable[[float], float]:
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    swings = [Derived(c.name, SWING, ((c.name, "dda"),), functools.partial(swing, c)) for c in cases(*LET_GO)]
-    pulses = [Derived(c.name, PASSAGE, ((c.name, "dda"),), functools.partial(passage, c)) for c in cases(PULSE)]
+    swings = [from_history(case, "dda", SWING, swing) for case in cases(*LET_GO)]
+    pulses = [from_history(case, "dda", PASSAGE, passage) for case in cases(PULSE)]
     return (*swings, *pulses)
 
 

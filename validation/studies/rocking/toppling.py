@@ -6,14 +6,14 @@ the friction that it needs, and as a tower whose centroid stands beyond its lowe
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, from_history
 from validation.gates.gate import Gate
+from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies.bands import about, cases
@@ -35,14 +35,11 @@ def beyond(scene: Scene) -> float:
     return math.radians(scene.load.slope - scene.block.tilt) - rectangle(scene).alpha
 
 
-def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def static(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return how far the block moves in the second half of its steps, over what it slides, or its width if it stands.
 
     A step without velocities moves a sliding block by dt^2 / 2 times its acceleration.
     """
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     u = history.columns["horizontal_displacement"]
     steps = scene.time.steps
     displacement = float(u[-1] - u[steps // 2 - 1])
@@ -50,14 +47,11 @@ def static(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     return {"moved": displacement / (sliding_distance if sliding_distance > 0 else rectangle(scene).width)}
 
 
-def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def slide(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return what the sliding identity leaves, and the run-out over that of a rigid block.
 
     While both corners slip or are open u + tan(phi) v is a t^2 / 2, free motion under a = g (sin b - tan(phi) cos b).
     """
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     u = history.columns["horizontal_displacement"]
     v = history.displacement
     sliding_distance = sliding_acceleration(scene) * history.time**2 / 2
@@ -67,11 +61,8 @@ def slide(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     }
 
 
-def fall(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def fall(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     rotation = -history.columns["rotation"]
     values: dict[str, Value] = {"turned": float(np.max(np.abs(rotation)))}
     if beyond(scene) > 0:
@@ -90,7 +81,7 @@ def derived() -> tuple[Derived, ...]:
     rows = []
     for name, compute in computed_rows:
         for case in cases(name):
-            rows.append(Derived(case.name, ROW, ((case.name, "dda"),), functools.partial(compute, case)))
+            rows.append(from_history(case, "dda", ROW, compute))
     return tuple(rows)
 
 

@@ -8,19 +8,17 @@ stop; friction that lags by a pass, and dead bands, let it go on, the faster the
 from __future__ import annotations
 
 import functools
-import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, Finished, from_history
 from validation.gates.gate import Gate
-from validation.metrics.catalogue import pair
-from validation.metrics.values import or_nan
+from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, LAGS, OTHER, about, cases, fitted_order
+from validation.studies.bands import APART, LAGS, OTHER, about, cases, order_row
 from validation.studies.declaration import Study
 from validation.theory import friction
 
@@ -52,22 +50,18 @@ def slid(columns: Mapping[str, Any]) -> np.ndarray:
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    exact = [
-        Derived(case.name, "base", ((case.name, EVENTS),), functools.partial(_base, case, EVENTS))
-        for case in cases(EXACT, STIFFNESS)
-    ]
-    steps = [
-        Derived(case.name, "base", ((case.name, DDA),), functools.partial(_base, case, DDA))
-        for case in cases(STEPS, LAGGED, DAMPED)
-    ]
-    return (*exact, *steps, *(_nearest(step) for step in PROGRAM), *(_order(name) for name in REFINED))
+    exact = [from_history(case, EVENTS, "base", _base) for case in cases(EXACT, STIFFNESS)]
+    steps = [from_history(case, DDA, "base", _base) for case in cases(STEPS, LAGGED, DAMPED)]
+    return (
+        *exact,
+        *steps,
+        *(_nearest(step) for step in PROGRAM),
+        *(order_row(name, (DDA, EVENTS), "time.step", ("displacement", "horizontal")) for name in REFINED),
+    )
 
 
-def _base(scene: Scene, solver: str, finished: Finished) -> Mapping[str, Value]:
+def _base(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the mean slide of the corners at quarters of the run, and its mean speed over the second half."""
-    history = finished.history(scene.name, solver)
-    if history is None:
-        return {}
     mean_slide = slid(history.columns)
     n = len(history.time)
     values: dict[str, Value] = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
@@ -86,34 +80,14 @@ def _nearest(step: float) -> Derived:
 
 def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Mapping[str, Value]:
     """Return how far the program's way is from those of the springs, over what their spread and its digits allow."""
-    histories = [finished.history(case.name, DDA) for case in like_cases]
-    slides = [float(h.columns["horizontal_displacement"][-1]) for h in histories if h is not None]
+    histories = [finished.needed_history(case.name, DDA) for case in like_cases]
+    slides = [float(history.columns["horizontal_displacement"][-1]) for history in histories]
     middle = (min(slides) + max(slides)) / 2
     spread = max(slides) - min(slides)
     allowed = 1.5 * spread + DIGIT
     if program_slide > 0.1:
         allowed = max(allowed, SHUFFLED * program_slide)
     return {"distance": (program_slide - middle) / allowed, "way": middle, "spread": spread}
-
-
-def _order(name: str) -> Derived:
-    levels = tuple(cases(name))
-    needs = tuple(itertools.product((case.name for case in levels), (DDA, EVENTS)))
-    return Derived(name, "order", needs, functools.partial(_fitted, levels))
-
-
-def _fitted(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
-    """Return the orders, with their sign, fitted to the errors of both displacements against the exact motion."""
-    errors: dict[str, list[float]] = {"displacement": [], "horizontal": []}
-    for case in levels:
-        history = finished.history(case.name, DDA)
-        exact = finished.history(case.name, EVENTS)
-        if history is None or exact is None:
-            return {}
-        for name, norms in errors.items():
-            norms.append(or_nan(pair(f"{name}.l2", history, exact)))
-    steps = [case.time.step for case in levels]
-    return {name: fitted_order(steps, norms) for name, norms in errors.items()}
 
 
 def gates() -> tuple[Gate, ...]:

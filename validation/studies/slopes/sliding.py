@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, Finished, from_history
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
@@ -44,14 +44,9 @@ NEAR = 1e-4  # deg: the sliding acceleration is a straight line over 0.02 deg to
 
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
-    rows = [
-        Derived(case.name, IDENTITY, ((case.name, "dda"),), functools.partial(_identity, case))
-        for case in cases(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL)
-    ]
-    rows += [
-        Derived(case.name, RIGID, ((case.name, "dda"),), functools.partial(_against_rigid, case))
-        for case in cases(SHAKEN, QUAKE)
-    ]
+    inclines = cases(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL)
+    rows = [from_history(case, "dda", IDENTITY, _identity) for case in inclines]
+    rows += [from_history(case, "dda", RIGID, _against_rigid) for case in cases(SHAKEN, QUAKE)]
     pair = tuple(cases(THRESHOLD))
     needs = tuple((case.name, "dda") for case in pair)
     return (*rows, Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)))
@@ -77,10 +72,7 @@ def acceleration(scene: Scene, history: History) -> float:
     return float(gained / (quarter * scene.time.step) ** 2)
 
 
-def _identity(scene: Scene, finished: Finished) -> Mapping[str, Value]:
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
+def _identity(scene: Scene, history: History) -> Mapping[str, Value]:
     if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
         return {"acceleration": acceleration(scene, history)}
     free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
@@ -89,11 +81,8 @@ def _identity(scene: Scene, finished: Finished) -> Mapping[str, Value]:
     return {"largest difference": float(difference), "offset": float(offset)}
 
 
-def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
+def _against_rigid(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
-    history = finished.history(scene.name, "dda")
-    if history is None:
-        return {}
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
     rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
     return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
@@ -101,14 +90,8 @@ def _against_rigid(scene: Scene, finished: Finished) -> Mapping[str, Value]:
 
 def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
-    accelerations = []
-    for case in pair:
-        history = finished.history(case.name, "dda")
-        if history is None:
-            return {}
-        accelerations.append(acceleration(case, history))
+    below, above = (acceleration(case, finished.needed_history(case.name, "dda")) for case in pair)
     low, high = (case.load.slope for case in pair)
-    below, above = accelerations
     return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
 
 

@@ -157,9 +157,7 @@ def steady(finished: Finished, scene: Scene, solver: str, frequency: float) -> d
     ValueError
         There is no history.
     """
-    history = finished.history(scene.name, solver)
-    if history is None:
-        raise ValueError(f"{scene.name}: must have a history of {solver}, got none")
+    history = finished.needed_history(scene.name, solver)
     base = read_record(SCENE_DIRECTORY / f"{_record(scene)}.csv")
     last = slice(-WINDOWS[_record(scene)], None)
     turns = np.exp(-2j * np.pi * frequency * history.time[last])

@@ -72,20 +72,7 @@ class Wave:
     def _computed(
         self, compute: Callable[[Wave, History], Mapping[str, Value]], finished: Finished
     ) -> Mapping[str, Value]:
-        return compute(self, self.history(finished))
-
-    def history(self, finished: Finished) -> History:
-        """Return the history of its case.
-
-        Raises
-        ------
-        ValueError
-            There is none.
-        """
-        history = finished.history(self.scene.name, self.solver)
-        if history is None:
-            raise ValueError(f"{self.scene.name}: must have a history of {self.solver}, got none")
-        return history
+        return compute(self, finished.needed_history(self.scene.name, self.solver))
 
 
 @functools.cache
@@ -177,7 +164,7 @@ def joint_order(finished: Finished) -> Mapping[str, Value]:
     """Return the order in 1/N at which |T| tends to that of the continuum, fitted with its sign."""
     errors_by_blocks = []
     for wave in averaged():
-        T, _ = joint_parts(wave.guide, wave.scene, wave.history(finished))
+        T, _ = joint_parts(wave.guide, wave.scene, finished.needed_history(wave.scene.name, wave.solver))
         errors_by_blocks.append((wave.blocks, abs(T) - float(waves.joint_transmission(1.0))))
     blocks, errors = np.array(errors_by_blocks).T
     if np.any(errors <= 0):

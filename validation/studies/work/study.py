@@ -113,9 +113,7 @@ def named(name: str) -> Scene:
 
 
 def _columns(finished: Finished, case: str, solver: str, every: int = 1) -> dict[str, Array]:
-    history = finished.history(case, solver)
-    if history is None:
-        return {}
+    history = finished.needed_history(case, solver)
     return {name: history.columns[column][every - 1 :: every] for name, column in QUANTITIES.items()}
 
 
