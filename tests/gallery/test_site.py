@@ -69,12 +69,13 @@ def data_of(page: str) -> list[dict]:
 
 
 def test_a_page_for_each_study_scene_and_calculator(gallery: dict[str, str]) -> None:
-    pages = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index"}
+    pages = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index", "references"}
     pages |= {"damping", "adviser", "rebound", "wave"}
     assert {f"{page}.html" for page in pages} | {*site.STATIC, site.NOTICE} == set(gallery)
     for name, text in gallery.items():
         for address in re.findall(r'(?:href|src)="([^"#]+)"', text) if name.endswith(".html") else ():
             assert address in gallery or address == "data:,", (name, address)
+    assert "article 7480937" in gallery["index.html"] and 'id="feng2017"' in gallery["references.html"]
 
 
 def test_no_page_asks_a_network_or_names_a_place(gallery: dict[str, str], results: Results) -> None:

@@ -14,7 +14,7 @@ from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.errors import InputError
 from validation.gallery import cases as cases_of_gallery
-from validation.gallery import chapters, judged, pages, scene_data, verdicts, work
+from validation.gallery import chapters, judged, scene_data, verdicts, work
 from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import GalleryScene, GalleryStudy, studies_and_scenes
 from validation.gallery.histories import Sampling
@@ -137,15 +137,6 @@ def test_a_chapter_that_cannot_be_drawn_says_why(tmp_path: Any) -> None:
     results.write_json("studies/lost.json", {"study": "another"})
     (said,) = chapters.chapter_for(results, study).blocks
     assert "The chapter cannot be drawn from these results" in said.text and "another" in said.text  # type: ignore[union-attr]
-
-
-def test_the_foot_names_the_newest_study_s_commit_and_version() -> None:
-    made = [GalleryStudy(name, "", {"study": name, "provenance": {
-        "date": date, "commit": f"of {name}", "packages": {"dda-validation": version}}}, (), ())
-        for name, date, version in (("a", "2024-01-02", "1"), ("b", "2025-03-04", "2"), ("c", "2023-01-01", "3"))
-    ]  # fmt: skip
-    assert pages._provenance(made) == {"date": "2025-03-04", "commit": "of b", "version": "2"}
-    assert set(pages._provenance([]).values()) == {"unknown"}
 
 
 def page_of(*words: tuple[str, int]) -> Pages:

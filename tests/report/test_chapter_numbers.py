@@ -112,8 +112,8 @@ def test_the_register_counts_and_words_each_verdict() -> None:
     rows = {name: {"verdict": verdict} for name, verdict in
             (("a", 0.0), ("b", 0.0), ("c", 1.0), ("d", 2.0), ("e", 2.0), ("f", 2.0))}  # fmt: skip
     assert chapters_paper.conclusion(rows) == (
-        "Of 6 statements and equations of the paper that were tested, 3 are confirmed, 1 holds under a condition that "
-        "the paper does not name, 2 are refuted."
+        "Of 6 statements and equations of the paper @feng2017 that were tested, 3 are confirmed, 1 holds under a "
+        "condition that the paper does not name, 2 are refuted."
     )
     claim = {"id": "a", "says": "It is so", "place": "page 1", "why": "it is not", "condition": "never"}
     table = chapters_paper.claims_table([claim], {"a": {"verdict": 0.0, "steps": 44.0, "share": "undefined"}})

@@ -15,10 +15,9 @@ from oracles.made_cases import between, kept_study, made_case, made_group, made_
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.problems.quantities import Quantity
 from validation.report.appendix.alarms import remark
-from validation.report.appendix.gates import MOST_LINES, gate_pages
+from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
-from validation.report.blocks import GateLines
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
 from validation.report.chapters.block import core, two_codes
@@ -38,35 +37,17 @@ def verdict(scene: str, value: float, band: tuple[float, float] = (0.0, 1.0), **
     return rest | {"scene": scene, "value": value, "band": list(band)} | more
 
 
-def lines_of(verdicts: list[Any], found: Any = None) -> Any:
-    (block,) = [part for part in gate_pages(verdicts, found or {}) if isinstance(part, GateLines)]
-    return block.sections
-
-
-def test_every_gate_has_a_line_with_place_pair_value_and_band() -> None:
-    group = made_group(made_case(PAPER.with_values({"time.step": 0.01}, label=True), {}, label="dt = 0.01 s"))
-    name = group.cases[0].name
-    own = [
-        verdict(name, 0.5, id=f"{name}:dda-bar:m@0.2s"),
-        verdict("b", 0.25, (0.2, 0.3), reason="else", study="limits"),
-    ]
-    assert lines_of([*own, verdict("c", 9.0, verdict="FAIL")], {"scene": group}) == (
-        ("core: 1 passed", "so [exact]", (("figures-3-4 dt=0.01 s", "dda–bar m@0.2s", "0.5", "0 … 1"),)),
-        ("limits: 1 passed", "else [exact]", (("b", "dda–bar m", "0.25", "0.2 … 0.3"),)),
-    )
-    assert gate_pages([verdict("c", 9.0, verdict="FAIL")], {}) == []
-
-
-def test_of_very_many_gates_those_of_one_kind_share_a_line() -> None:
-    many = [verdict(f"a[x={i}]", 0.1 + (i + 9) % MOST_LINES / 10_000) for i in range(MOST_LINES)]
-    assert len(lines_of(many)[0][2]) == MOST_LINES
-    others = [verdict("b[x=1]", 0.1, (0.0, 0.2)), verdict("b[x=2]", 0.1), verdict("c", 0.3)]
-    ((_, _, lines),) = lines_of([*many, *others])
-    assert lines == (
-        (f"a, {MOST_LINES} cases", "dda–bar m", "0.1 … 0.1699", "0 … 1"),
-        ("b, 2 cases", "dda–bar m", "0.1", "each with its own band"),
-        ("c", "dda–bar m", "0.3", "0 … 1"),
-    )
+def test_gates_have_a_line_for_each_reason() -> None:
+    """Scenes and metrics beyond the second are counted; what did not pass stands on the first pages."""
+    own = [verdict(f"a[x={i}]", 0.5, id=f"a[x={i}]:dda-bar:m@0.2s") for i in range(3)]
+    own += [verdict(name, 0.1, reason="else", metric=name.upper()) for name in "bcd"]
+    own.append(verdict("e", 0.25, study="limits", reference_kind="other code"))
+    _, table = gate_table([*own, verdict("f", 9.0, verdict="FAIL")])
+    assert table.rows == (  # type: ignore[union-attr]
+        ("core: 6 passed",), ("3", "m@0.2s of a: so [exact]"), ("3", "B, C, 1 more of b, c, 1 more: else [exact]"),
+        ("limits: 1 passed",), ("1", "m of e: so [other code]"),
+    )  # fmt: skip
+    assert gate_table([verdict("c", 9.0, verdict="FAIL")]) == []
 
 
 def test_parameters_are_told_in_full_once_and_then_by_what_differs() -> None:

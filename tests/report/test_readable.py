@@ -1,4 +1,4 @@
-"""Read as a reader does: five questions are answered on the first four pages, and the report has as many as it may."""
+"""Read as a reader does: five questions are answered on the first three pages, and the report has as many as it may."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from validation.report.typesetting import write_document
 from validation.studies.catalogue import get_study, judged_studies
 
 ROOT = Path(__file__).parents[2]
-SHORT, WHOLE = 20, 43  # pages, two of columns; the long study `stability`, which is not run here, takes three more
+SHORT, WHOLE = 15, 39  # pages, two of columns; the long study `stability`, which is not run here, takes three more
 SCENES = ("figures-3-4", "figures-5-6", "model-form")
 ANSWERS = {  # question -> what is read on which page
     "which dt for 5 % damping": {1: "for 5 % take dt = 0.584 ms", 2: "for 5 % at p = 1E, dt = 0.584 ms"},
     "what happens at p = 100E": {
         1: "the contact rings: it flips sign each step",
-        3: "At p = 100E they deflect by 0.05 mm",
+        2: "At p = 100E they deflect by 0.05 mm",
     },
     "is DDA's force right": {1: "At rest yes: every run tends to 5 MPa; during the motion no"},
-    "what does gg = 0.98 do": {1: "It removes 2 % of the velocity in each", 4: "gg = 0.98 per step is 1.52 % at 2 ms"},
+    "what does gg = 0.98 do": {1: "removes 2 % of the velocity in each", 3: "gg = 0.98 per step is 1.52 % at 2 ms"},
     "what must I not believe": {1: "What should I not trust? The agreement at a long step: 0.813 % at 10 ms"},
 }
 
@@ -60,8 +60,8 @@ def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> lis
 
 
 @pytest.mark.parametrize("question", ANSWERS)
-def test_a_question_is_answered_on_the_first_four_pages(question: str, pages: list[str]) -> None:
-    assert len(pages) == 4
+def test_a_question_is_answered_on_the_first_three_pages(question: str, pages: list[str]) -> None:
+    assert len(pages) == 3
     for number, answer in ANSWERS[question].items():
         assert answer in pages[number - 1]
 
@@ -70,7 +70,7 @@ def test_the_first_page_has_the_model_five_sentences_and_one_line_of_verdicts(pa
     first = pages[0]
     assert "What was tested" in first and "No gate was judged." in first
     assert all(f"{number}. " in first for number in range(1, 6)) and "6. " not in first
-    assert [re.search(r"Decision (\d)", page)[1] for page in pages[1:]] == ["1", "2", "3"]  # type: ignore[index]
+    assert [sorted(set(re.findall(r"Decision (\d)", page))) for page in pages] == [[], ["1", "2"], ["3"]]
 
 
 def made(studies: list[str], finished_cases: Path, directory: Path) -> PdfReader:
@@ -88,7 +88,7 @@ def reported() -> list[str]:
 
 
 @pytest.mark.long
-def test_make_report_has_at_most_twenty_pages(tmp_path: Path, finished_cases: Path) -> None:
+def test_make_report_has_at_most_fifteen_pages(tmp_path: Path, finished_cases: Path) -> None:
     read = made(reported(), finished_cases, tmp_path)
     assert len(read.pages) <= SHORT
     outline = words(" ".join(page.extract_text() for page in read.pages))
@@ -96,5 +96,5 @@ def test_make_report_has_at_most_twenty_pages(tmp_path: Path, finished_cases: Pa
 
 
 @pytest.mark.long
-def test_everything_has_at_most_forty_six_pages(tmp_path: Path, finished_cases: Path) -> None:
+def test_everything_has_at_most_thirty_nine_pages(tmp_path: Path, finished_cases: Path) -> None:
     assert len(made(judged_studies(), finished_cases, tmp_path).pages) <= WHOLE

@@ -21,11 +21,11 @@ from validation.report.blocks import (
     Beside,
     Callout,
     FigureBlock,
-    GateLines,
     Heading,
     PageBreak,
     Paragraph,
     Points,
+    References,
     Table,
     TableColumn,
 )
@@ -422,7 +422,7 @@ def test_every_kind_of_block_is_set(tmp_path):
         Table((TableColumn("x", "decimal"), TableColumn("id", "id")), (("1.5", "a:b[c=d]"),)),
         Points((("One.", "This *is* #not markup"),)),
         Beside((Paragraph("left"),), (Callout("right", "rule"),), 0.4),
-        GateLines((("core", "why", (("a", "b", "1", "0 … 2"),)),)),
+        References(),
     ]
     assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 
@@ -458,4 +458,8 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     said = [b.text for b in page if isinstance(b, Callout)]
     assert said[0] == f"dda: overflow. {Outcome.OVERFLOW.sentence} step 7; too long"
     assert said[1].startswith("bar: refused.")
-    assert front == [Paragraph("1 scene of mine: one chapter a study.", "lead"), Callout("No gate was judged.", "warn")]
+    imprint, *others = front
+    assert "article 7480937" in imprint.text
+    assert others == [
+        Paragraph("1 scene of mine: one chapter a study.", "lead"), Callout("No gate was judged.", "warn")
+    ]  # fmt: skip

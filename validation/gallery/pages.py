@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
-from validation.errors import InputError
 from validation.gallery import scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS, Calculator
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
@@ -19,11 +19,14 @@ from validation.gallery.histories import LEAST, samples_for
 from validation.gallery.svg import Sheet
 from validation.gallery.work import work_plots
 from validation.report.chapters.text import parameters
+from validation.report.references import PAPER, identity, references
 from validation.runs.case_name import CaseName
 from validation.runs.results import Results
 from validation.runs.text import visible
 
 MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULATORS))
+SOURCES = references()
+CITATION = re.compile(r"@([a-z]+\d{4})\b")
 SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
 
 
@@ -38,6 +41,7 @@ def environment() -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["data"] = _data
+    templates.filters["cited"] = _cited
     return templates
 
 
@@ -75,11 +79,11 @@ class Pages:
         self._scenes = scenes
         self._most = scene_data.most_lines(scenes)
         self._samples = LEAST
-        self._provenance = _provenance(studies)
+        self._imprint = readable(identity(study.manifest.get("provenance") or {} for study in studies))
 
     def _page(self, template: str, file: str, **values: object) -> str:
         page = self._environment.get_template(template)
-        return page.render(menu=MENU, file=file, provenance=self._provenance, **values)
+        return page.render(menu=MENU, file=file, imprint=self._imprint, **values)
 
     def index(self) -> str:
         """Return the first page: studies with their verdicts, what fails, scenes, calculators."""
@@ -94,6 +98,7 @@ class Pages:
             scenes=self._scenes,
             counts=verdicts.counts(all_verdicts),
             failed=failure_table,
+            paper=PAPER,
             calculators=CALCULATORS,
             scripts=SCRIPTS,
         )
@@ -145,21 +150,24 @@ class Pages:
             scripts=SCRIPTS,
         )
 
+    def references(self) -> str:
+        """Return the page of the paper and the sources of the methods."""
+        return self._page("references.html.j2", "references.html", sources=SOURCES, scripts=())
+
     def calculator(self, calculator: Calculator) -> str:
         """Return the page of a calculator."""
         scripts = ("uPlot.iife.min.js", "numerals.js", "formulas.js", "calculators.js", "gallery.js")
         return self._page("calculator.html.j2", f"{calculator.id}.html", calculator=calculator, scripts=scripts)
 
 
-def _provenance(studies: Sequence[GalleryStudy]) -> dict[str, str]:
-    """Return versions, commit and date of the newest study."""
-    records = [study.manifest.get("provenance") or {} for study in studies]
-    newest: dict[str, Any] = max(records, key=lambda p: str(p.get("date", "")), default={})
-    packages = newest.get("packages") or {}
-    if not isinstance(packages, Mapping):
-        raise InputError("packages must be a table", source=studies[0].name, field="provenance", value=repr(packages))
-    return {
-        "date": readable(str(newest.get("date", "unknown"))),
-        "commit": readable(str(newest.get("commit", "unknown"))),
-        "version": readable(str(packages.get("dda-validation", "unknown"))),
-    }
+def _citation(match: re.Match[str]) -> str:
+    """Return a link to a source as author and year; a text that is no key stays."""
+    source = SOURCES.get(match[1])
+    if source is None:
+        return match[0]
+    return f'<a href="references.html#{match[1]}">{escape(source["author"].partition(",")[0])} {source["year"]}</a>'
+
+
+def _cited(text: str) -> Markup:
+    """Return a text whose citations are links to the page of references."""
+    return Markup(CITATION.sub(_citation, str(escape(visible(text)))))

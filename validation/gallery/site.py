@@ -64,6 +64,7 @@ def build(results: Results, out: Path, progress: Progress = lambda finished, tot
         for calculator in CALCULATORS:
             _write(place / f"{calculator.id}.html", pages.calculator(calculator))
         _write(place / "index.html", pages.index())
+        _write(place / "references.html", pages.references())
         for name in (*STATIC, NOTICE):
             _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
         figures = {scene.page: pages.figures(scene, chapters) for scene in scenes}

@@ -48,7 +48,7 @@ class TableColumn:
 class Table:
     """A table; a row of one cell spans all columns as a remark on the rows below it.
 
-    Where `ruled`, a thin rule is drawn above each row whose first cell is not empty.
+    Where `ruled`, a thin rule is drawn above each row whose first cell is not empty; `dense` sets it in small type.
     """
 
     columns: tuple[TableColumn, ...]
@@ -56,6 +56,7 @@ class Table:
     caption: str = ""
     notes: tuple[str, ...] = ()
     ruled: bool = True
+    dense: bool = False
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -74,6 +75,7 @@ def table(
     caption: str = "",
     notes: Iterable[str] = (),
     ruled: bool = True,
+    dense: bool = False,
 ) -> Table:
     """Return a table whose columns of numbers are aligned at the decimal point, as their cells show.
 
@@ -98,7 +100,7 @@ def table(
         else:
             cells = [line[place] for line in lines if len(line) == len(titles)]
             columns.append(TableColumn(title[0], "decimal" if _are_numbers(cells) else "text", title[1]))
-    return Table(tuple(columns), tuple(lines), caption, tuple(notes), ruled)
+    return Table(tuple(columns), tuple(lines), caption, tuple(notes), ruled, dense)
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
@@ -146,18 +148,12 @@ class Beside:
     share: float
 
 
-GateLine = tuple[str, str, str, str]
-
-
 @dataclass(frozen=True)
-class GateLines:
-    """Short lines of four cells in small type, in two columns, under the title and the remark that they share."""
-
-    # title, empty where it is that of the section before; remark; lines
-    sections: tuple[tuple[str, str, tuple[GateLine, ...]], ...]
+class References:
+    """The sources that the document cites, numbered; without it keys are not set as numbers."""
 
 
 Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
-Part = Block | Points | Beside | GateLines  # of the first and the last pages
+Part = Block | Points | Beside | References  # of the first and the last pages
 Blocks = list[Block]
 Chapter = Callable[[Results, Manifest, Path], Blocks]

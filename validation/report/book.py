@@ -90,7 +90,8 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
     with _damage_named(results, "the first and the last pages"):
         groups = groups_of_studies(results, readable)
         verdicts = results.verdicts()
-        front = front_pages(groups, verdicts, readable, figures)
+        provenances = [results.manifest(study).get("provenance", {}) for study in readable]
+        front = front_pages(groups, verdicts, readable, figures, provenances)
         return [*front, *chapters, PageBreak(), *appendix(results, groups, verdicts, readable)]
 
 

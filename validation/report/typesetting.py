@@ -13,8 +13,9 @@ from typing import Any
 import typst
 
 from validation.errors import InputError
-from validation.report.blocks import Beside, Part
+from validation.report.blocks import Beside, Part, References
 from validation.report.names import unescaped, with_texts
+from validation.report.references import BIBLIOGRAPHY, references
 from validation.runs.files import write_atomically
 
 TEMPLATE = Path(__file__).with_name("report.typ")
@@ -43,9 +44,11 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Pa
 def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     shutil.copyfile(TEMPLATE, root / "report.typ")
+    shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation on the two-block model",
+        "keys": list(references()) if References() in blocks else [],
         "blocks": [_record(block) for block in blocks],
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")

@@ -1,81 +1,42 @@
-"""Every gate that passed on a line, study by study under the reason that it shares with others."""
+"""The gates that passed, a line for each reason of a band; the gallery lists them one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable
 
-from validation.report.blocks import GateLine, GateLines, Heading, Paragraph, Part
-from validation.report.chapters.data import Groups, labels_of
-from validation.report.chapters.gates import band, measured, reason, value_cell
+from validation.report.blocks import Blocks, Heading, TableColumn, table
+from validation.report.chapters.data import Verdicts
+from validation.report.chapters.gates import measured
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
 
-MOST_LINES = 700  # beyond, gates of a scene that share pair, metric and reason share a line
-Verdicts = Sequence[VerdictRecord]
+MOST_NAMES = 2  # of scenes and of metrics that share a reason; the others are counted
 
 
-def gate_pages(verdicts: Verdicts, groups: Groups) -> list[Part]:
-    """Return the gates that passed, study by study."""
-    passed = [v for v in verdicts if v["verdict"] == "PASS"]
-    if not passed:
-        return []
-    labels = labels_of(groups.values())
-    joined = len(passed) > MOST_LINES
-    sections: list[tuple[str, str, tuple[GateLine, ...]]] = []
-    for study in dict.fromkeys(v["study"] for v in passed):
-        passed_of_study = [v for v in passed if v["study"] == study]
-        title = f"{study}: {len(passed_of_study)} passed"
-        for why, lines in _sections(passed_of_study, labels, joined):
-            sections.append((title, why, lines))
-            title = ""
-    text = "Measured value and band of every gate that passed, under the reason of the band and the kind of reference."
-    if joined:
-        text += " Gates of a scene that share pair, metric and reason share a line, which gives their number and range."
-    return [Heading("Gates", 2), Paragraph(text, "small"), GateLines(tuple(sections))]
-
-
-def _sections(verdicts: Verdicts, labels: Mapping[str, str], joined: bool) -> list[tuple[str, tuple[GateLine, ...]]]:
-    """Return the lines of a study under the reasons that they share; with `joined`, like gates share a line."""
-    verdicts_by_reason: dict[str, dict[tuple[str, str], list[VerdictRecord]]] = {}
+def gate_table(verdicts: Verdicts) -> Blocks:
+    """Return how many gates passed for each reason, on what, study by study; nothing where none passed."""
+    passed_by_study: dict[str, dict[str, list[VerdictRecord]]] = {}
     for v in verdicts:
-        kind = scene_of(v["scene"]), _measured(v)
-        verdicts_by_reason.setdefault(reason(v), {}).setdefault(kind, []).append(v)
-    sections = []
-    for why, kinds in verdicts_by_reason.items():
-        lines: list[GateLine] = []
-        for alike in kinds.values():
-            if joined and len(alike) > 1:
-                lines.append(_range_line(alike))
-            else:
-                lines += [_line(v, labels) for v in alike]
-        sections.append((why, tuple(lines)))
-    return sections
-
-
-def _measured(v: VerdictRecord) -> str:
-    """Return what a gate measures: the pair, the metric and its window."""
-    return f"{'–'.join(v['pair'])} {measured(v)}"
-
-
-def _line(v: VerdictRecord, labels: Mapping[str, str]) -> GateLine:
-    label = labels.get(v["scene"], "").replace(" = ", "=")
-    scene = f"{scene_of(v['scene'])} {label}".strip()
-    return (scene, _measured(v), value_cell(v["value"], v["metric"]), band(v))
-
-
-def _range_line(verdicts: Verdicts) -> GateLine:
-    first = verdicts[0]
-    values = sorted(float(v["value"]) for v in verdicts if isinstance(v["value"], int | float))
-    has_one_band = len({tuple(v["band"]) for v in verdicts}) == 1
-    return (
-        f"{scene_of(first['scene'])}, {len(verdicts)} cases",
-        _measured(first),
-        _ends(values, first["metric"]),
-        band(first) if has_one_band else "each with its own band",
+        if v["verdict"] == "PASS":
+            passed_by_reason = passed_by_study.setdefault(v["study"], {})
+            passed_by_reason.setdefault(f"{v['reason']} [{v['reference_kind']}]", []).append(v)
+    rows: list[tuple[str, ...]] = []
+    for study, passed_by_reason in passed_by_study.items():
+        rows.append((f"{study}: {sum(map(len, passed_by_reason.values()))} passed",))
+        for reason, passed in passed_by_reason.items():
+            scenes = _some(scene_of(v["scene"]) for v in passed)
+            rows.append((str(len(passed)), f"{_some(map(measured, passed))} of {scenes}: {reason}"))
+    titles = (TableColumn("Gates", "decimal"), TableColumn("Metrics and scenes: why the band is what it is", "fill"))
+    caption = (
+        "Gates that passed, a line for each reason of a band, with the kind of reference in brackets; the gallery and "
+        "verdicts.json list each gate with its value and its band."
     )
+    return [Heading("Gates", 2), table(titles, rows, caption, ruled=False, dense=True)] if rows else []
 
 
-def _ends(values: Sequence[float], metric: str) -> str:
-    """Return the least and the greatest value, or the one that both read as."""
-    low, high = (value_cell(value, metric) for value in (values[0], values[-1]))
-    return low if low == high else f"{low} … {high}"
+def _some(names: Iterable[str]) -> str:
+    """Return the first few of some names, each once, and how many more there are."""
+    distinct = list(dict.fromkeys(names))
+    more = len(distinct) - MOST_NAMES
+    first = ", ".join(distinct[:MOST_NAMES])
+    return f"{first}, {more} more" if more > 0 else first

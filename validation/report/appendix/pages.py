@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validation.report.appendix.alarms import alarm_table
-from validation.report.appendix.gates import gate_pages
+from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
-from validation.report.blocks import Heading, Part
+from validation.report.blocks import Heading, Part, References
 from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
 def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> list[Part]:
-    """Return words, alarms, parameters, provenance and gates."""
+    """Return words, alarms, parameters, provenance, gates and references."""
     return [
         Heading("Appendix"),
         *glossary(),
         *alarm_table(groups),
         *parameter_table(groups),
         *provenance(results, studies),
-        *gate_pages(verdicts, groups),
+        *gate_table(verdicts),
+        References(),
     ]

@@ -25,7 +25,7 @@ def parameter_table(groups: Groups) -> Blocks:
         rows.append((group.name, ", ".join([*differing, count])))
         first_items = first_items or set(items)
     caption = "Data of the scenes: the first in full, the others where they differ from it."
-    return [Heading("Parameters", 2), table(("Scene", TableColumn("Data", "fill")), rows, caption)]
+    return [Heading("Parameters", 2), table(("Scene", TableColumn("Data", "fill")), rows, caption, dense=True)]
 
 
 def provenance(results: Results, studies: Sequence[str]) -> Blocks:

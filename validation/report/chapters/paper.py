@@ -81,7 +81,7 @@ def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     """Return one sentence on the register."""
     count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
     parts = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
-    return f"Of {len(rows)} statements and equations of the paper that were tested, {', '.join(parts)}."
+    return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {', '.join(parts)}."
 
 
 def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping[str, Any]]) -> Table:

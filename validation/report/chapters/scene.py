@@ -29,6 +29,7 @@ from validation.report.chapters.text import (
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
+from validation.report.references import SOURCES
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -59,7 +60,9 @@ def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
-    paragraphs = (Paragraph(lead, "lead"), Paragraph(text))
+    sources = SOURCES.get(manifest.get("study", ""), "")
+    rests_on = f"Sources: {sources}" if sources else ""
+    paragraphs = (Paragraph(lead, "lead"), Paragraph(text), Paragraph(rests_on, "small"))
     title = manifest.get("title") or manifest["study"]
     return [Heading(title), *(paragraph for paragraph in paragraphs if paragraph.text)]
 

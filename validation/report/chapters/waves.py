@@ -229,7 +229,7 @@ def _site(groups: Groups, directory: Path) -> Blocks:
         site_panel("Surface displacement", "m", traces[DISPLACEMENT], ""),
         site_panel("Shear stress on the base", "Pa", traces[PRESSURE], "Time [s]"),
     ]
-    figure = chart_figure(panels, [(42.0, 9.0), (42.0, 0.0)], Margins(13.0, 36.0, 6.0, 9.0))
+    figure = chart_figure(panels, [(32.0, 9.0), (32.0, 0.0)], Margins(13.0, 36.0, 6.0, 9.0))
     caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
     return [
         Heading("A site under a record", 2),

@@ -39,7 +39,7 @@ def work_figure(points: Sequence[Point]) -> Figure:
         )
         level = floor(points, quantity, reference)
         panels.append(replace(panel, levels={"": level}) if level else panel)
-    figure = chart_figure(panels, [(34.0, 4.0)] * len(quantities), Margins(15.0, 4.0, 13.0, 9.5), shared=True)
+    figure = chart_figure(panels, [(25.0, 4.0)] * len(quantities), Margins(15.0, 4.0, 13.0, 9.5), shared=True)
     with house_style():
         _legend(figure, points)
     return figure

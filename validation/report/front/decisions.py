@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table, table
+from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table, table
 from validation.report.chapters.data import Groups
 from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.text import DASH, cell, percent, short
@@ -42,7 +42,7 @@ def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the three pages."""
     blocks: Blocks = []
     for page in (step_page, spring_page, discount_page):
-        blocks += [PageBreak(), *page(groups, paper, directory)]
+        blocks += page(groups, paper, directory)
     return blocks
 
 
@@ -84,8 +84,8 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     caption = (
-        f"Damping grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % at ω₁ dt = {turn:.3g}, and falls "
-        "beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
+        f"Damping @doolin2004, @lin2015 grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % "
+        f"at ω₁ dt = {turn:.3g}, and falls beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
         "vertical: the time a wave takes from top to base; a longer step cannot resolve it."
     )
     step = closed.step_for(scenes[0], 0.05)
@@ -93,11 +93,12 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     return [
         Heading("Decision 1: which time step?", 2),
         _rule(
-            f"Choose the damping ratio ξ, then dt ≈ 4 ξ / ω₁ (up to ξ = 10\u00a0% within 3\u00a0%){example}. "
+            f"Choose the damping ratio ξ of the first axial mode, then dt ≈ 4 ξ / ω₁, ω₁ its circular "
+            f"frequency (up to ξ = 10\u00a0% within 3\u00a0%){example}. "
             "Small damping and the wave both need a short step, and no step repairs the model: what is left "
             "when the damping is gone is one strain in place of a wave."
         ),
-        histories.saved(chart_figure([chart], 62.0), directory, "decision-step.svg", caption),
+        histories.saved(chart_figure([chart], 40.0), directory, "decision-step.svg", caption),
         step_table(scenes),
         *_as_run(groups),
     ]
@@ -183,15 +184,15 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     title = f"|λ| of the contact at dt = {milliseconds(STEP)}"
     ringing = ChartPanel(title, "p / E", "", radii, y_range=(0.0, 1.05), **axes)
     caption = (
-        "Left: the springs' share of v at rest; the stiffer they are, the more the first natural frequency exceeds the "
-        "bar's. Right: share of its amplitude that the contact keeps per step; at 1 the ringing is undamped. Of "
-        "the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, whose roots tend to "
+        "Left: the springs' share of v at rest over p/E; the stiffer they are, the more the first natural "
+        "frequency exceeds the bar's. Right: |λ|, the share of its amplitude that the contact keeps per step; at 1 the "
+        "ringing is undamped. Of the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, whose roots tend to "
         "(δ − 3/2)/(δ + 1/2)."
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),
         _rule(spring_rule(groups, base)),
-        histories.saved(chart_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
+        histories.saved(chart_figure([deflection, ringing], 37.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
         Paragraph(
             "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
@@ -288,7 +289,7 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
             f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
             "step never converges."
         ),
-        histories.saved(chart_figure([chart], 60.0), directory, "decision-discount.svg", caption),
+        histories.saved(chart_figure([chart], 38.0), directory, "decision-discount.svg", caption),
         discount_table(base),
         Paragraph(
             "The discount does not damp a stiff contact: with average acceleration its roots tend to −1 and −gg. It "

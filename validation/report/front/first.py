@@ -37,7 +37,7 @@ def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
     answers = (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups))
-    charts = chart_figure(damping_and_error(groups, paper), 37.0)
+    charts = chart_figure(damping_and_error(groups, paper), 26.0)
     return [
         Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
         Heading("The answer in five sentences", 3),
@@ -52,14 +52,16 @@ def tested(paper: Scene) -> Blocks:
     block = paper.block
     return [
         Paragraph(
-            f"An elastic square A ({block.density:g} kg/m³, E = {short(block.young / 1e9)} GPa, μ = {block.poisson:g}) "
-            "stands on a fixed block B. Springs lock the corners M and N, p [N/m] in each direction, and a pressure on "
-            "the top is there from t = 0 on. DDA gives the block six unknowns: u, v and r of its centroid and one "
-            "strain εx, εy, γxy. Reported are v of the centroid and the contact pressure on the base."
+            f"An elastic square A of side a (density {block.density:g} kg/m³, Young's modulus E = "
+            f"{short(block.young / 1e9)} GPa, Poisson's ratio μ = {block.poisson:g}) stands on a fixed block B. "
+            "Springs of stiffness p [N/m], written as a multiple of E, lock the corners M and N in each direction; "
+            "a pressure q on the top is there from t = 0 on. DDA @shi1985, @shi1988 gives the block six unknowns: "
+            "displacements u, v and rotation r of its centroid and one strain εx, εy, γxy. Reported are v and the "
+            "contact pressure on the base."
         ),
         Paragraph(
             "It is compared with the same block in finite elements (fem), as a bar that is exact in space and takes "
-            "the same time steps (bar), and as one exact in space and time (continuum). DDA differs from the bar by "
+            "the same time steps dt (bar), and as one exact in space and time (continuum). DDA differs from the bar by "
             "its model, the bar from the continuum by the time step."
         ),
     ]
@@ -153,8 +155,8 @@ def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
         advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {1e3 * step:.3g}\u00a0ms (decision 1)"
     return (
         "Which time step?",
-        f"The step is the damping: constant acceleration, in DDA's usage (1/2, 1) (texts on finite elements mean "
-        f"(1/4, 1/2)), damps the first mode by {', '.join(measured)} of "
+        f"The step is the damping: constant acceleration, in DDA's usage Newmark's @newmark1959 weights (α, δ) = (1/2, "
+        f"1) (texts on finite elements mean (1/4, 1/2)), damps the first mode by {', '.join(measured)} of "
         f"critical at p = {closed.ratio_of(paper):g}E; {advice}.",
     )
 
@@ -195,8 +197,8 @@ def discount(paper: Scene) -> tuple[str, str]:
     ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
     return (
         f"What does gg = {DISCOUNT:g} do?",
-        f"It removes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity in each step, not in each second: alone, under "
-        f"average acceleration, it damps the first mode by {ratios} of critical; hold "
+        f"The kinetic damping gg @hatzor2004 removes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity in each step, "
+        f"not in each second: alone, under average acceleration, it damps the first mode by {ratios} of critical; hold "
         "the rate instead, gg = exp(−c dt) (decision 3).",
     )
 
@@ -298,7 +300,10 @@ def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(groups)
     turn = closed.most_damped(closed.constant(paper))
-    claim = f"The longer the step (to ω₁ dt = {turn:.3g}), the more it damps, and the better DDA seems to fit the bar"
+    claim = (
+        f"The longer the step (to ω₁ dt = {turn:.3g}, ω₁ the first circular frequency), the more it damps, and the "
+        "better DDA seems to fit the bar"
+    )
     if len(rows) > 1:
         claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
         claim += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"

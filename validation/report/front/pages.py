@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from validation.report.blocks import PageBreak, Paragraph, Part
 from validation.report.chapters.data import Groups, Verdicts
@@ -11,17 +12,27 @@ from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
 from validation.report.front.groups import paper_scene
+from validation.report.references import PAPER, identity
 
 
-def front_pages(groups: Groups, verdicts: Verdicts, studies: Sequence[str], directory: Path) -> list[Part]:
+def front_pages(
+    groups: Groups,
+    verdicts: Verdicts,
+    studies: Sequence[str],
+    directory: Path,
+    provenances: Sequence[Mapping[str, Any]] = (),
+) -> list[Part]:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
+    imprint = Paragraph(f"The model is that of {PAPER}. {identity(provenances)}.", "small")
     paper = paper_scene(groups)
     failures = not_passed(verdicts)
     if paper is None:
         what = f"{len(groups)} scene{'s' * (len(groups) != 1)} of {', '.join(studies)}: one chapter a study."
-        return [Paragraph(what, "lead"), verdict_line(verdicts), *failures]
+        return [imprint, Paragraph(what, "lead"), verdict_line(verdicts), *failures]
     return [
+        imprint,
         *first_page(groups, paper, verdicts, directory),
         *([PageBreak(), *failures] if failures else []),
+        PageBreak(),
         *decisions(groups, paper, directory),
     ]

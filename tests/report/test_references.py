@@ -1,0 +1,59 @@
+"""The bibliography: sources that are cited are known, and a report that lists them sets their numbers."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+from validation.gallery.pages import _cited
+from validation.report import front
+from validation.report.blocks import Paragraph, Part, References
+from validation.report.references import PAPER, SOURCES, identity, references
+from validation.report.typesetting import typeset
+from validation.studies.catalogue import STUDIES
+
+CITATION = re.compile(r"@([a-z]+\d{4})\b")
+
+
+def test_what_is_cited_is_a_source() -> None:
+    texts = [PAPER, *SOURCES.values()]
+    texts += [path.read_text("utf-8") for path in Path(front.__file__).parent.glob("*.py")]
+    cited = set(CITATION.findall(" ".join(texts)))
+    assert {"feng2017", "shi1985", "newmark1959", "doolin2004", "hatzor2004", "armero1998", "kane1999"} <= cited
+    assert {"housner1963", "miller1978"} <= cited <= set(references())
+    assert set(SOURCES) <= set(STUDIES)
+
+
+def test_every_source_says_who_wrote_what_when_and_where() -> None:
+    sources = references()
+    for key, source in sources.items():
+        assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
+        assert source["title"] and source[{"book": "publisher", "phdthesis": "school"}.get(source["kind"], "journal")]
+    paper = sources["feng2017"]
+    for words in (paper["title"], paper["journal"], paper["year"], f"article {paper['pages']}", "9 pages", "18 July"):
+        assert words in PAPER
+
+
+@pytest.mark.parametrize("lists", [True, False])
+def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: Path) -> None:
+    """A key that is none stays as it stands, as every key does in a document without a list."""
+    blocks: list[Part] = [Paragraph("As @housner1963 has it, and me@nowhere2020."), *[References()] * lists]
+    (tmp_path / "r.pdf").write_bytes(typeset(tmp_path, blocks))
+    (page,) = PdfReader(tmp_path / "r.pdf").pages
+    text = " ".join(page.extract_text().split())
+    assert ("As [1] has it, and me@nowhere2020." in text) == lists
+    assert ("inverted pendulum" in text) == lists and ("@housner1963" in text) != lists
+
+
+def test_the_gallery_links_keys_and_nothing_else() -> None:
+    assert _cited("<b> @kane1999 @me2020") == ('&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020')
+
+
+def test_the_first_page_names_what_the_runs_know() -> None:
+    run = {"packages": {"dda-validation": "1.2"}, "date": "2024-01-02", "commit": "abc"}
+    assert identity([run, run | {"commit": "def"}]).endswith("), version 1.2, run on 2024-01-02, commit abc, def")
+    assert identity([{}, {"packages": "none"}]).startswith("dda-validation (")
+    assert "," not in identity([])
