@@ -46,7 +46,7 @@ portable: $(READY)  ## the tests under other kernels, versions and Pythons, and 
 
 docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the results that are there
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
-	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery; \
+	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery --docs ..; \
 	else echo "no results for the gallery: make report, then make docs again"; fi
 	@echo site/index.html
 
