@@ -6,11 +6,12 @@ READY := $(VENV)/.ready
 DOCS := $(VENV)/.docs
 PEERS := $(VENV)/.peers
 MUTANTS := $(VENV)/.mutants
+RELEASE := $(VENV)/.release
 export OMP_NUM_THREADS ?= 1
 # Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all field gallery test test-all gates lint portable docs api bench mutants clean
+.PHONY: report report-all field gallery test test-all gates lint portable docs api bench mutants dist clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -45,7 +46,7 @@ portable: $(READY)  ## the tests under other kernels, versions and Pythons, and 
 
 docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the results that are there
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
-	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery; \
+	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery --docs ..; \
 	else echo "no results for the gallery: make report, then make docs again"; fi
 	@echo site/index.html
 
@@ -56,6 +57,9 @@ bench: $(READY)  ## speed, as ratios in one run against named rivals
 
 mutants: $(MUTANTS)  ## a seeded sample of changed code against the short tests of its room; minutes. SAMPLE='--rooms dda' says which
 	$(BIN)/python .ci/mutants $(SAMPLE)
+
+dist: $(RELEASE)  ## the archives of a release in dist/, built and checked from the last commit; nothing is published
+	$(BIN)/python .ci/dist
 
 clean:
 	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/*.pdf
@@ -71,9 +75,13 @@ $(DOCS): $(READY)
 	@touch $@
 
 $(PEERS): $(READY) examples/peers/pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable 'examples/peers[pypi]' --constraint constraints.txt
+	$(BIN)/python -m pip install --quiet --editable 'examples/peers[pip]' --constraint constraints.txt
 	@touch $@
 
 $(MUTANTS): $(READY)
 	$(BIN)/python -m pip install --quiet --editable '.[mutants]' --constraint constraints.txt
+	@touch $@
+
+$(RELEASE): $(READY)
+	$(BIN)/python -m pip install --quiet --editable '.[release]' --constraint constraints.txt
 	@touch $@

@@ -74,7 +74,8 @@ def opened(browser: Any, gallery: Path) -> Iterator[Callable[..., Any]]:
         page.on("console", lambda message: said.append(f"{name}: {message.text}"))
         page.on("pageerror", lambda error: said.append(f"{name}: {error}"))
         page.on("request", lambda request: request.url.startswith(("file:", "data:")) or said.append(request.url))
-        page.goto((gallery / name).as_uri())
+        file, _, settings = name.partition("#")
+        page.goto(f"{(gallery / file).as_uri()}#{settings}" if settings else (gallery / file).as_uri())
         return page
 
     yield open_page
@@ -332,6 +333,21 @@ def test_a_slider_moves_by_keys_and_answers(opened: Callable[..., Any]) -> None:
     page.locator("button[type=reset]").click()
     page.wait_for_function("document.querySelector('.wrong').hidden")
     assert page.locator(".modes").inner_text() == before
+
+
+def test_the_address_holds_the_settings_of_a_calculator(opened: Callable[..., Any]) -> None:
+    page = opened("adviser.html")
+    page.locator("#step").fill("0.003")
+    page.select_option("#solve_for", "gg")
+    assert page.url == page.evaluate("document.querySelector('.share').href")
+    facts = page.locator(".facts").inner_text()
+    sent = opened(f"adviser.html#{page.url.partition('#')[2]}")
+    assert sent.locator("#step").input_value() == "0.003" and sent.locator("#solve_for").input_value() == "gg"
+    assert sent.locator(".facts").inner_text() == facts
+    foreign = opened("adviser.html#solve_for=luck&step=&alpha=x&no_such_name=1")
+    assert foreign.locator(".wrong").is_hidden() and foreign.locator("#solve_for").input_value() == "dt"
+    page.locator("button[type=reset]").click()
+    page.wait_for_function("!location.hash")
 
 
 def test_histories_show_values_and_zoom(opened: Callable[..., Any]) -> None:

@@ -78,6 +78,23 @@ def test_a_page_for_each_study_scene_and_calculator(gallery: dict[str, str]) -> 
     assert "article 7480937" in gallery["index.html"] and 'id="feng2017"' in gallery["references.html"]
 
 
+def test_the_first_page_has_a_picture_of_each_scene_and_study(gallery: dict[str, str], results: Results) -> None:
+    pictures = re.findall(r'<svg class="thumbnail".*?</svg>', gallery["index.html"], re.S)
+    assert len(pictures) == 4
+    for picture in pictures:
+        lines = re.findall(r'points="([^"]+)"', picture)
+        places = [tuple(map(float, place.split(","))) for line in lines for place in line.split()]
+        assert len(lines) == 2  # dda and bar
+        assert all(0 <= x <= 120 and 0 <= y <= 48 for x, y in places)
+        assert {min(y for _, y in places), max(y for _, y in places)} == {3.0, 45.0}  # as high as the picture
+
+
+def test_pages_lead_to_the_documentation_where_it_lies_beside_them(results: Results) -> None:
+    alone = Pages(results, [], []).index()
+    beside = Pages(results, [], [], docs="..").index()
+    assert "Documentation" not in alone and '<a href="../index.html">Documentation</a>' in beside
+
+
 def test_no_page_asks_a_network_or_names_a_place(gallery: dict[str, str], results: Results) -> None:
     for name, text in gallery.items():
         if name.startswith("uPlot"):

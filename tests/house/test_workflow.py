@@ -138,11 +138,12 @@ def test_the_map_has_every_room_in_the_order_of_its_contract() -> None:
         assert [f"{package}.{name}" for name in re.findall(r"`(\w+)`", row)[1:]] == wanted
 
 
-def test_versions_of_project_citation_and_changelog_agree() -> None:
+def test_versions_of_projects_citation_and_changelog_agree() -> None:
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    headings = re.findall(r"^## (.+)$", changelog, re.M)
-    assert headings[0] == "Unreleased"
-    assert all(re.fullmatch(r"\d+\.\d+\.\d+ - \d{4}-\d{2}-\d{2}", heading) for heading in headings[1:])
-    assert headings[1].partition(" ")[0] == PROJECT["version"]
+    releases = re.findall(r"^## (?!Unreleased$)(.+)$", changelog, re.M)
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+ - \d{4}-\d{2}-\d{2}", heading) for heading in releases)
+    number, _, date = releases[0].partition(" - ")
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert re.findall(r"^version: (.+)$", citation, re.M) == [PROJECT["version"]]
+    peers = tomllib.loads((ROOT / "examples/peers/pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert PROJECT["version"] == peers["version"] == number
+    assert re.findall(r"^(?:version|date-released): (.+)$", citation, re.M) == [number, date]

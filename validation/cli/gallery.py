@@ -17,6 +17,10 @@ def gallery(
         Path, typer.Option(help="Directory to write, or an earlier gallery to replace.", metavar="DIR")
     ] = Path("reports/gallery"),
     results: ResultsOption = RESULTS,
+    docs: Annotated[
+        str,
+        typer.Option(help="Folder of the documentation's pages, seen from the gallery; linked to.", metavar="ADDRESS"),
+    ] = "",
 ) -> None:
     """Write the results as a static site: figures, histories to zoom, verdicts to filter, calculators.
 
@@ -30,6 +34,6 @@ def gallery(
 
     store = Results(results)
     with _progress("gallery") as progress:
-        page = build(store, out, progress)
+        page = build(store, out, progress, docs.rstrip("/"))
     print_unread(store)
     echo(f"wrote {page} ({size(page.parent) / 1e6:.1f} MB in all)")

@@ -17,6 +17,7 @@ from validation.gallery.cases import GalleryScene, GalleryStudy, readable
 from validation.gallery.chapters import DrawnChapter, page_blocks, scene_of_figure
 from validation.gallery.histories import LEAST, samples_for
 from validation.gallery.svg import Sheet
+from validation.gallery.thumbnails import thumbnail
 from validation.gallery.work import work_plots
 from validation.report.chapters.text import parameters
 from validation.report.references import PAPER, identity, references
@@ -72,7 +73,9 @@ def _data(value: object) -> Markup:
 class Pages:
     """The pages of one gallery."""
 
-    def __init__(self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene]) -> None:
+    def __init__(
+        self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene], docs: str = ""
+    ) -> None:
         self._environment = environment()
         self._results = results
         self._studies = studies
@@ -80,10 +83,12 @@ class Pages:
         self._most = scene_data.most_lines(scenes)
         self._samples = LEAST
         self._imprint = readable(identity(study.manifest.get("provenance") or {} for study in studies))
+        self._docs = docs
+        self._menu = (*MENU, (f"{docs}/index.html", "Documentation")) if docs else MENU
 
     def _page(self, template: str, file: str, **values: object) -> str:
         page = self._environment.get_template(template)
-        return page.render(menu=MENU, file=file, imprint=self._imprint, **values)
+        return page.render(menu=self._menu, docs=self._docs, file=file, imprint=self._imprint, **values)
 
     def index(self) -> str:
         """Return the first page: studies with their verdicts, what fails, scenes, calculators."""
@@ -91,11 +96,13 @@ class Pages:
         rows = [(study, verdicts.counts(study.verdicts)) for study in self._studies]
         failures = [verdict for verdict in all_verdicts if verdict["verdict"] == "FAIL"]
         failure_table = verdicts.table(failures) if failures else None
+        thumbnails = {scene.name: thumbnail(self._results, scene) for scene in self._scenes}
         return self._page(
             "index.html.j2",
             "index.html",
             studies=rows,
             scenes=self._scenes,
+            thumbnails=thumbnails,
             counts=verdicts.counts(all_verdicts),
             failed=failure_table,
             paper=PAPER,

@@ -32,7 +32,9 @@ PAGE_BYTES = 11_000  # of a scene's page without histories and figures
 Progress = Callable[[int, int, str], None]
 
 
-def build(results: Results, out: Path, progress: Progress = lambda finished, total, label: None) -> Path:
+def build(
+    results: Results, out: Path, progress: Progress = lambda finished, total, label: None, docs: str = ""
+) -> Path:
     """Write the gallery of a results directory and return its first page.
 
     Parameters
@@ -43,6 +45,8 @@ def build(results: Results, out: Path, progress: Progress = lambda finished, tot
         Directory to write: a new or empty one, or an earlier gallery, which is replaced as a whole.
     progress
         Called before each page: how many are finished, of how many, and which is next.
+    docs
+        Address of the documentation's folder, such as ".." where the gallery lies inside it; its pages are linked to.
 
     Raises
     ------
@@ -55,7 +59,7 @@ def build(results: Results, out: Path, progress: Progress = lambda finished, tot
     studies, scenes = studies_and_scenes(results, [name for name in names if name not in unread])
     total = len(studies) + len(scenes)
     with atomic_directory(out) as place:
-        pages = Pages(results, studies, scenes)
+        pages = Pages(results, studies, scenes, docs)
         chapters = {}
         for number, study in enumerate(studies):
             progress(number, total, study.name)

@@ -281,9 +281,29 @@
       if (event.target.name === "scheme" && event.target.value !== "custom")
         [form.alpha.value, form.delta.value] = event.target.value.split(",");
       answer();
+      if (form.checkValidity()) history.replaceState(null, "", address());
     });
-    form.addEventListener("reset", () => requestAnimationFrame(answer));
+    form.addEventListener("reset", () => requestAnimationFrame(() => {
+      history.replaceState(null, "", location.pathname);
+      answer();
+    }));
+    addEventListener("hashchange", () => { from_address(); answer(); });
     form.addEventListener("submit", (event) => event.preventDefault());
+
+    // The settings stand behind # in the address, so that an answer can be sent; names that the form lacks are left out.
+    function address() {
+      const texts = [...new FormData(form)].filter(([name]) => name !== "scheme");
+      return `#${new URLSearchParams(texts)}`;
+    }
+
+    function from_address() {
+      for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
+        const one = form.elements.namedItem(name);
+        const known = one instanceof HTMLSelectElement ? [...one.options].some((option) => option.value === text)
+          : one instanceof HTMLInputElement && text.trim() !== "" && Number.isFinite(Number(text));
+        if (known) one.value = text;
+      }
+    }
 
     function answer() {
       const wrong = place.querySelector(".wrong"), bad = [...form.elements].find((one) => one.willValidate && !one.checkValidity());
@@ -295,6 +315,7 @@
       sliders.forEach((slider) => slider.show());
       const options = [...form.scheme.options], pair = `${Number(form.alpha.value)},${Number(form.delta.value)}`;
       form.scheme.value = options.some((option) => option.value === pair) ? pair : "custom";
+      place.querySelector(".share").href = address();
       const found = compute(settings(form));
       place.answer = found;
       place.querySelector(".facts").replaceChildren(...found.facts.map(([name, value]) =>
@@ -303,6 +324,7 @@
       place.querySelector(".command").textContent = found.command;
       for (const one of place.querySelectorAll(".chart")) chart(one, found.charts[one.dataset.chart]);
     }
+    from_address();
     drawn(answer);
   }
 
