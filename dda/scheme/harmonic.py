@@ -68,10 +68,12 @@ def limit_squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
     return np.asarray(w * w - 1j * rate * w)
 
 
-def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> Complex:
-    """Return W2 at frequencies in Hz, as stepped or in the limit that is exact in time."""
-    omega = 2 * np.pi * np.asarray(frequencies, float)
-    return limit_squared_frequency(scheme, omega) if exact else squared_frequency(scheme, omega)
+def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
+    """Return W2 and S at frequencies in Hz, as stepped or in the limit that is exact in time."""
+    omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    if exact:
+        return limit_squared_frequency(scheme, omega), 1j * omega
+    return squared_frequency(scheme, omega), velocity_factor(scheme, omega)
 
 
 def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
@@ -79,10 +81,8 @@ def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Comp
 
     With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
     """
-    W2 = chosen(scheme, frequencies, exact)
-    omega = 2 * np.pi * np.asarray(frequencies, float)
+    W2, S = chosen(scheme, frequencies, exact)
     if not scheme.damped:
         return W2, np.ones_like(W2)
-    S = 1j * omega if exact else velocity_factor(scheme, omega)
     stiffer = 1 + scheme.stiffness_damping * S
     return np.asarray((W2 - scheme.mass_damping * S) / stiffer), np.asarray(1 / stiffer)
