@@ -45,8 +45,8 @@ Rows = Any  # array of two dimensions
 LIMIT = 4  # outcome besides those of `dda.stepping.driver`: the limit of solves was exceeded
 SWEEPS = 4  # solves for each contact with all states updated at once; N + 1, in shear 2 N + 1, are the most known
 ONE_BY_ONE = 1000  # solves for each contact after that, beyond any known problem
-STORED_NOW = 3  # kinetic, strain and spring energy of a step, before its sums
-MOMENTUM, WIDEST, DEEPEST, OPEN_SHARE, FURTHEST = range(STORED_NOW + SUMS, STORED_NOW + SUMS + 5)  # after them
+# of a step, after its sums: energies, momentum, extremes of the contacts
+KINETIC, STRAINED, SPRINGS, MOMENTUM, WIDEST, DEEPEST, OPEN_SHARE, FURTHEST = range(SUMS, SUMS + 8)
 RECORDED = FURTHEST + 1
 
 MOTION, SPEED, STRAIN, FORCES, GAP, SLIDE = range(6)  # what an observer reads
@@ -472,7 +472,7 @@ def make_column_steps(
         switches[step] = accept_contacts(joints, first, state, work)
         place_blocks(numbers, joints, state, drive.displacement[step])
         if len(energies) > 0:
-            for k in range(STORED_NOW, STORED_NOW + SUMS):
+            for k in range(SUMS):
                 energies[step, k] = energies[step - 1, k]
             account(numbers, blocks, joints, before, state, drive, step, energies)
         if not write_step(numbers, blocks, joints, state, observed, step, values, states, energies):
@@ -580,9 +580,9 @@ def store(
                 open_contacts += 1
         elif abs(state.slip[j]) > furthest:
             furthest = abs(state.slip[j])
-    energies[step, 0] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
-    energies[step, 1] = strain / 2
-    energies[step, 2] = springs / 2
+    energies[step, KINETIC] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
+    energies[step, STRAINED] = strain / 2
+    energies[step, SPRINGS] = springs / 2
     energies[step, MOMENTUM] = momentum / numbers.step
     energies[step, WIDEST] = widest
     energies[step, DEEPEST] = deepest
@@ -610,8 +610,7 @@ def account(
     late = numbers.delta
     dt2 = numbers.step * numbers.step
     row = energies[step]
-    scale = STORED_NOW
-    row[scale + DAMPING] += (1 - numbers.gg * numbers.gg) * energies[step - 1, 0]
+    row[DAMPING] += (1 - numbers.gg * numbers.gg) * energies[step - 1, KINETIC]
     stiff = 0.0
     work = 0.0
     stiffness = blocks.stiffness
@@ -632,7 +631,7 @@ def account(
             faster = after.s[i] - before.s[i]
             wider = after.se[i] - before.se[i]
             change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
-    row[scale + ALGORITHMIC] += bulk_loss(numbers.alpha, late, 1 / dt2, stiff, kinetic, change)
+    row[ALGORITHMIC] += bulk_loss(numbers.alpha, late, 1 / dt2, stiff, kinetic, change)
     switching = 0.0
     keeping = 0.0
     dissipated = 0.0
@@ -648,19 +647,19 @@ def account(
         else:
             switching += lost
         dissipated += friction
-    row[scale + ALGORITHMIC] += keeping
-    row[scale + SWITCHING] += switching
-    row[scale + FRICTION] += dissipated
+    row[ALGORITHMIC] += keeping
+    row[SWITCHING] += switching
+    row[FRICTION] += dissipated
     foot = after.u[0] - before.u[0] - (after.e[0] - before.e[0]) / 2
     if first == 0:
         foot = drive.displacement[step] - drive.displacement[step - 1]
     top = after.u[n - 1] - before.u[n - 1] + (after.e[n - 1] - before.e[n - 1]) / 2
     base_force = (1 - late) * before.force[0] + late * after.force[0]
     top_force = (1 - late) * before.force[n] + late * after.force[n]
-    row[scale + GIVEN] += numbers.fall / dt2 * work + base_force * foot - top_force * top
-    row[scale + IMPULSE] += numbers.step * base_force
+    row[GIVEN] += numbers.fall / dt2 * work + base_force * foot - top_force * top
+    row[IMPULSE] += numbers.step * base_force
     if step == 1:  # A0 may be any, later accelerations follow from the forces
-        row[scale + ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)
+        row[ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)
 
 
 def missing_work(numbers: StepNumbers, blocks: BlockColumn, before: ColumnState, after: ColumnState) -> float:

@@ -16,13 +16,15 @@ from dda.column.column import NEAR, Column, Spring
 from dda.column.contact_step import (
     FORCES,
     GAP,
+    KINETIC,
     LIMIT,
     MOTION,
     RECORDED,
     SLIDE,
     SPEED,
-    STORED_NOW,
+    SPRINGS,
     STRAIN,
+    STRAINED,
     BlockColumn,
     ColumnState,
     ColumnWork,
@@ -106,10 +108,10 @@ class ColumnContactResult(Result):
         """
         if self.record is None:
             return None
-        stored = self.record[:STORED_NOW, 1:]
-        sums = self.record[STORED_NOW : STORED_NOW + SUMS, 1:]
-        load = -sums[GIVEN] - self.record[1:STORED_NOW, 0].sum()
-        return dict(zip(ENERGIES, (*stored, load, *sums[:4]), strict=True))
+        stored = self.record[[KINETIC, STRAINED, SPRINGS]]
+        sums = self.record[:SUMS, 1:]
+        load = -sums[GIVEN] - stored[1:, 0].sum()
+        return dict(zip(ENERGIES, (*stored[:, 1:], load, *sums[:4]), strict=True))
 
 
 def solve_contact_column(
@@ -236,24 +238,18 @@ def step_equations(
         coupling[1] = 0.0
     lowest = 0 if column.rests_on_base else 1
     springs = _springs_from(column, lowest)
-    compliance, lower, upper, gaps = np.zeros((4, n))
+    compliance, upper, gaps = np.zeros((3, n))
+    compliance[lowest:] = [1 / spring.stiffness for spring in springs]
+    upper[lowest:] = [math.inf if bonded else spring.strength for spring in springs]
+    gaps[lowest:] = [spring.gap for spring in springs]
     opens = np.zeros(n, dtype=np.int64)
-    for j, (spring, face) in enumerate(zip(springs, column.contacts[lowest:], strict=True), lowest):
-        compliance[j] = 1 / spring.stiffness
-        lower[j] = -spring.strength
-        upper[j] = spring.strength
-        gaps[j] = spring.gap
-        if bonded:
-            lower[j] = -math.inf
-            upper[j] = math.inf
-        elif column.law == "unilateral" and face is not None:
-            opens[j] = 1
-            lower[j] = 0.0
+    if column.law == "unilateral" and not bonded:
+        opens[lowest:] = [face is not None for face in column.contacts[lowest:]]
     joints = JointLaws(
         diagonal=scheme.alpha * diagonal + compliance,
         coupling=scheme.alpha * coupling,
         compliance=compliance,
-        lower=lower,
+        lower=np.where(opens == 1, 0.0, -upper),
         upper=upper,
         opens=opens,
         gap=gaps,

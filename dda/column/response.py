@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from dda.column.column import Column
 from dda.column.equations import WIDTH, equations
 from dda.column.stepping import DISPLACEMENT, PRESSURE, Stepper, observers
-from dda.scheme.harmonic import Complex, chosen, velocity_factor
+from dda.scheme.harmonic import Complex, chosen
 from dda.scheme.newmark import Scheme
 
 Driven = Literal["base", "top"]
@@ -49,8 +49,7 @@ def column_response(
         If gg = 0 has no limit that is exact in time.
     """
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
-    W2 = chosen(scheme, frequencies, exact)
-    S = 1j * w if exact else velocity_factor(scheme, w)
+    W2, S = chosen(scheme, frequencies, exact)
     system = equations(column)
     step = Stepper(system, scheme)
     rows = observers(system, columns, ())
@@ -59,7 +58,7 @@ def column_response(
     drive[:, 3] = at == "top"
     driven = drive @ step.told(rows).T
     by_D, by_V, by_A = (matrix[:, step.first :] for matrix in (rows.D, rows.V, rows.A))
-    for i, (w2, s) in enumerate(zip(np.atleast_1d(W2), S, strict=True)):
+    for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
         D = _solved(step.K.rows + s * step.C.rows - w2 * step.M.rows, step.push @ drive[i])
         driven[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
     return dict(zip(columns, driven.T, strict=True))

@@ -28,9 +28,12 @@ def lazily(name: str, meaning: str) -> cached_property[Array]:
     return cached_property(read)
 
 
-def at_corner(name: str, end: int) -> property:
-    """Return the property of a result that is one corner of another one, which has a row for each contact."""
-    return property(lambda r: np.asarray(getattr(r, name)[r.base_contacts[end]]), doc=f"{name} at one corner")
+def at_corners(name: str) -> tuple[property, property]:
+    """Return the properties of a result that are the corners M and N of another one, which has a row a contact."""
+    return (
+        property(lambda r: np.asarray(getattr(r, name)[r.base_contacts[0]]), doc=f"{name} at the corner M"),
+        property(lambda r: np.asarray(getattr(r, name)[r.base_contacts[1]]), doc=f"{name} at the corner N"),
+    )
 
 
 def of_contacts(name: str, meaning: str, sign: float = 1.0) -> cached_property[Array]:
@@ -105,25 +108,13 @@ class ContactResult(Result):
         with np.errstate(all="ignore"):
             return self.balance()
 
-    # N, away from the base [N]
-    normal_force_m = at_corner("normal", 0)
-    normal_force_n = at_corner("normal", 1)
-    # T, from M to N [N]
-    shear_force_m = at_corner("shear", 0)
-    shear_force_n = at_corner("shear", 1)
-    # w, negative when pressed [m]
-    gap_m = at_corner("gap", 0)
-    gap_n = at_corner("gap", 1)
-    # s [m]
-    slide_m = at_corner("slide", 0)
-    slide_n = at_corner("slide", 1)
-    # s - r [m]
-    shear_m = at_corner("stretch", 0)
-    shear_n = at_corner("stretch", 1)
-    closed_m = at_corner("closed", 0)
-    closed_n = at_corner("closed", 1)
-    state_m = at_corner("states", 0)
-    state_n = at_corner("states", 1)
+    normal_force_m, normal_force_n = at_corners("normal")
+    shear_force_m, shear_force_n = at_corners("shear")
+    gap_m, gap_n = at_corners("gap")
+    slide_m, slide_n = at_corners("slide")
+    shear_m, shear_n = at_corners("stretch")
+    closed_m, closed_n = at_corners("closed")
+    state_m, state_n = at_corners("states")
 
 
 def run_fields(

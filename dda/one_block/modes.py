@@ -84,7 +84,7 @@ def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) 
     D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
     unit = replace(scheme, step=1.0)
     displacement, velocity = predictors(unit, D, V, A)
-    A1 = -np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement)
+    A1 = np.asarray(-np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement), float)
     return np.vstack([*correctors(unit, displacement, velocity, A1), A1])
 
 

@@ -42,7 +42,7 @@ def response(
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
     check_request(1, columns)
-    W2, factor = (np.atleast_1d(part) for part in answering(scheme, frequencies, exact))
+    W2, factor = answering(scheme, frequencies, exact)
     modal = modal_form(model.gap_form.reduced())
     rows = np.array([model.gap_form.reduced().observers[name] @ modal.shapes for name in columns])
     apart = modal.frequencies[:, None] ** 2 - W2

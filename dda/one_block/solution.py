@@ -14,7 +14,7 @@ import numpy as np
 
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_share
-from dda.model.load import BaseMotion, Load, at_once, load_share
+from dda.model.load import at_once, load_share
 from dda.one_block.gap_form import COLUMNS, GapForm
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
@@ -81,14 +81,20 @@ def solve(
         stepped = _why_stepped(model, scheme, modal, full)
         ready = perf_counter()
         if model.load.ramp:
-            observed = rows @ _ramped_modes(model.load, scheme, modal, steps)
+            shares = [load_share(model.load.ramp, scheme.step * number) for number in range(steps + 1)]
+            observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
         observed *= model.load_size
         observed += 0.0
         overflow = bound_overflow(observed, model.load_size)
-        if model.load.motion is not None:
-            observed += _carried(model.load.motion, scheme, modal, rows, columns, steps)
+        motion = model.load.motion
+        if motion is not None:  # what the base causes: its own displacement, and that of the block from it
+            instants = scheme.step * np.arange(steps + 1.0)
+            histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
+            base_columns = carried(motion, instants[1:])
+            own = np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
+            observed += rows @ histories.T + own
             overflow = bound_overflow(observed, 1.0)
     return Result(
         **times_of(scheme, steps, began, ready),
@@ -171,23 +177,6 @@ def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: b
     if model.load.ramp:
         return "the load rises in a ramp"
     return "the base moves" if model.load.motion is not None else why_stepped(scheme, modal.frequencies)
-
-
-def _ramped_modes(load: Load, scheme: Scheme, modal: ModalForm, steps: int) -> Array:
-    """Return the modes of every step under loads that rise in a ramp, (n, steps)."""
-    shares = [load_share(load.ramp, scheme.step * number) for number in range(steps + 1)]
-    return stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
-
-
-def _carried(
-    motion: BaseMotion, scheme: Scheme, modal: ModalForm, rows: Array, columns: Sequence[str], steps: int
-) -> Array:
-    """Return the part of the columns that the base's motion causes, (columns, steps)."""
-    instants = scheme.step * np.arange(steps + 1.0)
-    histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
-    base_columns = carried(motion, instants[1:])
-    added: Array = rows @ histories.T + np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
-    return added
 
 
 def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, blocked: bool) -> Array:

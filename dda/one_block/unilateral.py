@@ -220,17 +220,17 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
             f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {weights}"
         )
     law = model.contact
-    if options.rule == CONSERVING and (math.isinf(law.stiffness) or any(law.band)):
-        raise ValueError(
-            f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
-            f"got stiffness = {law.stiffness:g} and band = {law.band}"
-        )
     if options.rule == CONSERVING:
+        if math.isinf(law.stiffness) or any(law.band):
+            raise ValueError(
+                f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
+                f"got stiffness = {law.stiffness:g} and band = {law.band}"
+            )
         at_once(model.load, f"{CONSERVING} contact")
-    if options.rule == CONSERVING and model.load.motion is not None:
-        raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
-    if options.rule == CONSERVING and len((form := model.reduced).B) > form.contacts:
-        raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law.shear:g}")
+        if model.load.motion is not None:
+            raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
+        if len(model.reduced.B) > model.reduced.contacts:
+            raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law.shear:g}")
     check_scheme(law, scheme)
 
 

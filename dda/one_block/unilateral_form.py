@@ -15,7 +15,6 @@ corners are then one contact of twice the stiffness, with the unknowns (ex, e2, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,15 +30,6 @@ from dda.one_block.gap_form import gap_form
 UNKNOWNS = ("ex", "e2", "gxy", "U", "w_M", "w_N")
 ONE = ("ex", "e2", "w")  # of a symmetric motion
 U_INDEX = UNKNOWNS.index("U")
-_AS_GAPS: dict[str, Callable[[float], list[float]]] = {  # unknowns of gap_form, (U, w, s, ex, e2, gxy), by one of these
-    "ex": lambda a: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
-    "e2": lambda a: [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
-    "gxy": lambda a: [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-    "U": lambda a: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    "w": lambda a: [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    "w_M": lambda a: [0.0, 0.5, -1 / a, 0.0, 0.0, 0.0],
-    "w_N": lambda a: [0.0, 0.5, 1 / a, 0.0, 0.0, 0.0],
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +66,7 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
     if not full and not (reached["U"] or reached["s"] or reached["gxy"]):
         names = ONE if reached["ex"] else ONE[1:]
     contacts = 1 if names != UNKNOWNS else 2
-    T = np.column_stack([_AS_GAPS[name](a) for name in names])
+    T = np.column_stack([_as_gaps(name, a) for name in names])
     gaps = np.array([name.startswith("w") for name in names])
     # Both corners as one: its tangential displacement is that of N, and M has the opposite one.
     slides = [[side * a / 2 if name == "ex" else 1.0 * (name == "U") for name in names] for side in (-1, 1)]
@@ -101,6 +91,17 @@ def unilateral_form(model: LoadedBlock, law: Unilateral, velocity: float, full: 
         observers={name: row @ T for name, row in form.observers.items() if name != "contact_pressure"},
         slide=np.array(slides),
     )
+
+
+def _as_gaps(unknown: str, a: float) -> Array:
+    """Return the unknowns of `dda.one_block.gap_form` by one of these."""
+    column = np.zeros(len(GAP_UNKNOWNS))
+    if unknown in GAP_UNKNOWNS:
+        column[GAP_UNKNOWNS.index(unknown)] = 1.0
+    else:  # a gap at one end, the other one zero
+        column[GAP_UNKNOWNS.index("w")] = 0.5
+        column[GAP_UNKNOWNS.index("s")] = (-1 if unknown == "w_M" else 1) / a
+    return column
 
 
 def _modulus(block: Block, unknown: str) -> float:

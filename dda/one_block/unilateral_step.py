@@ -329,7 +329,10 @@ def accept(
     for i in range(c):
         after.D[n - c + i] = after.contacts.gap[i]
     for i in range(n):
-        pressed = h2 * pushed_by(block, i)
+        pressed = 0.0
+        for j in range(len(block.B)):
+            pressed += block.B[j][i] * room.forces[j]
+        pressed = h2 * (block.multiplicity * pressed)
         f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
         if block.rule == 0:
             f1 += pressed
@@ -352,14 +355,6 @@ def contact_forces(block: BlockEquations, shear_law: Shear, normal: Vector, shea
     if c == 2:
         room.forces[2] = shear[0] + shear[1]
         room.forces[3] = (shear[1] - shear[0]) / 2
-
-
-def pushed_by(block: BlockEquations, i: int) -> float:
-    """Return an entry of multiplicity B' lambda, with the forces of `contact_forces` [N]."""
-    total = 0.0
-    for j in range(len(block.B)):
-        total += block.B[j][i] * block.room.forces[j]
-    return block.multiplicity * total
 
 
 def refer(block: BlockEquations, before: Contacts, after: BlockState) -> None:

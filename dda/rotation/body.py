@@ -51,29 +51,27 @@ class Turn(NamedTuple):
     mean: Matrix  # (Q1 + Q0) / 2
 
 
+def turned_by(Q: Matrix, a: float, b: float, out: Matrix) -> None:
+    """Write (a + b W) Q."""
+    for j in range(2):
+        out[0][j] = a * Q[0][j] - b * Q[1][j]
+        out[1][j] = b * Q[0][j] + a * Q[1][j]
+
+
 def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
     """Write the turn of a step by r [rad], exact or of first order."""
     if not math.isfinite(r):
         r = math.nan
     if not exact:
-        for j in range(2):
-            out.chord[0][j] = -Q[1][j]
-            out.chord[1][j] = Q[0][j]
-            for i in range(2):
-                out.end[i][j] = Q[i][j] + r * out.chord[i][j]
-                out.mean[i][j] = Q[i][j] + r / 2 * out.chord[i][j]
+        turned_by(Q, 0.0, 1.0, out.chord)
+        turned_by(Q, 1.0, r, out.end)
+        turned_by(Q, 1.0, r / 2, out.mean)
         return
-    c = math.cos(r)
-    s = math.sin(r)
     half = math.sin(r / 2) / (r / 2) if r != 0 else 1.0
-    along = -half * math.sin(r / 2)  # (R - I) / r = half W R(r/2)
-    across = half * math.cos(r / 2)
-    for j in range(2):
-        out.end[0][j] = c * Q[0][j] - s * Q[1][j]
-        out.end[1][j] = s * Q[0][j] + c * Q[1][j]
-        out.chord[0][j] = along * Q[0][j] - across * Q[1][j]
-        out.chord[1][j] = across * Q[0][j] + along * Q[1][j]
-        for i in range(2):
+    turned_by(Q, math.cos(r), math.sin(r), out.end)
+    turned_by(Q, -half * math.sin(r / 2), half * math.cos(r / 2), out.chord)  # (R - I) / r = half W R(r/2)
+    for i in range(2):
+        for j in range(2):
             out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2
 
 

@@ -83,13 +83,17 @@ class RollingModel(LoadedBlock):
 
     def _dead(self) -> tuple[Array, Array]:
         """Return where the resultants of pressure and traction act, and these, along and across the base."""
-        load, (start, end) = self.load, self.block.edge(self.top)
+        load = self.load
+        start, end = self.block.edge(self.top)
         pressed = pressed_part(start, end, load.eccentricity)
         edge_loads = ((pressed, load.pressure, (0.0, -1.0)), ((start, end), load.traction, (1.0, 0.0)))
-        acting = [(ends, size, direction) for ends, size, direction in edge_loads if size]
         local = self.body.to_base
-        where = [local @ (np.mean(ends, axis=0) - self.block.section.centroid) for ends, _, _ in acting]
-        forces = [size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ along) for ends, size, along in acting]
+        where = []
+        forces = []
+        for ends, size, direction in edge_loads:
+            if size:
+                where.append(local @ (np.mean(ends, axis=0) - self.block.section.centroid))
+                forces.append(size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ direction))
         return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2)
 
     def start(self, setting: Setting, scheme: Scheme) -> RollingState:

@@ -53,25 +53,23 @@ def velocity_factor(scheme: Scheme, omega: ArrayLike) -> Complex:
     return np.asarray(forward * (1 + scheme.delta * forward) / (scheme.step * moved))
 
 
-def limit_squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
-    """Return w^2 - i c w, what W2 tends to with dt if kinetic damping keeps its rate c = -ln(gg) / dt [1/s^2].
+def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
+    """Return W2 and S at frequencies in Hz, as stepped or what they tend to with dt.
+
+    The limit is w^2 - i c w if kinetic damping keeps its rate c = -ln(gg) / dt, and S = i w.
 
     Raises
     ------
     ValueError
         If gg is zero, which has no rate.
     """
+    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    if not exact:
+        return squared_frequency(scheme, w), velocity_factor(scheme, w)
     if scheme.gg == 0:
         raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
-    w = np.asarray(omega, float)
     rate = -math.log(scheme.gg) / scheme.step
-    return np.asarray(w * w - 1j * rate * w)
-
-
-def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> Complex:
-    """Return W2 at frequencies in Hz, as stepped or in the limit that is exact in time."""
-    omega = 2 * np.pi * np.asarray(frequencies, float)
-    return limit_squared_frequency(scheme, omega) if exact else squared_frequency(scheme, omega)
+    return np.asarray(w * w - 1j * rate * w), np.asarray(1j * w, complex)
 
 
 def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
@@ -79,10 +77,8 @@ def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Comp
 
     With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
     """
-    W2 = chosen(scheme, frequencies, exact)
-    omega = 2 * np.pi * np.asarray(frequencies, float)
+    W2, S = chosen(scheme, frequencies, exact)
     if not scheme.damped:
         return W2, np.ones_like(W2)
-    S = 1j * omega if exact else velocity_factor(scheme, omega)
     stiffer = 1 + scheme.stiffness_damping * S
     return np.asarray((W2 - scheme.mass_damping * S) / stiffer), np.asarray(1 / stiffer)

@@ -124,7 +124,7 @@ def system_response(
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
     check_request(1, columns)
-    W2, factor = (np.atleast_1d(part) for part in answering(scheme, frequencies, exact))
+    W2, factor = answering(scheme, frequencies, exact)
     equations = system.reached
     rows = equations.rows(columns)
     if along is None:

@@ -3,6 +3,7 @@
 import itertools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -741,6 +742,11 @@ def test_explicit_steps_stay_below_their_limit() -> None:
 
 
 BLOCK = Layer(1.0, 2500.0, 1e9)
+STANDING = Column([BLOCK], law="unilateral")
+
+
+def stepped(column: Column, scheme: Scheme = Scheme(0.5, 1.0, 1.0, 1e-3), **more: Any) -> object:  # noqa: B008
+    return solve_contact_column(column, scheme, still(1), **more)
 
 
 @pytest.mark.parametrize(
@@ -766,38 +772,12 @@ BLOCK = Layer(1.0, 2500.0, 1e9)
         ("joints", lambda: Column([BLOCK], law="unilateral", impedance=1e6, joints=[Spring(0.0, 1e9)])),
         ("solve_limit", lambda: ColumnOptions(solve_limit=0)),
         ("repeats", lambda: ColumnOptions(repeats=0)),
-        ("law", lambda: solve_contact_column(Column([BLOCK]), Scheme(0.5, 1.0, 1.0, 1e-3), still(1))),
-        (
-            "stiffness",
-            lambda: solve_contact_column(Column([BLOCK] * 2, law="unilateral"), Scheme(0.0, 0.5, 1.0, 1e-5), still(1)),
-        ),
-        (
-            "mass_damping",
-            lambda: solve_contact_column(
-                Column([BLOCK], law="unilateral"), Scheme(0.5, 1.0, 1.0, 1e-3, mass_damping=1.0), still(1)
-            ),
-        ),
-        (
-            "settled",
-            lambda: solve_contact_column(
-                Column([BLOCK], law="unilateral", unsupported=True),
-                Scheme(0.5, 1.0, 1.0, 1e-3),
-                still(1),
-                options=ColumnOptions(settled=True),
-            ),
-        ),
-        (
-            "columns",
-            lambda: solve_contact_column(
-                Column([BLOCK], law="unilateral"), Scheme(0.5, 1.0, 1.0, 1e-3), still(1), ["gap_1"]
-            ),
-        ),
-        (
-            "heights",
-            lambda: solve_contact_column(
-                Column([BLOCK], law="unilateral"), Scheme(0.5, 1.0, 1.0, 1e-3), still(1), ["gap_1"], [0.5]
-            ),
-        ),
+        ("law", lambda: stepped(Column([BLOCK]))),
+        ("stiffness", lambda: stepped(Column([BLOCK] * 2, law="unilateral"), Scheme(0.0, 0.5, 1.0, 1e-5))),
+        ("mass_damping", lambda: stepped(STANDING, Scheme(0.5, 1.0, 1.0, 1e-3, mass_damping=1.0))),
+        ("settled", lambda: stepped(replace(STANDING, unsupported=True), options=ColumnOptions(settled=True))),
+        ("columns", lambda: stepped(STANDING, columns=["gap_1"])),
+        ("heights", lambda: stepped(STANDING, columns=["gap_1"], heights=[0.5])),
     ],
 )
 def test_what_does_not_go_together_is_refused_by_field(field: str, build: object) -> None:

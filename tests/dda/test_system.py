@@ -297,6 +297,16 @@ def test_joints_and_systems_are_checked():
         BlockSystem([block], [], (3.0, 1.0), 2.0)
 
 
+def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():
+    system = dda.subdivided(two_block(mu=0.2), 2, 1, 1e11)
+    result = dda.solve_system(system, dda.Scheme(0.0, 0.5, 1.0, 1.0), 200)
+    (note,) = [note for note in result.notes if "overflow" in note]
+    first = int(note.rpartition(" ")[2]) - 1
+    for values in result.columns.values():
+        assert np.all(np.isfinite(values[:first]))
+        assert np.all(values[first + 1 :] == np.inf)
+
+
 def test_a_scene_is_cut(scene_file):
     text = scene_file.read_text().replace("young = 1.0e9", "young = 1.0e9\nsubdivide = [1, 4]\nglue_ratio = 1e12")
     scene_file.write_text(

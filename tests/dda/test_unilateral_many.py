@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from oracles.unilateral_checks import apart, checked, mirrored, random_model, size, sums
 
-from dda import Contact, Scheme, TwoBlockModel, UnilateralOptions, solve, solve_unilateral
+from dda import Scheme, UnilateralOptions, solve_unilateral
 
-MANY, FEW, LEAST = 500, 20, 4  # scenes of the short set: LEAST where each is stepped four times and more
+MANY, FEW = 500, 4  # scenes, and those of the short set
 STEPS = 50
 NAMES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "gap_m", "gap_n", "velocity")
 ENERGIES = UnilateralOptions(energies=True)
@@ -21,12 +21,7 @@ def scheme_of(seed):
     return Scheme(delta / 2, delta, 1.0, 10 ** rng.uniform(-4.5, -2.7), start)
 
 
-def seeds_from(few):
-    """Return the seeds of the short set, and all others as long."""
-    return [range(few), pytest.param(range(few, MANY), marks=pytest.mark.long)]
-
-
-@pytest.mark.parametrize("seeds", seeds_from(LEAST), ids=len)
+@pytest.mark.parametrize("seeds", [range(FEW), pytest.param(range(FEW, MANY), marks=pytest.mark.long)], ids=len)
 def test_random_scenes_keep_the_invariants(seeds):
     for seed in seeds:
         print(f"seed {seed}")  # which pytest shows of a test that fails
@@ -71,27 +66,3 @@ def _mirrors(model, scheme, result):
     for one, other in (("m", "n"), ("n", "m")):
         mine, theirs = getattr(result, f"normal_force_{one}"), getattr(image, f"normal_force_{other}")
         assert np.max(np.abs(mine - theirs)) <= bound * largest
-
-
-@pytest.mark.parametrize("seeds", seeds_from(FEW), ids=len)
-def test_what_never_opens_is_locked(seeds):
-    """Steps beyond a/(c sqrt(6 alpha)) keep a pressed block on its springs."""
-    names, compared = ("displacement", "contact_pressure", "rotation"), 0
-    for seed in seeds:
-        model = random_model(seed)
-        model = replace(model, contact=replace(model.contact, gap=0.0), velocity=0.0)
-        scheme = Scheme(0.5, 1.0, 0.99, 6e-3)
-        opens = solve_unilateral(model, scheme, STEPS, names)
-        if not opens.closed.all():
-            continue
-        contact = Contact(model.contact.stiffness, model.contact.shear or model.contact.stiffness)
-        if not model.contact.shear:
-            continue  # locked springs hold in shear
-        loads = model.load, model.base, model.top
-        locked = solve(TwoBlockModel(model.block, contact, *loads), scheme, STEPS, names)
-        scale = np.max(np.abs(locked.columns["displacement"])) / model.block.corners[1, 0]
-        for name in names:
-            most = max(np.max(np.abs(locked.columns[name])), scale if name == "rotation" else 0.0)
-            assert np.max(np.abs(opens.columns[name] - locked.columns[name])) <= 1e-11 * most, (seed, name)
-        compared += 1
-    assert compared > len(seeds) / 8

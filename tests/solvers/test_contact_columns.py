@@ -10,10 +10,12 @@ import pytest
 from conftest import thinned
 from oracles.column_cases import CASES
 
-from validation.engine.measure import attempt
+from validation.engine.case import Case
+from validation.engine.measure import attempt, execute
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.registry import get_solver
 
 LAYER = {"thickness": 5.0, "density": 2500.0, "young": math.inf, "blocks": 5, "velocity": -1.0}
@@ -34,6 +36,31 @@ def dropped(**column: Any) -> Scene:
     names += ["force_6", "gap_6", "gap_7", "contact_pressure", "stress_1"]
     whole = {"gap": 0.0005, "joint": [joint], "gravity": 9.81, "heights": heights} | column
     return scene_of(whole, names, step=1.5e-5, steps=4000)
+
+
+def test_energies_are_kept_where_they_will_be_read_and_made_again_where_they_were_not() -> None:
+    scene = dropped().with_values({"time.steps": 40})
+    (plain, run), (asked, other) = (attempt(get_solver("dda"), scene, False, None, kept) for kept in (False, True))
+    assert plain.result.record is None  # type: ignore[union-attr]
+    assert asked.result.record is not None  # type: ignore[union-attr]
+    assert run.history is not None
+    assert other.history is not None
+    assert all(np.array_equal(values, other.history.columns[name]) for name, values in run.history.columns.items())
+    one, again = (prepared.contact_record() for prepared in (asked, plain))  # type: ignore[union-attr]
+    assert set(one.energies) == set(again.energies)
+    assert all(np.array_equal(values, again.energies[name]) for name, values in one.energies.items())
+
+
+@pytest.mark.parametrize(("only", "kept"), [(None, True), (frozenset({"displacement_1.peak"}), False)])
+def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
+    monkeypatch: pytest.MonkeyPatch, only: frozenset[str] | None, kept: bool
+) -> None:
+    asked = []
+    sound = ContactColumn.solved
+    monkeypatch.setattr(ContactColumn, "solved", lambda self, energies: asked.append(energies) or sound(self, energies))
+    scene = dropped().with_values({"time.steps": 5})
+    execute(Case(scene, "dda", measures=("history",), only=only), "key", "study")
+    assert asked[0] is kept
 
 
 def test_a_scene_of_dropped_blocks_ends_as_the_exact_motion_does() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 import dda
 from dda.column.column import Column, Layer, Spring
-from dda.column.contact_step import DEEPEST, FURTHEST, MOMENTUM, OPEN_SHARE, WIDEST
+from dda.column.contact_step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
 from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.column.response import column_response, highest_frequency
 from dda.column.stepping import Drive, solve_column
@@ -133,11 +133,10 @@ class ContactColumn(BlockColumn):
         result = self._result()
         if result.record is None:
             result = self.solved(energies=True)
-        record = result.record
-        assert record is not None
+        record = np.asarray(result.record)
         mass = float(np.sum(self.column.densities * self.column.heights))
         energies = result.energies or {}
-        start_energy = float(record[0, 0])
+        start_energy = float(record[KINETIC, 0])
         given = float(np.max(np.abs(energies["load"]), initial=0.0))
         force = result.columns[PRESSURE]
         return ContactRecord(
