@@ -9,8 +9,8 @@ from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Friction, Scheme, Unilateral, assemble, solve, solve_unilateral
-from fem_reference.events.bar_events import BarProblem
 from fem_reference.events.bar_events import solve as exact
+from fem_reference.problem.bar import BarProblem
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
