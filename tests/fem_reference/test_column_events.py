@@ -51,7 +51,7 @@ def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
     return wrong
 
 
-LONG = {"A6", "S2"}  # whose motions take seconds
+LONG = {"A3", "A6", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
@@ -177,6 +177,7 @@ def test_a_mirrored_pair_switches_in_one_ball() -> None:
     assert motion.at([0.02]).velocity.sum() == pytest.approx(0.0, abs=1e-14)
 
 
+@pytest.mark.long
 def test_a_bonded_joint_is_one_that_never_slips() -> None:
     known = COLUMNS["S2"]
     strong = replace(
