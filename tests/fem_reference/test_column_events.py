@@ -133,6 +133,7 @@ def test_all_loads_scaled_scale_the_motion_and_not_its_instants() -> None:
     np.testing.assert_allclose(motion.at([0.04]).force, 4 * motion_of("A1").at([0.04]).force, rtol=1e-12)
 
 
+@pytest.mark.long
 def test_shear_turned_round_swaps_the_signs_of_slip() -> None:
     known = COLUMNS["S3"]
     turned = replace(
