@@ -66,6 +66,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_contact_pack",
     "test_hostile_text",
     "test_in_browser",
+    "test_invariants",
     "test_judge",
     "test_kept_numbers",
     "test_opened_chapters",

@@ -12,13 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from skfem import Basis, ElementLineP1, ElementLineP2, Mesh, MeshLine
-from skfem.models.poisson import laplace
-from skfem.models.poisson import mass as line_mass
+from skfem import Basis, Mesh
 
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
-from fem_reference.mesh.model import assemble, column_applies
+from fem_reference.mesh.model import assemble, column_applies, line_of
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array, Problem
 
@@ -74,35 +72,26 @@ def column(problem: Problem) -> ContactModel:
     ValueError
         If the block is not an upright rectangle.
     """
-    if problem.rectangle is None:
-        raise ValueError(f"vertices: must be an upright rectangle for one column, got {problem.vertices!r}")
-    width, height = problem.rectangle
-    mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
-    basis = Basis(mesh, (ElementLineP1 if problem.degree == 1 else ElementLineP2)())
-    M = problem.density * width * csr_array(line_mass.assemble(basis))
-    # With mu = 0 the modulus of a bar, lam + 2 G, is E.
-    K = problem.young * width * csr_array(laplace.assemble(basis))
-    y = basis.doflocs[0]
-    upwards = np.ones(basis.N)
-    none = np.zeros(basis.N)
-    base, top = (np.eye(1, basis.N, int(np.argmin(np.abs(y - place)))) for place in (0.0, height))
+    line = line_of(problem)
+    size = len(line.height)
+    none = np.zeros(size)
     return ContactModel(
-        M=M,
-        K=K,
-        F=-problem.pressure * width * top[0] + problem.pull[1] * (M @ upwards),
-        normal=csr_array(base),
-        tangential=csr_array((1, basis.N)),
+        M=line.mass,
+        K=problem.young * line.stretch,  # with mu = 0 the modulus of a bar, lam + 2 G, is E
+        F=line.load(problem),
+        normal=csr_array(line.base[None]),
+        tangential=csr_array((1, size)),
         share=np.ones(1),
         stiffness=np.array([2 * problem.stiffness]),
         shear_stiffness=np.array([2 * problem.shear_stiffness]),
-        upwards=upwards,
+        upwards=np.ones(size),
         observers={
-            "displacement": basis.probes(np.array([[height / 2]])).toarray()[0],
+            "displacement": line.middle,
             "horizontal_displacement": none,
             "rotation": none,
         },
         kind="column",
-        length=width,
+        length=line.width,
         axes=np.array([problem.normal, problem.tangent]),
         motion=problem.motion,
     )

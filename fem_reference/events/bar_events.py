@@ -10,8 +10,7 @@ A base that touches and carries nothing counts as closed until it lifts off.
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,55 +21,12 @@ from fem_reference.events.bars_march import CLOSED, OPEN, JointPiece
 from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
 from fem_reference.events.column_drive import constant
 from fem_reference.events.switches import Switch
+from fem_reference.problem.bar import BarProblem
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 ADVANCES = 12_000
 """Times that the base or the top goes on at most; so many, of granite on stiff springs, took a minute."""
-POSITIVE = ("height", "width", "density", "young", "base_stiffness")
-
-
-@dataclass(frozen=True)
-class BarProblem:
-    """An elastic bar that is dropped on or pressed against a no-tension base spring.
-
-    At t = 0 the bar is unstrained, its base a gap above the spring, and all loads are switched on.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
-
-    height: float  # length H of the bar [m]
-    width: float  # width W [m], unit thickness
-    density: float  # mass density rho [kg/m3]
-    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
-    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
-    pressure: float = 0.0  # pressure q on the top [Pa], downwards, from t = 0 on
-    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
-    gap: float = 0.0  # gap g0 under the base at t = 0 [m]
-    velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not math.isfinite(value):
-                raise ValueError(f"{field.name}: must be a finite number, got {value!r}")
-            if field.name in POSITIVE and value <= 0:
-                raise ValueError(f"{field.name}: must be positive, got {value!r}")
-        if self.gap < 0:
-            raise ValueError(f"gap: must not be negative, got {self.gap!r}")
-
-    @property
-    def travel(self) -> float:
-        """Time H / c of a wave from top to base [s]."""
-        return self.height * math.sqrt(self.density / self.young)
-
-    @property
-    def kappa(self) -> float:
-        """Stiffness of the spring over that of the bar, k H / (E W) [-]."""
-        return self.base_stiffness / self.young * (self.height / self.width)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ import numpy as np
 
 from fem_reference.exact import continuum, viscous
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.problem.bar import no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
 from fem_reference.scheme import modal as bar_scheme
@@ -214,10 +215,4 @@ def applicable(problem: Problem) -> str | None:
     """Why the bar is not exact for a problem, in words; None if it is."""
     if not problem.vertical or problem.gravity != 0 or problem.motion is not None:
         return "the bar carries a centred pressure only"
-    if problem.rectangle is None:
-        return "the block is not an upright rectangle loaded opposite its base"
-    if problem.poisson != 0:
-        return f"Poisson's ratio is {problem.poisson!r}, and the block contracts sideways unless it is 0"
-    if problem.foundation != "distributed":
-        return f"the foundation is {problem.foundation!r}, and the base moves as one only if it is 'distributed'"
-    return None
+    return no_bar(problem)

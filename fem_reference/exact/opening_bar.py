@@ -20,7 +20,6 @@ Lubich, Convolution quadrature and discretized operational calculus, Numer. Math
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 
@@ -28,6 +27,7 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.special import zeta
 
+from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.scheme import modal
 
@@ -41,33 +41,8 @@ NOTHING = 1e-13
 """Gap over the motions of which it is the sum, below which it is their rounding."""
 
 
-@dataclass(frozen=True)
-class OpeningBar:
-    """An elastic bar that is dropped on or pressed against a base spring that carries no tension.
-
-    At t = 0 the bar is unstrained, its base a gap above the spring, and all loads are switched on.
-
-    Raises
-    ------
-    ValueError
-        For a gap or velocity out of its range, naming field, rule and value.
-    """
-
-    height: float  # length H of the bar [m]
-    width: float  # width W [m], unit thickness
-    density: float  # mass density rho [kg/m3]
-    young: float  # Young's modulus E [Pa]
-    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
-    pressure: float = 0.0  # pressure q on the top [Pa], downwards
-    gravity: float = 0.0  # acceleration of gravity [m/s2], downwards
-    gap: float = 0.0  # gap under the base at t = 0 [m], at least 0
-    velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.gap) and self.gap >= 0):
-            raise ValueError(f"gap: must be finite and not negative, got {self.gap!r}")
-        if not math.isfinite(self.velocity):
-            raise ValueError(f"velocity: must be a finite number, got {self.velocity!r}")
+class OpeningBar(BarProblem):
+    """An elastic bar that is dropped on or pressed against a base spring that carries no tension."""
 
     @classmethod
     def of(cls, problem: Problem, gap: float = 0.0, velocity: float = 0.0) -> OpeningBar:
@@ -84,11 +59,6 @@ class OpeningBar:
         width, height = problem.rectangle
         loads = problem.pressure, problem.gravity
         return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, *loads, gap, velocity)
-
-    @property
-    def travel(self) -> float:
-        """Time H / c of a wave from top to base [s]."""
-        return self.height * math.sqrt(self.density / self.young)
 
     def solve(self, scheme: Scheme, steps: int) -> OpeningResult:
         """History under the Newmark scheme; row 0 is step 1.
@@ -141,13 +111,7 @@ def applicable(problem: Problem) -> str | None:
         return "its load is constant, and that of the problem rises in a ramp"
     if not problem.vertical or problem.motion is not None:
         return "the bar carries a centred pressure and its weight only"
-    if problem.rectangle is None:
-        return "the block is not an upright rectangle loaded opposite its base"
-    if problem.poisson != 0:
-        return f"Poisson's ratio is {problem.poisson!r}, and the block contracts sideways unless it is 0"
-    if problem.foundation != "distributed":
-        return f"the foundation is {problem.foundation!r}, and the base moves as one only if it is 'distributed'"
-    return None
+    return no_bar(problem)
 
 
 @dataclass(frozen=True)

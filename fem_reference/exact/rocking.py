@@ -252,9 +252,8 @@ def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, floa
         return FALLEN - side * float(y[0])
 
     for event in (lands, falls):
-        # type: ignore[attr-defined]
-        event.terminal = True
-        event.direction = -1
+        event.terminal = True  # type: ignore[attr-defined]
+        event.direction = -1  # type: ignore[attr-defined]
     return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=[lands, falls], dense_output=True)
 
 

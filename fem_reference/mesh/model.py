@@ -21,7 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.csgraph import connected_components
-from skfem import Basis, BilinearForm, ElementLineP1, ElementLineP2, MeshLine
+from skfem import Basis, ElementLineP1, ElementLineP2, MeshLine
+from skfem.models.poisson import laplace
+from skfem.models.poisson import mass as line_mass
 
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import TaggedMesh, block_mesh, structured
@@ -124,11 +126,26 @@ def column_applies(problem: Problem) -> bool:
     return uniform and problem.rectangle is not None and problem.vertical
 
 
-def column(problem: Problem) -> Model:
-    """Model of one column of elements: u(y) and v(y) on a line of length h.
+@dataclass(frozen=True)
+class ColumnLine:
+    """One column of elements as a line of the block's width W."""
 
-    With the width W and line matrices L = (u', v') and B = (u, v), rho W B for the mass, and
-    E W L + 2 p b b' for v, G W L + 2 p_s b b' for u, with b the value at the base.
+    width: float  # W [m]
+    mass: csr_array  # rho W (u, v) [kg]
+    stretch: csr_array  # W (u', v') [-]
+    height: Array  # y of each unknown [m]
+    base: Array  # row that gives the value at the base
+    top: Array  # at the top
+    middle: Array  # at mid-height
+
+    def load(self, problem: Problem) -> Array:
+        """Pressure and weight of a problem on v [N]."""
+        weight = problem.pull[1] * (self.mass @ np.ones(len(self.height)))
+        return np.asarray(-problem.pressure * self.width * self.top + weight)
+
+
+def line_of(problem: Problem) -> ColumnLine:
+    """One column of elements of an upright rectangle.
 
     Raises
     ------
@@ -140,43 +157,53 @@ def column(problem: Problem) -> Model:
     width, height = problem.rectangle
     mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
     basis = Basis(mesh, (ElementLineP1 if problem.degree == 1 else ElementLineP2)())
-    B = problem.density * width * csr_array(_line_mass.assemble(basis))
-    L = width * csr_array(_line_stiffness.assemble(basis))
     y = basis.doflocs[0]
-    base, top = (np.eye(1, basis.N, int(np.argmin(np.abs(y - place))))[0] for place in (0.0, height))
-    at_base = csr_array(np.outer(base, base))
+    return ColumnLine(
+        width=width,
+        mass=problem.density * width * csr_array(line_mass.assemble(basis)),
+        stretch=width * csr_array(laplace.assemble(basis)),
+        height=y,
+        base=np.eye(1, basis.N, int(np.argmin(np.abs(y))))[0],
+        top=np.eye(1, basis.N, int(np.argmin(np.abs(y - height))))[0],
+        middle=basis.probes(np.array([[height / 2]])).toarray()[0],
+    )
+
+
+def column(problem: Problem) -> Model:
+    """Model of one column of elements: u(y) and v(y) on a line of length h.
+
+    With the width W and line matrices L = (u', v') and B = (u, v), rho W B for the mass, and
+    E W L + 2 p b b' for v, G W L + 2 p_s b b' for u, with b the value at the base.
+
+    Raises
+    ------
+    ValueError
+        If the block is not an upright rectangle.
+    """
+    line = line_of(problem)
+    size = len(line.height)
+    at_base = csr_array(np.outer(line.base, line.base))
     # With mu = 0 the modulus of a bar, lam + 2 G, is E.
-    K_v = problem.young * L + 2 * problem.stiffness * at_base
-    K_u = problem.shear_modulus * L + 2 * problem.shear_stiffness * at_base
-    middle = basis.probes(np.array([[height / 2]])).toarray()[0]
-    none = np.zeros(basis.N)
-    places = np.array([np.zeros(2 * basis.N), np.tile(y, 2), np.repeat([0.0, 1.0], basis.N)])
+    K_v = problem.young * line.stretch + 2 * problem.stiffness * at_base
+    K_u = problem.shear_modulus * line.stretch + 2 * problem.shear_stiffness * at_base
+    none = np.zeros(size)
+    places = np.array([np.zeros(2 * size), np.tile(line.height, 2), np.repeat([0.0, 1.0], size)])
     observers = {
-        "displacement": np.concatenate([none, middle]),
-        "contact_pressure": np.concatenate([none, -2 * problem.stiffness / width * base]),
-        "horizontal_displacement": np.concatenate([middle, none]),
-        "rotation": np.zeros(2 * basis.N),
+        "displacement": np.concatenate([none, line.middle]),
+        "contact_pressure": np.concatenate([none, -2 * problem.stiffness / line.width * line.base]),
+        "horizontal_displacement": np.concatenate([line.middle, none]),
+        "rotation": np.zeros(2 * size),
     }
-    M, K = (csr_array(block_diag(pair)) for pair in ((B, B), (K_u, K_v)))
-    unit = problem.unit
-    F_v = -unit.pressure * width * top + unit.pull[1] * (B @ np.ones(basis.N))
-    force = np.zeros((2 * basis.N, 2))
+    M = csr_array(block_diag((line.mass, line.mass)))
+    K = csr_array(block_diag((K_u, K_v)))
+    F_v = line.load(problem.unit)
+    force = np.zeros((2 * size, 2))
     pressure = np.zeros(2)
     if problem.motion is not None:
-        force[basis.N :, 1] = 2 * problem.stiffness * base
-        pressure[1] = 2 * problem.stiffness / width
+        force[size:, 1] = 2 * problem.stiffness * line.base
+        pressure[1] = 2 * problem.stiffness / line.width
     F = np.concatenate([none, F_v])
     return Model(M, K, F, force, pressure, observers, places, "column", ("one column of elements",))
-
-
-@BilinearForm
-def _line_mass(u, v, w):  # type: ignore[no-untyped-def]
-    return u * v
-
-
-@BilinearForm
-def _line_stiffness(u, v, w):  # type: ignore[no-untyped-def]
-    return u.grad[0] * v.grad[0]
 
 
 def half_applies(problem: Problem) -> bool:

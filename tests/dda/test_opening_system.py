@@ -27,8 +27,8 @@ from dda import (
 )
 from dda.contact.kernel import NONE
 from dda.stepping.driver import Part, driver
-from fem_reference.events.bar_events import BarProblem
 from fem_reference.events.bar_events import solve as bar_motion
+from fem_reference.problem.bar import BarProblem
 
 MATERIAL = Material(2700.0, 1e9, 0.2)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9, 1e9), 5e6)

@@ -9,8 +9,9 @@ from oracles.bar_oracle import Delayed, random_problem
 from oracles.landing import stiff_opening
 
 from fem_reference import Bar, Scheme
-from fem_reference.events.bar_events import BarMotion, BarProblem, solve
+from fem_reference.events.bar_events import BarMotion, solve
 from fem_reference.events.switches import TooManySwitchesError
+from fem_reference.problem.bar import BarProblem
 
 PAPER = BarProblem(height=2.0, width=2.0, density=2700.0, young=1e9, base_stiffness=2e9, pressure=5e6)
 OTHER = BarProblem(height=1.5, width=1.5, density=2400.0, young=3e9, base_stiffness=14e9, pressure=2e6)

@@ -132,7 +132,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("name", thinned(NUMBERS, 3))
 def test_the_bars_move_as_another_program_computed(name: str) -> None:
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
@@ -250,6 +250,7 @@ def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
         assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
 
 
+@pytest.mark.long
 def test_scaled_loads_scale_the_motion_and_keep_the_instants() -> None:
     problem, end = random_problem(0)
     motion = solve(problem, end)

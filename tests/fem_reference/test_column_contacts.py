@@ -204,7 +204,7 @@ def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
 RANDOM = range(24)
 
 
-@pytest.mark.parametrize("seed", RANDOM)
+@pytest.mark.parametrize("seed", thinned(RANDOM, 5))
 def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
     column, drive, dt = random_column(seed)
     stepper = ContactStepper(column, [2] * 4, 1 + seed % 2, scheme(AVERAGE if seed % 4 < 2 else CONSTANT, dt, 0.99))
@@ -342,7 +342,9 @@ def solutions(problem: ContactProblem, q: np.ndarray, boxed: bool) -> list[np.nd
     return found
 
 
-@pytest.mark.parametrize("together", [2, -100])  # all states at once, and from the start the first wrong one alone
+@pytest.mark.parametrize(
+    "together", thinned([2, -100], 4)
+)  # all states at once, and from the start the first wrong one alone
 @pytest.mark.parametrize("boxed", [False, True], ids=["opens", "slips"])
 def test_the_contact_problem_has_one_solution_and_it_is_the_one(
     boxed: bool, together: int, monkeypatch: pytest.MonkeyPatch

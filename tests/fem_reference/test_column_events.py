@@ -51,7 +51,7 @@ def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
     return wrong
 
 
-LONG = {"A6", "S2"}  # whose motions take seconds
+LONG = {"A3", "A6", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
@@ -133,6 +133,7 @@ def test_all_loads_scaled_scale_the_motion_and_not_its_instants() -> None:
     np.testing.assert_allclose(motion.at([0.04]).force, 4 * motion_of("A1").at([0.04]).force, rtol=1e-12)
 
 
+@pytest.mark.long
 def test_shear_turned_round_swaps_the_signs_of_slip() -> None:
     known = COLUMNS["S3"]
     turned = replace(
@@ -177,6 +178,7 @@ def test_a_mirrored_pair_switches_in_one_ball() -> None:
     assert motion.at([0.02]).velocity.sum() == pytest.approx(0.0, abs=1e-14)
 
 
+@pytest.mark.long
 def test_a_bonded_joint_is_one_that_never_slips() -> None:
     known = COLUMNS["S2"]
     strong = replace(

@@ -63,6 +63,7 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
     assert switched > 100 and fallen_back > 0
 
 
+@pytest.mark.long
 def test_one_compilation_serves_every_history(long):
     pytest.importorskip("numba")
     for seed in range(4):

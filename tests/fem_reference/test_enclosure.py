@@ -310,6 +310,7 @@ def test_corners_that_switch_in_one_ball_are_named() -> None:
     assert not solve(replace(ROUGH, eccentricity=0.3), 0.01).simultaneous
 
 
+@pytest.mark.long
 def test_a_stiff_contact_is_followed_by_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """One millisecond at p = 1e18 N/m are 27000 radians, 2300 steps; balls must look at the first few of them only."""
     problem = replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81)

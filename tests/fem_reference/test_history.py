@@ -20,7 +20,7 @@ def errors(result, reference):
     )
 
 
-@pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE])
+@pytest.mark.parametrize("scheme", thinned([CONSTANT, AVERAGE], 4))
 @pytest.mark.parametrize(
     ("change", "unknowns", "saving"),
     [

@@ -8,10 +8,10 @@ import pytest
 from oracles.elements import make
 
 from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
-from fem_reference.events.bar_events import BarProblem
 from fem_reference.events.bar_events import solve as exact
 from fem_reference.exact.bar import Bar
 from fem_reference.exact.opening_bar import OpeningBar, applicable, closed_forms
+from fem_reference.problem.bar import BarProblem
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4)
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fem_reference.events.bar_events import BarProblem
+from fem_reference.problem.bar import BarProblem
 
 
 def random_problem(seed: int) -> BarProblem:

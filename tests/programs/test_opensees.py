@@ -230,6 +230,7 @@ def test_columns_are_exact_within_a_thousandth(stands, drive) -> None:
     check(changed("field-column", column=column, input=drive, run={"columns": columns}))
 
 
+@pytest.mark.long
 @needs_program
 def test_a_rigid_base_may_start_with_a_jump(tmp_path) -> None:
     (tmp_path / "record.csv").write_text("time,velocity\n0.0,0.5\n0.05,0.2\n0.1,0.3\n")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.stepped_vibration import Rule
 
@@ -55,7 +56,7 @@ def plain(rule: Rule, system: tuple[np.ndarray, ...], steps: int, consistent: bo
     return np.array(found).T
 
 
-@pytest.mark.parametrize(("solver", "values"), CASES)
+@pytest.mark.parametrize(("solver", "values"), thinned(CASES, 3))
 def test_histories_are_those_of_the_printed_scheme_with_the_rule(solver: str, values: dict[str, object]) -> None:
     scene = BLOCK.with_values(values)
     still = scene.with_values({"damping.kinetic": "constant", "damping.floor": 0.0})

@@ -56,8 +56,10 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
     return max(errors)
 
 
-@pytest.mark.parametrize("column", thinned([OPENS, SLIPS], 4), ids=["opens", "slips"])
-@pytest.mark.parametrize("base", ["rigid", "transmitting", "free", "springs"])
+ON_BASES = [(column, base) for base in ("rigid", "transmitting", "free", "springs") for column in (SLIPS, OPENS)]
+
+
+@pytest.mark.parametrize(("column", "base"), thinned(ON_BASES, 8))
 def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
     below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}
     column = column | {"base": base} | below.get(base, {})
@@ -148,6 +150,7 @@ def test_bonded_columns_are_left_to_the_layers() -> None:
     assert refusal is not None and "layers" in refusal
 
 
+@pytest.mark.long
 def test_switches_carry_the_height_of_their_contact() -> None:
     scene = load_scene("columns-cradle").expand()[0]
     exact = get_solver("bars-events").prepare(scene)

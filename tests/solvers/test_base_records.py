@@ -59,7 +59,7 @@ def elements_on_a_spring(n: int, scheme: dda.Scheme, steps: int) -> tuple[Array,
     return np.array(middle), -2 * P * (D[:, 0] - y[1:]) / A
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", thinned(SOLVERS, 4))
 @pytest.mark.parametrize(("blocks", "scheme"), thinned(CASES, 2))
 @pytest.mark.parametrize("start", ["zero", "consistent"])
 def test_a_displaced_base_starts_every_solver_as_plain_newmark(

@@ -87,6 +87,7 @@ def standing(site: Scene, base: str) -> Scene:
     return parse_scene(data | {"column": data["column"] | {k[7:]: v for k, v in BASES[base].items()}}, base)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
 def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) -> None:
     scene = standing(site, base).with_values({"time.alpha": 0.4, "time.delta": 0.7, "time.gg": 0.99})

@@ -81,6 +81,7 @@ def test_a_scene_of_dropped_blocks_ends_as_the_exact_motion_does() -> None:
     assert [switch.time for switch in switches] == pytest.approx(exact, abs=3e-5)
 
 
+@pytest.mark.long
 def test_the_record_of_contacts_balances_and_counts() -> None:
     prepared = get_solver("dda").prepare(dropped())
     prepared.run()

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import thinned
 from faults import seams
 
 from validation import solve
@@ -84,7 +85,7 @@ def compared(scene: Scene, solver: str = "fenicsx") -> tuple[float, History]:
 
 @pytest.mark.fenicsx
 @pytest.mark.parametrize(
-    "name", [name if name in SHORT else pytest.param(name, marks=pytest.mark.long) for name in SCENES]
+    "name", thinned([name if name in SHORT else pytest.param(name, marks=pytest.mark.long) for name in SCENES], 3)
 )
 def test_the_two_codes_agree_on_contact_that_opens(scene: Scene, name: str) -> None:
     values = SCENES[name]

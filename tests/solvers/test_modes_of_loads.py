@@ -68,7 +68,7 @@ def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-unty
     assert [mode.share for mode in seen] == pytest.approx(expected[1][kept].tolist(), rel=1e-6)
 
 
-@pytest.mark.parametrize("p", [1e9, 1e10, 1e11])
+@pytest.mark.parametrize("p", thinned([1e9, 1e10, 1e11], 4))
 @pytest.mark.parametrize("way", RECORDS)
 @pytest.mark.parametrize("solver", ["whole", "one sub-block"])
 def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way: str, solver: str) -> None:
@@ -144,7 +144,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
     assert dda.highest_frequency(system) == pytest.approx(expected, rel=np.pi**2 / n**2)
 
 
-@pytest.mark.parametrize("dense", [1, 10**6])
+@pytest.mark.parametrize("dense", thinned([1, 10**6], 2))
 @pytest.mark.parametrize("full", [False, True])
 def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense: int, full: bool) -> None:
     seams.FEM_DENSE.put(monkeypatch, dense)
@@ -181,7 +181,7 @@ def radius(omega: float, alpha: float, delta: float, gg: float) -> float:
     return float(np.max(np.abs(np.roots([1.0, -trace, det]))))
 
 
-@pytest.mark.parametrize("step", [1e-4, 1e-2])  # the first mode lasts longest, and the highest does
+@pytest.mark.parametrize("step", thinned([1e-4, 1e-2], 4))  # the first mode lasts longest, and the highest does
 @pytest.mark.parametrize("gg", [1.0, 0.97])
 def test_diagnostics_are_of_the_mode_that_lasts_longest(step: float, gg: float) -> None:
     alpha, delta = 0.5, 1.0

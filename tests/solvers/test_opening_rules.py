@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import solve
 from validation.errors import InputError
@@ -21,7 +22,7 @@ def scene() -> Scene:
     return case.with_values({"time.step": 1e-4, "time.steps": 150, "load.gravity": 9.81, "block.velocity": -0.2})
 
 
-@pytest.mark.parametrize("rule", ["implicit", "energy-conserving"])
+@pytest.mark.parametrize("rule", thinned(["implicit", "energy-conserving"], 2))
 def test_a_rule_steps_near_the_exact_motion_and_not_as_the_scheme_does(scene: Scene, rule: str) -> None:
     case = scene.with_values(AVERAGE | {"contact.rule": rule})
     newmark = solve(scene.with_values(AVERAGE), "dda").history
@@ -56,6 +57,7 @@ def test_impulse_and_energy_close_the_balances(scene: Scene, rule: str) -> None:
 COLUMNS = ["displacement", "contact_pressure", "gap_m", "gap_n", "normal_force_m", "shear_force_n", "solves", "cuts"]
 
 
+@pytest.mark.long
 def test_one_sub_block_is_the_block_through_the_adapter(scene: Scene) -> None:
     case = scene.with_values({"run.columns": COLUMNS, "load.eccentricity": 0.2})
     whole, cut = (solve(case.with_values(values), "dda").history for values in ({}, {"block.subdivide": [1, 1]}))

@@ -541,6 +541,7 @@ def test_a_moment_of_inertia_that_only_a_rectangle_shows_is_looked_for_there(
     ]
 
 
+@pytest.mark.long
 def test_what_fails_in_a_scene_with_the_misread_datum_is_no_fault_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -71,7 +71,7 @@ def test_the_direction_of_a_base_is_that_of_its_record_towards_plus(tmp_path: Pa
 
 @pytest.mark.parametrize(
     "damped",
-    [{"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}, pytest.param({}, marks=pytest.mark.long)],
+    thinned([{"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}, pytest.param({}, marks=pytest.mark.long)], 3),
 )
 def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatch, damped: dict[str, object]) -> None:
     size = {"block.subdivide": [4, 4], "fem.elements": 4}

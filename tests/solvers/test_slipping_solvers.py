@@ -119,6 +119,7 @@ def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
     assert get_solver(name).prepare(shorter).run().outcome is Outcome.COMPLETED
 
 
+@pytest.mark.long
 def test_a_base_that_moves_and_its_work(tmp_path: Path) -> None:
     (tmp_path / "base.csv").write_text("time,x\n0,0\n0.01,0.002\n0.02,0\n")
     text = INCLINE.replace("slope = 20.0", f'base_motion = "{tmp_path / "base.csv"}"')

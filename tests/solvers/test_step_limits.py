@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation.engine.measure import attempt
 from validation.errors import InputError
@@ -74,7 +75,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", thinned(SCENES, 4))
 def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name: str) -> None:
     solver, tables = SCENES[name]
     said = refusal(solver, scene(1.0, 2, **tables))

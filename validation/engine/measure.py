@@ -67,7 +67,7 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     failed: list[str] = []
     metrics: dict[str, Value] = {}
     if prepared is not None:
-        if scene.time.allow_unstable:
+        if scene.time.allow_unstable and features.linear(scene):
             run = stability.with_growth_outcome(run, prepared, scene)
         with np.errstate(all="ignore"):
             metrics = _measure(prepared, solver, case, run, failed)

@@ -26,9 +26,9 @@ from validation.solvers.translation import check_columns, naming, no_fields
 if TYPE_CHECKING:
     from fem_reference.events import bar_events, block_events
     from fem_reference.events import switches as events
-    from fem_reference.events.bar_events import BarProblem
     from fem_reference.events.bars_events import BarsMotion
     from fem_reference.events.block_model import BlockProblem
+    from fem_reference.problem.bar import BarProblem
     from fem_reference.problem.motion import Motion as BaseMotion
 
 FORCES = ("normal_force_m", "normal_force_n")  # N, on the block, at the two ends of the base
@@ -102,7 +102,7 @@ def base_of(scene: Scene) -> BaseMotion | None:
 
 def bar_of(scene: Scene) -> BarProblem:
     """Return the bar of a scene."""
-    from fem_reference.events.bar_events import BarProblem
+    from fem_reference.problem.bar import BarProblem
 
     return BarProblem(**data_of(scene), base_stiffness=2 * scene.contact.stiffness)
 
