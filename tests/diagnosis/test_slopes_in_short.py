@@ -46,8 +46,13 @@ SPRINGS = {"p": 2e9, "ps": 8e8}
         (SPRINGS | LAGS, -1, ["sign", "springs-factor", "lagged-friction"], 1),
         (SPRINGS | LAGS, 1, ["springs-factor", "lagged-friction"], 5),
         (SPRINGS, 1, ["springs-factor"], 1),
-        ({"p": 1.025e9} | LAGS, 1, ["unexplained"], 6),  # springs across the base alone
-        ({"weight": 0.5} | LAGS, 1, ["unexplained"], 6),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in (
+                ({"p": 1.025e9} | LAGS, 1, ["unexplained"], 6),  # springs across the base alone
+                ({"weight": 0.5} | LAGS, 1, ["unexplained"], 6),
+            )
+        ),
     ],
 )
 def test_few_steps_tell_the_law(theirs: dict[str, Any], sign: float, causes: list[str], first: int) -> None:

@@ -18,9 +18,6 @@ from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
-from validation.diagnosis.forces.answer import is_scene
-from validation.diagnosis.forces.judge import judge
-from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
@@ -100,17 +97,19 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
     pair = (DISPLACEMENT, PRESSURE)
-    if has_swapped_columns(scene, foreign):
-        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
-    else:
+    is_swapped = has_swapped_columns(scene, foreign)
+    if not is_swapped:
         answer = _judged(scene, foreign, tolerance)
+        if UNEXPLAINED not in answer.causes:
+            return replace(answer, remedy=remedy_of(foreign, answer.slips))
         pair = (DISPLACEMENT, SIDEWAYS)
         is_frictional = features.FRICTION in features.of(scene)
-        if not (is_frictional and UNEXPLAINED in answer.causes and is_scene(scene, exchanged(foreign, *pair))):
-            return replace(answer, remedy=remedy_of(foreign, answer.slips))
-        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
-    one, other = (name.replace("_", " ") for name in pair)
+        is_swapped = is_frictional and of_friction.is_scene(scene, exchanged(foreign, *pair))
+    if not is_swapped:
+        return answer
     foreign = exchanged(foreign, *pair)
+    answer = _judged(scene, foreign, tolerance)
+    one, other = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
     remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
     sentence = f"The {one} is in the column of the {other}, and the reverse. Read so: {answer.sentence}"
@@ -127,7 +126,7 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):
-        return _with_friction(scene, foreign)
+        return of_friction.answer_of(scene, foreign)
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(
@@ -349,43 +348,6 @@ def _answer_of_rival(
         evidence=tuple(stages),
         own_model=best.model == DDA,
     )
-
-
-def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
-    """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
-    read = of_friction.read(scene, foreign)
-    result = judge(scene, read.place, read.step, read.rounding)
-    ids = of_friction.ids_of(result, read)
-    t = scene.time
-    unexplained = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
-    near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
-    softer = result.values.get("base-compliance", 0.0)
-    return Answer(
-        scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
-        departure=of_friction.departure_of(result, ids),
-        causes=ids,
-        opened=result.opened if result.explained else None,
-        sentence=of_friction.sentence(scene, result, ids, read.corrected),
-        notes=(*foreign.notes, *read.notes),
-        misfit=result.normal,
-        curves={"the file": (foreign.time, foreign.displacement)},
-        values=result.values if result.explained else {},
-        unexplained=0.0 if result.explained else unexplained,
-        nearest=None if result.explained else near,
-        alike=[_alone(one) for one in result.alike],
-        evidence=tuple(of_friction.stages(result, read)),
-        slips=read.corrected,
-    )
-
-
-def _alone(change: OneChange) -> dict[str, Any]:
-    """Return one of several changes that give the same rows, as plain data."""
-    values = {} if change.value is None else {change.id: change.value}
-    further = "another slope or coefficient of friction"
-    if "springs" in change.id:
-        further = CAUSES["springs-factor"].further_scene
-    return {"causes": [change.id], "values": values, "further_scene": further}
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
