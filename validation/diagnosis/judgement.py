@@ -39,7 +39,6 @@ from validation.scenes.scene import Scene
 
 DDA = "dda"
 RIVALS = ("bar", "continuum")
-MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -328,7 +327,7 @@ def _answer_of_rival(
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
         first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
+    sentence = sentences.rival_sentence(verdict, ids, first_departure)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
         sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
