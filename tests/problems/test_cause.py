@@ -295,13 +295,9 @@ def test_a_discount_of_columns_on_contacts_is_named(name: str) -> None:
     assert identified.values["gg"] == pytest.approx(0.99, rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    ("name", "key", "factor"),
-    [
-        ("stack", "density", 1.2),
-        pytest.param("mass-ratio", "density", 0.9, marks=pytest.mark.long),
-        pytest.param("cradle", "young", 0.8, marks=pytest.mark.long),
-    ],
+    ("name", "key", "factor"), [("stack", "density", 1.2), ("mass-ratio", "density", 0.9), ("cradle", "young", 0.8)]
 )
 def test_a_wrong_datum_of_a_column_on_contacts_is_named(name: str, key: str, factor: float) -> None:
     identified = named(name, exactly(name, of_layers(name, key, factor)))

@@ -39,6 +39,7 @@ from validation.scenes.scene import Scene
 
 DDA = "dda"
 RIVALS = ("bar", "continuum")
+MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -51,7 +52,7 @@ class Case:
     foreign: Foreign
     reading: Reading
     column: Rectangle
-    own: Variant
+    scene_variant: Variant
 
     @cached_property
     def target(self) -> Target:
@@ -68,7 +69,7 @@ class Case:
     @cached_property
     def scene_run(self) -> Histories:
         """The scene's own run at the steps of the history."""
-        return histories(self.target.column, [self.own], self.target.steps)
+        return histories(self.target.column, [self.scene_variant], self.target.steps)
 
     @property
     def expected(self) -> tuple[Array, Array]:
@@ -150,7 +151,7 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     case, verdict = _best(cases)
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
-        verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
+        verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     theirs: RivalVerdict | None = None
     if not verdict.explains and scene.contact.law == "locked":
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
@@ -181,7 +182,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     fewest = min(len(case.reading.corrected) for case in cases)
     verdicts: list[tuple[Case, Verdict]] = []
     for case in cases:
-        verdict = simple(case.target, case.own)
+        verdict = simple(case.target, case.scene_variant)
         verdicts.append((case, verdict))
         # a slip of sign or unit beside another cause is less likely than that of a datum alone
         if verdict.explains and (len(case.reading.corrected) == fewest or verdict.same):
@@ -201,7 +202,7 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
 
 
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
-    target, scene_variant, best_fit = case.target, case.own, verdict.best.fit
+    target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
     stages = _stages(case)
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
@@ -215,7 +216,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     ids = all_causes if verdict.explained else [UNEXPLAINED]
     v = best_fit.variant if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
-    shown = verdict.best.fit if verdict.explained else verdict.own
+    shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
     first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
     refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
@@ -286,7 +287,7 @@ def _diverged(case: Case, factor: float) -> Answer:
     target, stages = case.target, _stages(case, factor)
     expected = case.expected[0]
     first_departure = evidence.unbounded(expected, target.displacement, target.rows)
-    v = case.own
+    v = case.scene_variant
     return Answer(
         scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
         departure=first_departure,
@@ -327,7 +328,7 @@ def _answer_of_rival(
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
         first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = sentences.rival_sentence(verdict, ids, first_departure)
+    sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
         sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."

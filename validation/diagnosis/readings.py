@@ -15,7 +15,8 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
-from validation.solvers.registry import get_solver
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
 from validation.solvers.user import UNITS
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
@@ -77,7 +78,7 @@ def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:
     """Whether displacement and pressure have each other's size, and far from their own."""
     if foreign.pressure is None or np.max(np.abs(foreign.displacement)) <= np.max(np.abs(foreign.pressure)):
         return False  # metres are smaller numbers than pascals
-    run = get_solver("dda").solve(scene)
+    run = get_solver(by_role(Role.JUDGED)[0]).solve(scene)
     if run.history is None:
         return False
     with np.errstate(all="ignore"):

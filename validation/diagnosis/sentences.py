@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from validation.diagnosis.fits.fit import Interval
     from validation.diagnosis.other_solvers import RivalVerdict
 
-MODELS = {"dda": "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
 NEAR = 0.5  # share of the difference: what leaves more is near to nothing
 
 
@@ -135,10 +134,12 @@ def diverged(departure: Departure, growth: float) -> str:
     )
 
 
-def rival_sentence(verdict: RivalVerdict, causes: Sequence[str], departure: Departure | None) -> str:
+def rival_sentence(
+    verdict: RivalVerdict, causes: Sequence[str], departure: Departure | None, models: Mapping[str, str]
+) -> str:
     """Return the first line where another solver explains the history best."""
     best = verdict.best
-    scheme_of_best, model = scheme_words(best.alpha, best.delta, best.gg), MODELS.get(best.model, best.model)
+    scheme_of_best, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
     remainder = remaining(best.misfit)
     if not verdict.explained:
         return (

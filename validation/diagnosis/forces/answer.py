@@ -16,7 +16,7 @@ from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits, significant
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding, judge
 from validation.diagnosis.forces.laws import body_of
-from validation.diagnosis.forces.runs import OneChange, agreement, at_step, displacements
+from validation.diagnosis.forces.runs import DDA, OneChange, agreement, at_step, displacements
 from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, words_of_slips
@@ -142,7 +142,7 @@ def answer_of(scene: Scene, foreign: Foreign) -> Answer:
     softer = result.values.get("base-compliance", 0.0)
     answer = Answer(
         scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        ranking=[row_of("dda", t.alpha, t.delta, t.discount, result.normal, softer)],
+        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
         departure=departure,
         causes=ids,
         opened=result.opened,
