@@ -244,6 +244,7 @@ def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagge
     assert answer.causes == ["unexplained"]
     assert answer.departs
     assert answer.nearest is not None
+    assert answer.slips == ()  # without friction it slides a thousand times as far, which is no unit
     assert "not explained" in answer.sentence
 
 

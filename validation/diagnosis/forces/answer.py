@@ -159,7 +159,7 @@ def answer_of(scene: Scene, foreign: Foreign) -> Answer:
         return answer
     left = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
     nearest = {"causes": list(result.causes), "values": result.values, "left": left}
-    return replace(answer, opened=None, values={}, unexplained=left, nearest=nearest)
+    return replace(answer, opened=None, values={}, unexplained=left, nearest=nearest, slips=())
 
 
 def _alone(change: OneChange) -> dict[str, Any]:
