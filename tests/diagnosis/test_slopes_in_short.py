@@ -140,5 +140,5 @@ def test_a_scene_of_many_values_or_another_unit_of_time_is_refused() -> None:
     many = SCENE.model_copy(update={"sweep": load_scene("slope-sliding").sweep})
     with pytest.raises(InputError, match="one value must be picked"):
         compare(many, Foreign(found.time, found.v, sideways=found.u))
-    with pytest.raises(InputError, match="in seconds"):
+    with pytest.raises(InputError, match=r"in seconds, got 1000 times the scene's; use --scale time=0\.001$"):
         compare(SCENE, Foreign(1e3 * found.time, found.v, sideways=found.u))

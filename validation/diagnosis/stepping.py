@@ -109,7 +109,6 @@ class Stepper:
 
     def __init__(self, rectangle: Rectangle, variants: Sequence[Variant], unknowns: int) -> None:
         self.rectangle, self.variants, self.d = rectangle, variants, unknowns
-
         # every number of the variants by its name, one array each
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from validation.diagnosis.forces.laws import body_of
 from validation.diagnosis.forces.runs import DDA, OneChange, agreement, at_step, displacements
 from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
-from validation.diagnosis.readings import Slip, words_of_slips
+from validation.diagnosis.readings import Slip, remedy_of, words_of_slips
 from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
@@ -84,10 +85,12 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
             f"{scene.time.step:.6g} s",
             advice=f"if that is the program's step, use --set time.step={last:.6g}",
         )
-    if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
-        raise InputError(
-            "with friction all steps must be equal, in seconds", source=scene.name, field="time", value="others"
-        )
+    refused = partial(InputError, "with friction all steps must be equal, in seconds", source=scene.name, field="time")
+    if stepping.factor != 1:
+        value = f"{stepping.factor:g} times the scene's"
+        raise refused(value=value, advice=f"use {remedy_of(foreign, [Slip('unit', 'time', stepping.factor)])}")
+    if np.ptp(steps) > UNIFORM * steps[0]:
+        raise refused(value="others")
     place = np.column_stack([foreign.sideways, foreign.displacement])
     units = [
         last_digits(column) if unit is None else unit
