@@ -259,7 +259,8 @@ NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(("slip", "cause", "value"), thinned(NUMBERS, 6))
+@pytest.mark.long
+@pytest.mark.parametrize(("slip", "cause", "value"), NUMBERS)
 def test_one_wrong_number_is_named_by_a_run_that_gives_the_history(
     slip: dict[str, object], cause: str, value: float
 ) -> None:

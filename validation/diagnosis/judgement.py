@@ -96,23 +96,20 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    pair = (DISPLACEMENT, PRESSURE)
-    is_swapped = has_swapped_columns(scene, foreign)
-    if not is_swapped:
-        answer = _judged(scene, foreign, tolerance)
-        if UNEXPLAINED not in answer.causes:
-            return replace(answer, remedy=remedy_of(foreign, answer.slips))
-        pair = (DISPLACEMENT, SIDEWAYS)
-        is_frictional = features.FRICTION in features.of(scene)
-        is_swapped = is_frictional and of_friction.is_scene(scene, exchanged(foreign, *pair))
-    if not is_swapped:
-        return answer
+    if has_swapped_columns(scene, foreign):
+        return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
+    answer = _judged(scene, foreign, tolerance)
+    return replace(answer, remedy=answer.remedy or remedy_of(foreign, answer.slips))
+
+
+def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
+    """Return the answer to a history with two columns in their places, and what to type for them to be there."""
     foreign = exchanged(foreign, *pair)
     answer = _judged(scene, foreign, tolerance)
-    one, other = (name.replace("_", " ") for name in pair)
+    first, second = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
     remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
-    sentence = f"The {one} is in the column of the {other}, and the reverse. Read so: {answer.sentence}"
+    sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
 
@@ -126,6 +123,10 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):
+        pair = (DISPLACEMENT, SIDEWAYS)
+        is_scene = of_friction.is_scene
+        if not is_scene(scene, foreign) and is_scene(scene, exchanged(foreign, *pair)):
+            return _of_swapped(scene, foreign, pair, tolerance)
         return of_friction.answer_of(scene, foreign)
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
