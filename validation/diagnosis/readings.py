@@ -73,7 +73,7 @@ def exchanged(foreign: Foreign, first: str, second: str) -> Foreign:
     places = FIELDS[first] + FIELDS[second]
     sources = FIELDS[second] + FIELDS[first]
     columns = {place: getattr(foreign, source) for place, source in zip(places, sources, strict=True)}
-    return replace(foreign, names=foreign.names | names, scale=foreign.scale | scale, **columns)
+    return replace(foreign, names={**foreign.names, **names}, scale={**foreign.scale, **scale}, **columns)
 
 
 def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:

@@ -224,7 +224,7 @@ class Stepper:
         return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
 
     def _damping(self, q: Equations) -> Array:
-        return self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness
+        return np.asarray(self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness)
 
     def matrix(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step, by stepping the unit vectors, (variants, 3 + 3 d, 3 + 3 d)."""
