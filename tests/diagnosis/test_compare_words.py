@@ -22,7 +22,15 @@ from validation.cli import compare as cli_compare
 from validation.diagnosis import evidence
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import BENIGN_COMPLIANCE, benign_springs, compliance, round_factor, values_of, words_of
+from validation.diagnosis.causes import (
+    BENIGN_COMPLIANCE,
+    CAUSES,
+    benign_springs,
+    compliance,
+    round_factor,
+    values_of,
+    words_of,
+)
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.target import Target
@@ -196,12 +204,6 @@ def judged(change: Any, **values: Any) -> Answer:
     return compare(scene, Foreign(run.time, *change(run.displacement, run.contact_pressure)))
 
 
-def test_a_pressure_in_kilopascals_is_a_slip_of_units_and_leaves_nothing_else() -> None:
-    answer = judged(lambda v, p: (v, -1e-3 * p))
-    assert answer.causes == ["sign", "unit"] and answer.misfit < 1e-6
-    assert answer.ranking[0]["gg"] == 0.98 and answer.ranking[0]["misfit"] < 1e-6
-
-
 def test_another_scheme_is_named_in_plain_data_as_it_is() -> None:
     answer = judged(lambda v, p: (v, p), time__alpha=0.25, time__delta=0.5)
     assert answer.causes == ["scheme"]
@@ -245,40 +247,31 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
     return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.remaining(0.0123)))
 
 
+@pytest.mark.parametrize("cause", sorted(name for name, cause in CAUSES.items() if not cause.benign))
+def test_each_fault_is_told_with_its_number(cause: str) -> None:
+    """Whatever a sentence of the catalogue holds is filled in."""
+    text = said([cause])
+    assert cause not in NUMBERS or f"{NUMBERS[cause]:.5g}" in text
+    assert "{" not in text
+    assert "eparts from step 7 on, mainly in phase" in text
+    assert text.endswith("the remaining difference is 1.2 %.")
+
+
 @pytest.mark.parametrize(
     ("cause", "fields", "words"),
     [
-        ("gg", {}, "gg = 0.97 where the scene has 0.99"),
-        ("scheme", {}, "a different scheme from the scene's average acceleration (alpha = 0.25, delta = 0.5, gg = 0.99)"
-         "; the history matches constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"),
-        ("start", {"start": "zero"}, 'the initial acceleration is "zero", not "consistent"'),
-        ("gg-in-one-formula", {"discounted": "velocity"}, "gg is applied only in the formula for the velocity (7)"),
-        ("gg-in-one-formula", {"discounted": "displacement"}, "applied only in the formula for the displacement (6)"),
-        ("time-shift", {"shift": 1}, "the rows are 1 step late"),
-        ("time-shift", {"shift": -1}, "the rows are 1 step early"),
-        ("springs-factor", {"softness": math.log(4)}, "the contact stiffness is 0.25 times the scene's"),
-        ("load-factor", {"load": 1.25}, "the load, or the displacement, is 1.25 times the scene's"),
-        ("contact-opened", {"opens": True}, "the contact opened in steps 3-5, 9"),
-        ("time-shift", {"shift": 2}, "the rows are 2 steps late"),
-        ("density-factor", {}, "the density is 0.5 times the scene's"),
-        ("young-factor", {}, "Young's modulus is 0.8 times the scene's"),
-        ("side-factor", {}, "the side of the block is 1.1 times the scene's"),
-        ("poisson", {}, "Poisson's ratio is 0.3"),
-        ("dead-band", {}, "an open contact closes only beyond a penetration of about 0.001 m"),
-        ("reported-point", {"point": 1.0}, "of another point, +1 m above the centroid, the top edge"),
-        ("pressure-shift", {"late": 1.0}, "the pressure is 1 step late, the displacement is right"),
-        ("pressure-shift", {"late": -1.0}, "the pressure is 1 step early"),
-        ("pressure-shift", {"late": 0.5}, "the pressure is the mean of this step and the one before"),
-        ("pressure-factor", {}, "the reported pressure is 0.5 times the scene's"),
-        ("load-row", {"strain_load": -1.0}, "the load has the wrong sign in the row of ey"),
-        ("coupling", {"coupling": 0.0}, "the springs' coupling of v and ey is missing"),
-        ("stress-not-kept", {"kept": "stress"}, "only the stress is carried over"),
+        ("gg-in-one-formula", {"discounted": "velocity"}, "the formula for the velocity (7)"),
+        ("time-shift", {"shift": -1}, "1 step early"),
+        ("time-shift", {"shift": 2}, "2 steps late"),
+        ("reported-point", {"point": 1.0}, "+1 m above the centroid, the top edge"),
+        ("pressure-shift", {"late": 0.5}, "the mean of this step and the one before, the displacement is right"),
+        ("load-row", {"strain_load": -1.0}, "has the wrong sign"),
+        ("coupling", {"coupling": 0.0}, "is missing"),
+        ("contact-opened", {"opens": True}, "in steps 3-5, 9"),
     ],
-)  # fmt: skip
-def test_each_fault_is_told_with_its_number(cause: str, fields: dict[str, Any], words: str) -> None:
-    text = said([cause], **fields)
-    assert words in text
-    assert "eparts from step 7 on, mainly in phase" in text and text.endswith("the remaining difference is 1.2 %.")
+)
+def test_numbers_that_have_words_are_told_by_them(cause: str, fields: dict[str, Any], words: str) -> None:
+    assert words in said([cause], **fields)
 
 
 def test_what_is_no_fault_is_told_with_its_number() -> None:
@@ -479,6 +472,7 @@ def test_the_page_draws_the_pressure_below_the_displacement(tmp_path: Path, monk
     assert top.get_ylabel() != middle.get_ylabel() and below.get_yscale() == "log"
 
 
+@pytest.mark.long
 def test_the_exact_continuum_is_not_the_same_scheme() -> None:
     """In space and in time it is another model than the scene's own run by DDA, which the status says."""
     scene = SCENE.with_values({"time.step": 5e-4})
@@ -505,16 +499,6 @@ def test_a_wrong_pressure_dates_the_departure_by_itself() -> None:
     assert answer.sentence.count("the displacement is right") == 1
 
 
-def test_a_slip_of_sign_and_unit_is_told_with_its_column_and_factor() -> None:
-    answer = judged(lambda v, p: (v, -1e-3 * p))
-    assert [(slip.cause, slip.column, slip.factor) for slip in answer.slips] == [
-        ("sign", "contact_pressure", -1.0),
-        ("unit", "contact_pressure", 1e-3),
-    ]
-    assert "the contact pressure is in other units, 0.001 times the scene's" in answer.sentence
-    assert answer.as_dict()["slips"][1] == {"cause": "unit", "column": "contact_pressure", "factor": 1e-3}
-
-
 READINGS = {
     "millimetres": (lambda v, p: (1e3 * v, p), ["unit"], "--scale displacement=0.001"),
     "reversed, in kPa": (lambda v, p: (v, -1e-3 * p), ["sign", "unit"], "--scale contact_pressure=-1000"),
@@ -537,6 +521,7 @@ def test_a_history_that_is_read_wrongly_is_told_what_to_type(name: str) -> None:
     answer = judged(change)
     assert answer.causes == causes
     assert answer.remedy == answer.as_dict()["remedy"] == remedy
+    assert {slip["cause"] for slip in answer.as_dict()["slips"]} == {*causes} - {"swapped"}
     assert ("(mm?)" in answer.sentence) == (name == "millimetres")
     assert answer.misfit < 1e-6
 
@@ -583,6 +568,7 @@ def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answ
     assert [line["misfit"] for line in answer.ranking] == sorted(line["misfit"] for line in answer.ranking)
 
 
+@pytest.mark.long
 def test_damping_of_mass_and_stiffness_together_is_named() -> None:
     data = Plain(steps=60, p=3e9, viscous=10.0, structural=1e-4)
     v, p = run(data)
@@ -616,6 +602,7 @@ def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity() 
         compare(SCENE, Foreign(time, np.zeros(30), np.zeros(30)))
 
 
+@pytest.mark.long
 def test_the_interval_of_a_dead_band_ends_where_the_rows_change() -> None:
     opening = {"contact.law": "unilateral", "contact.stiffness": 3e9, "time.step": 4e-4, "time.steps": 140}
     plain = SCENE.with_values(opening)

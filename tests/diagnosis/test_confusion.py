@@ -21,13 +21,6 @@ def fifty():
     return confusion.judge()
 
 
-@pytest.fixture(
-    scope="module", params=[pytest.param(name, marks=pytest.mark.long) for name in ("one of each cause", "fifty")]
-)
-def judged(request: pytest.FixtureRequest):
-    return request.getfixturevalue("fifty") if request.param == "fifty" else confusion.judge(first=True)
-
-
 @pytest.mark.long
 def test_there_are_fifty(fifty) -> None:
     assert len(fifty) == 50
@@ -38,18 +31,20 @@ def hidden(one: confusion.Known, answer: Answer) -> bool:
     return one.cause == "scheme" and one.noise > 0 and answer.causes == ["unexplained"]
 
 
-def test_every_history_is_given_its_own_cause(judged) -> None:
+@pytest.mark.long
+def test_every_history_is_given_its_own_cause(fifty) -> None:
     wrong = [
         (i, one.cause, answer.causes)
-        for i, (one, answer, _) in enumerate(judged)
+        for i, (one, answer, _) in enumerate(fifty)
         if confusion.told(answer) != one.cause and not hidden(one, answer)
     ]
     assert wrong == []
-    assert sum(hidden(one, answer) for one, answer, _ in judged) <= 1
+    assert sum(hidden(one, answer) for one, answer, _ in fifty) <= 1
 
 
-def test_the_scheme_is_named_and_the_open_steps_are_found(judged) -> None:
-    for i, (one, answer, history) in enumerate(judged):
+@pytest.mark.long
+def test_the_scheme_is_named_and_the_open_steps_are_found(fifty) -> None:
+    for i, (one, answer, history) in enumerate(fifty):
         if hidden(one, answer):
             continue
         p = one.program
@@ -61,8 +56,9 @@ def test_the_scheme_is_named_and_the_open_steps_are_found(judged) -> None:
         assert (None if answer.opened is None else list(answer.opened)) == history.opened, i
 
 
-def test_a_departure_is_where_a_fault_is(judged) -> None:
-    for i, (one, answer, _) in enumerate(judged):
+@pytest.mark.long
+def test_a_departure_is_where_a_fault_is(fifty) -> None:
+    for i, (one, answer, _) in enumerate(fifty):
         faulty = one.cause != confusion.SAME and not CAUSES[one.cause].benign
         assert (answer.departure is not None) == faulty, i
         if answer.departure is not None:

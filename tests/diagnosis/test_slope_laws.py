@@ -44,13 +44,13 @@ def test_the_forces_of_a_motion_are_those_of_its_solver(values: dict[str, Any]) 
     found = follow(body, motion, lagged=scene.contact.rules == "lagged")
     size = 1e-7 * found.scale
     assert np.any(np.abs(state) == 2) and found.settled.mean() > 0.9
-    assert np.max(np.abs(found.shown - np.column_stack([shear.sum(axis=1), normal.sum(axis=1)]))) <= size
+    assert np.max(np.abs(found.motion_forces - np.column_stack([shear.sum(axis=1), normal.sum(axis=1)]))) <= size
     assert np.array_equal(found.closed, state != 0)
     assert np.max(np.abs(found.gap - gap)) * body.stiffness <= size
     # where a corner lands within a step the law is met to some share of what it holds there, and from then on
-    given = np.abs(found.given - found.shown)[found.settled]
+    unbalanced = np.abs(found.law_forces - found.motion_forces)[found.settled]
     landing = int(np.argmin(found.settled[1:])) + 1 if not found.settled[1:].all() else len(found.settled)
-    assert np.max(given[: landing - 1]) <= size and np.max(given) <= 1000 * size
+    assert np.max(unbalanced[: landing - 1]) <= size and np.max(unbalanced) <= 1000 * size
 
 
 def pair_of(columns: Any, names: tuple[str, ...]) -> np.ndarray:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from dataclasses import astuple
 from typing import Any
 
 import pytest
+from pydantic import BaseModel
 
 from validation.errors import InputError
 from validation.problems.data import (
@@ -37,95 +39,44 @@ SI = ("_m", "_kg_per_m3", "_Pa", "_m_per_s", "_deg", "_N_per_m", "_m_per_s2", "_
 KNOWN = {"3.0": "c699879fefade33e"}
 
 
-def of_block(block: BlockData, contact: ContactData, load: LoadData, geometry: str) -> dict[str, Any]:
-    """Return the tables of a scene that the plain data describe."""
-    own: dict[str, Any] = {
-        "law": contact.law,
-        "stiffness": contact.normal_stiffness_N_per_m,
-        "shear_stiffness": contact.shear_stiffness_N_per_m,
-    }
-    own |= {"friction": contact.friction_deg} if contact.friction_deg is not None else {}
-    own |= {"cohesion": contact.cohesion_Pa} if contact.cohesion_Pa else {}
-    own |= {"gap": contact.gap_m} if contact.gap_m else {}
-    return {
-        "block": {
-            "width": block.width_m,
-            "height": block.height_m,
-            "density": block.density_kg_per_m3,
-            "young": block.young_Pa,
-            "poisson": block.poisson,
-            "hypothesis": block.hypothesis,
-            "velocity": block.velocity_m_per_s,
-            "tilt": block.tilt_deg,
-        },
-        "contact": own,
-        "load": {
-            "pressure": load.pressure_Pa,
-            "eccentricity": load.eccentricity_m,
-            "traction": load.traction_Pa,
-            "gravity": load.gravity_m_per_s2,
-            "slope": load.slope_deg,
-        },
-        "run": {"geometry": "updated" if geometry == "large rotation" else "small"},
-    }
+def plain(data: BaseModel, *without: str) -> dict[str, Any]:
+    """Return what is stated in plain data, by names without their units; what is infinite is a number."""
+    unit = re.compile(f"({'|'.join(SI)})$")
+    stated = {unit.sub("", name): value for name, value in data if value is not None}
+    numbers = {name: value for name, value in stated.items() if value and name not in without}
+    return {name: float("inf") if value == "inf" else value for name, value in numbers.items()}
 
 
 def of_column(column: ColumnData) -> dict[str, Any]:
     """Return the tables of a scene that the plain data describe; the impedance stands for density and speed."""
-    base = column.base
-    bonded = column.law == "bonded"
-    below = {"base_density": base.impedance_Pa_s_per_m, "base_speed": 1.0} if base.impedance_Pa_s_per_m else {}
-    below |= {"base_stiffness": base.stiffness_Pa_per_m} if base.stiffness_Pa_per_m else {}
-    layers = []
-    for one in column.layers:
-        layer = {"thickness": one.thickness_m, "density": one.density_kg_per_m3, "poisson": one.poisson}
-        velocity = {} if bonded else {"velocity": one.velocity_m_per_s}
-        layers.append(layer | {"young": float(one.young_Pa)} | velocity)
-    springs = column.joints if bonded else column.contacts
-    joints = []
-    for spring in springs:
-        joint = {"height": spring.height_m, "stiffness": float(spring.stiffness_Pa_per_m)}
-        if column.law == "unilateral":
-            joint["gap"] = spring.gap_m
-        if column.law == "frictional" and spring.strength_Pa is not None:
-            joint["strength"] = spring.strength_Pa
-        joints.append(joint)
-    weight = {"gravity": column.gravity_m_per_s2, "settled": column.settled} if column.law == "unilateral" else {}
+    base = plain(column.base)
+    below = {"base_density": base["impedance"], "base_speed": 1.0} if "impedance" in base else {}
+    below |= {"base_stiffness": base["stiffness"]} if "stiffness" in base else {}
+    springs = column.joints if column.law == "bonded" else column.contacts
     return {
         "column": {
-            "motion": column.motion,
-            "law": column.law,
-            "base": base.kind,
-            "heights": list(column.heights_m),
-            "layer": layers,
-            "joint": joints,
+            **plain(column, "layers", "joints", "contacts", "input"),
+            "base": base["kind"],
+            "layer": [plain(layer) for layer in column.layers],
+            "joint": [{"height": 0.0} | plain(spring) for spring in springs],
             **below,
-            **weight,
         },
-        **of_input(column.input),
+        **({"input": plain(column.input)} if column.input else {}),
     }
-
-
-def of_input(drive: InputData | None) -> dict[str, Any]:
-    """Return the table of what drives a column, none where nothing but weight and velocities does."""
-    if drive is None:
-        return {}
-    stated = {
-        "velocity": drive.velocity_m_per_s,
-        "pressure": drive.pressure_Pa,
-        "frequency": drive.frequency_Hz,
-        "duration": drive.duration_s,
-    }
-    sizes = {key: value for key, value in stated.items() if value is not None}
-    return {"input": {"at": drive.at, "shape": drive.shape} | sizes}
 
 
 def rebuilt(scene: Scene) -> Scene:
     """Return the scene that the plain data of a scene describe."""
     column = column_data(scene)
     if column is None:
-        geometry = "large rotation" if scene.run.geometry == "updated" else "small"
-        tables = of_block(block_data(scene), contact_data(scene), load_data(scene), geometry)
+        contact = plain(contact_data(scene))
+        contact["stiffness"] = contact.pop("normal_stiffness")
+        tables = {
+            "block": plain(block_data(scene), "thickness"),
+            "contact": contact,
+            "load": plain(load_data(scene)),
+            "run": {"geometry": scene.run.geometry},
+        }
     else:
         tables = of_column(column)
     return parse_scene({"name": scene.name, "time": {"step": 1.0, "steps": 1}} | tables, "plain data")

@@ -225,10 +225,10 @@ class ColumnHistory:
 
     def spread(self, change: ColumnChange, run: Array) -> Array:
         """Return what another correct code may leave of a run, infinite from its horizon on, (columns, rows)."""
-        other = self.run(change, run.shape[1], SHIFT)
-        if other is None:
+        denser_run = self.run(change, run.shape[1], SHIFT)
+        if denser_run is None:
             return np.full(run.shape, np.inf)
-        apart = np.maximum.accumulate(np.abs(other - run), axis=1)
+        apart = np.maximum.accumulate(np.abs(denser_run - run), axis=1)
         beyond = np.any(apart > AGREED * np.max(np.abs(run), axis=1, keepdims=True), axis=0)
         apart[:, beyond] = np.inf
         return apart
@@ -247,11 +247,11 @@ class ColumnHistory:
             columns.append(self.reading.pressure)
         return np.array(columns)
 
-    def units(self, own: Array) -> Array:
+    def units(self, scene_run: Array) -> Array:
         """Return the last digits of the file's rows, with half the digits of double precision, (columns, rows)."""
         roundings = (self.reading.rounding, self.reading.pressure_rounding)
         units = []
-        for values, run, rounding in zip(self.recorded, own, roundings, strict=False):
+        for values, run, rounding in zip(self.recorded, scene_run, roundings, strict=False):
             size = max(largest(values), largest(run))
             unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
             units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
@@ -311,6 +311,11 @@ class ColumnExplanation:
         return {"causes": [self.id], "values": values, "further_scene": further}
 
 
+def ratio_of(explanation: ColumnExplanation) -> float:
+    """Return what an explanation leaves over what may remain."""
+    return explanation.ratio
+
+
 @dataclass(eq=False)
 class ColumnSearch:
     """The search for what gives a history back.
@@ -326,7 +331,7 @@ class ColumnSearch:
     """
 
     history: ColumnHistory
-    own: Array
+    scene_run: Array
     allowed: Array
 
     @classmethod
@@ -339,12 +344,12 @@ class ColumnSearch:
             The scene does not run at the steps of the history.
         """
         plain = ColumnChange()
-        own = history.run(plain, len(history.reading.stepping.rows))
-        if own is None:
+        scene_run = history.run(plain, len(history.reading.stepping.rows))
+        if scene_run is None:
             raise InputError("dda cannot run it at the steps of the history", source=history.scene.name)
-        allowed = history.units(own) + history.spread(plain, own)
+        allowed = history.units(scene_run) + history.spread(plain, scene_run)
         judged = np.all(np.isfinite(allowed), axis=0)
-        return cls(history, own, allowed[:, judged])
+        return cls(history, scene_run, allowed[:, judged])
 
     @property
     def rows(self) -> int:
@@ -361,26 +366,26 @@ class ColumnSearch:
         return np.nan_to_num(np.clip(shares, -FARTHEST, FARTHEST), nan=FARTHEST)
 
     @property
-    def own_over(self) -> Array:
+    def scene_shares(self) -> Array:
         """What the scene's own run leaves over what may remain, the worst column of each row."""
-        shares: Array = np.max(np.abs(self.over(self.own[:, : self.rows], self.rows)), axis=0)
+        shares: Array = np.max(np.abs(self.over(self.scene_run[:, : self.rows], self.rows)), axis=0)
         return shares
 
     @property
     def departing(self) -> np.ndarray:
         """Indices of the rows that are not the scene's own."""
-        return np.flatnonzero(self.own_over > 1)
+        return np.flatnonzero(self.scene_shares > 1)
 
     def is_scene(self, tolerance: float) -> bool:
         """Whether the rows up to the horizon are the scene's own, or differ by no more than a relative L2."""
-        if self.rows < min(LEAST_ROWS, self.own.shape[1]):
+        if self.rows < min(LEAST_ROWS, self.scene_run.shape[1]):
             return False
-        return not len(self.departing) or bool(max(self.misfits(self.own)) <= tolerance)
+        return not len(self.departing) or bool(max(self.misfits(self.scene_run)) <= tolerance)
 
     def misfits(self, columns: Array) -> list[float]:
         """Return the relative L2 difference of every column up to the horizon [-]."""
         recorded = self.history.recorded[:, : self.rows]
-        sizes = np.maximum(np.linalg.norm(recorded, axis=1), np.linalg.norm(self.own[:, : self.rows], axis=1))
+        sizes = np.maximum(np.linalg.norm(recorded, axis=1), np.linalg.norm(self.scene_run[:, : self.rows], axis=1))
         apart = np.linalg.norm(recorded - columns[:, : self.rows], axis=1)
         return [float(gap / size) if size else 0.0 for gap, size in zip(apart, sizes, strict=True)]
 
@@ -390,17 +395,17 @@ class ColumnSearch:
         candidates = [Fitted(change, 0.0, math.inf) for change in changes]
         groups = self._groups_of_rows()
         for number, rows in enumerate(groups):
-            own = norm(self.over(self.own[:, :rows], rows))
+            scene_run = norm(self.over(self.scene_run[:, :rows], rows))
             candidates = [self._fitted(candidate, rows, number) for candidate in candidates]
             if number + 1 >= PATIENCE:
-                bar = max(NEAR * own, self._near(rows))
+                bar = max(NEAR * scene_run, self._near(rows))
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
-        explanations = sorted((self._judged(candidate) for candidate in sensible), key=lambda one: one.ratio)
+        explanations = sorted(map(self._judged, sensible), key=ratio_of)
         if explanations and explanations[0].ratio <= 1 and explanations[0].candidate.change.starts:
             explanations += self._relatives(changes, explanations, groups[0])
-        return sorted(explanations, key=lambda one: one.ratio)
+        return sorted(explanations, key=ratio_of)
 
     def _relatives(
         self, changes: Sequence[Candidate], explanations: Sequence[ColumnExplanation], rows: int
@@ -409,7 +414,7 @@ class ColumnSearch:
 
         Equations of motion have numbers in products only: a fit that ends elsewhere must not make a cause unique.
         """
-        at_hand = {id(one.candidate.change) for one in explanations if one.ratio <= APART}
+        at_hand = {id(explanation.candidate.change) for explanation in explanations if explanation.ratio <= APART}
         further = []
         for change in changes:
             if id(change) in at_hand or not change.starts:
@@ -525,7 +530,7 @@ def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> An
             return answer_of(scene, foreign, ColumnVerdict(search, is_scene=True))
     slipped = [search for search in searches if search not in plain and search.is_scene(tolerance)]
     verdicts = [verdict_of(search) for search in plain]
-    verdict = next((one for one in verdicts if one.alike), verdicts[0])
+    verdict = next((verdict for verdict in verdicts if verdict.alike), verdicts[0])
     if slipped and not verdict.alike:
         verdict = ColumnVerdict(slipped[0], is_scene=True)
     elif slipped:
@@ -541,31 +546,31 @@ def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[Colu
         raise InputError("dda cannot run it at the steps of the history", source=scene.name)
     displacement, pressure = (run.columns[name][stepping.rows] for name in (DISPLACEMENT, PRESSURE))
     readings = slips(foreign, stepping, displacement, pressure, furthest=math.inf)
-    return [ColumnSearch.of(ColumnHistory(one.scene_of(scene), one)) for one in readings]
+    return [ColumnSearch.of(ColumnHistory(reading.scene_of(scene), reading)) for reading in readings]
 
 
 def verdict_of(search: ColumnSearch) -> ColumnVerdict:
     """Return what explains a history that is not the scene's own."""
-    if len(search.departing) < LEAST_ROWS or search.own_over.max() <= APART:
+    if len(search.departing) < LEAST_ROWS or search.scene_shares.max() <= APART:
         return ColumnVerdict(search)
     ranked = search.explanations()
     alike: list[ColumnExplanation] = []
     if ranked and ranked[0].ratio <= 1:
-        for one in sorted(ranked, key=lambda one: (bool(one.candidate.change.starts), one.ratio)):
-            if one.ratio <= APART and not any(_is_same(one, other) for other in alike):
-                alike.append(one)
-    return ColumnVerdict(search, ranked, sorted(alike, key=lambda one: one.ratio))
+        for explanation in sorted(ranked, key=lambda each: (bool(each.candidate.change.starts), each.ratio)):
+            if explanation.ratio <= APART and not any(_is_same(explanation, listed) for listed in alike):
+                alike.append(explanation)
+    return ColumnVerdict(search, ranked, sorted(alike, key=ratio_of))
 
 
-def _is_same(one: ColumnExplanation, other: ColumnExplanation) -> bool:
+def _is_same(first: ColumnExplanation, second: ColumnExplanation) -> bool:
     """Whether two explanations are one: a number that was fitted to that of a plain change, or either start."""
-    if one.id != other.id:
+    if first.id != second.id:
         return False
-    if one.id == "scheme":
-        return all(one.change.values[key] == other.change.values[key] for key in ("time.alpha", "time.delta"))
-    if one.value is None or other.value is None or other.candidate.change.starts:
+    if first.id == "scheme":
+        return all(first.change.values[key] == second.change.values[key] for key in ("time.alpha", "time.delta"))
+    if first.value is None or second.value is None or second.candidate.change.starts:
         return False
-    return abs(one.value - other.value) <= SAME_NUMBER * max(1.0, abs(other.value))
+    return abs(first.value - second.value) <= SAME_NUMBER * max(1.0, abs(second.value))
 
 
 # ---- the answer -----------------------------------------------------------------------------------------------------
@@ -582,9 +587,9 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     time = search.history.time
     columns = None if best is None else search.history.run(best.change, len(time))
     if columns is None:
-        columns = search.own
-    own_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.own, columns))
-    left = 0.0 if explained else significant(min(misfit / own_misfit, 1.0) if own_misfit else 1.0, 4)
+        columns = search.scene_run
+    scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
+    unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
     departure = None if not ids and explained else _departure(search)
     t = scene.time
     scheme: dict[str, float | None] = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount}
@@ -597,7 +602,7 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
             words["scheme"] = (
                 f"a different scheme from the scene's {sentences.scheme_words(t.alpha, t.delta, t.discount)}"
             )
-    alike = [] if cause or verdict.is_scene else [one.as_dict() for one in verdict.alike[:MOST_ALIKE]]
+    alike = [] if cause or verdict.is_scene else [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if verdict.slipped is not None:
         slipped = list(verdict.slipped.history.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
@@ -612,15 +617,17 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     )
     nearest: dict[str, Any] | None = None
     if not explained and not alike and best is not None:
-        nearest = {key: value for key, value in best.as_dict().items() if key != "further_scene"} | {"left": left}
+        nearest = {key: value for key, value in best.as_dict().items() if key != "further_scene"} | {
+            "left": unexplained
+        }
     stages = _stages(search)
     if explained:
         sentence = sentences.sentence(subject)
     else:
-        sentence = f"{sentences.not_explained(subject, nearest, left, stages)[:-1]}; {_first_rows(search)}."
+        sentence = f"{sentences.not_explained(subject, nearest, unexplained, stages)[:-1]}; {_first_rows(search)}."
     (judged_solver, *_) = by_role(Role.JUDGED)
-    curves = {"the file": search.history.recorded, judged_solver: search.own, "best": columns}
-    ranking = [row_of(judged_solver, t.alpha, t.delta, t.discount, own_misfit, None)]
+    curves = {"the file": search.history.recorded, judged_solver: search.scene_run, "best": columns}
+    ranking = [row_of(judged_solver, t.alpha, t.delta, t.discount, scene_misfit, None)]
     if cause is not None:
         ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     return Answer(
@@ -633,11 +640,11 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         misfit=misfit,
         curves={name: (time, run[0]) for name, run in curves.items()},
         values={cause.id: cause.value} if cause and cause.value is not None else {},
-        unexplained=left,
+        unexplained=unexplained,
         nearest=nearest,
         alike=alike,
         evidence=tuple(stages),
-        pressures={name: run[1] for name, run in curves.items()} if len(search.own) > 1 else {},
+        pressures={name: run[1] for name, run in curves.items()} if len(search.scene_run) > 1 else {},
         slips=reading.corrected if explained else (),
     )
 
@@ -650,7 +657,7 @@ def _departure(search: ColumnSearch) -> Departure | None:
     rows = search.history.reading.stepping.rows[: search.rows]
     recorded = search.history.recorded[0, : search.rows]
     return replace(
-        evidence.measured(search.own[0, : search.rows], recorded, rows, 0.0), step=int(rows[departing[0]]) + 1
+        evidence.measured(search.scene_run[0, : search.rows], recorded, rows, 0.0), step=int(rows[departing[0]]) + 1
     )
 
 
@@ -669,14 +676,14 @@ def _stages(search: ColumnSearch) -> list[Stage]:
     words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
     note = reading.stepping.note
     stages = [Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})]
-    shares = search.over(search.own[:, : search.rows], search.rows)
-    for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.own), shares, strict=False):
+    shares = search.over(search.scene_run[:, : search.rows], search.rows)
+    for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.scene_run), shares, strict=False):
         beyond = np.flatnonzero(np.abs(share) > 1)
         of_column = f"the {name.replace('_', ' ')} alone "
         what = f"is {100 * misfit:.3g} % off, from row {beyond[0] + 1} on" if len(beyond) else "is the scene's"
         first = float(beyond[0] + 1) if len(beyond) else None
         stages.append(Stage(name, not len(beyond), of_column + what, {"misfit": misfit, "first_row": first}))
-    if search.rows < search.own.shape[1]:
+    if search.rows < search.scene_run.shape[1]:
         time = float(search.history.time[max(search.rows - 1, 0)])
         words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
         stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))

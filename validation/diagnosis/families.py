@@ -77,7 +77,7 @@ def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
     equals = []
     for explanation in ([verdict.best] if verdict.alike else []) + list(verdict.alike):
         v = explanation.fit.variant
-        ids = causes_of(target.column, explanation.ids, v, verdict.own.variant)
+        ids = causes_of(target.column, explanation.ids, v, verdict.scene_fit.variant)
         further = (LISTED[name].further_scene for name in ids)
         scene = next(filter(None, further), "a scene with less damping, over more periods")
         equals.append(_relative(ids, values_of(target.column, ids, v), scene))

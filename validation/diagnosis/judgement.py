@@ -18,9 +18,6 @@ from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
-from validation.diagnosis.forces.answer import is_scene
-from validation.diagnosis.forces.judge import judge
-from validation.diagnosis.forces.runs import OneChange
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
@@ -55,7 +52,7 @@ class Case:
     foreign: Foreign
     reading: Reading
     column: Rectangle
-    own: Variant
+    scene_variant: Variant
 
     @cached_property
     def target(self) -> Target:
@@ -72,7 +69,7 @@ class Case:
     @cached_property
     def scene_run(self) -> Histories:
         """The scene's own run at the steps of the history."""
-        return histories(self.target.column, [self.own], self.target.steps)
+        return histories(self.target.column, [self.scene_variant], self.target.steps)
 
     @property
     def expected(self) -> tuple[Array, Array]:
@@ -99,21 +96,20 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    pair = (DISPLACEMENT, PRESSURE)
     if has_swapped_columns(scene, foreign):
-        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
-    else:
-        answer = _judged(scene, foreign, tolerance)
-        pair = (DISPLACEMENT, SIDEWAYS)
-        is_frictional = features.FRICTION in features.of(scene)
-        if not (is_frictional and UNEXPLAINED in answer.causes and is_scene(scene, exchanged(foreign, *pair))):
-            return replace(answer, remedy=remedy_of(foreign, answer.slips))
-        answer = _judged(scene, exchanged(foreign, *pair), tolerance)
-    one, other = (name.replace("_", " ") for name in pair)
+        return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
+    answer = _judged(scene, foreign, tolerance)
+    return replace(answer, remedy=answer.remedy or remedy_of(foreign, answer.slips))
+
+
+def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
+    """Return the answer to a history with two columns in their places, and what to type for them to be there."""
     foreign = exchanged(foreign, *pair)
+    answer = _judged(scene, foreign, tolerance)
+    first, second = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
     remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
-    sentence = f"The {one} is in the column of the {other}, and the reverse. Read so: {answer.sentence}"
+    sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
 
@@ -127,7 +123,11 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):
-        return _with_friction(scene, foreign)
+        pair = (DISPLACEMENT, SIDEWAYS)
+        is_scene = of_friction.is_scene
+        if not is_scene(scene, foreign) and is_scene(scene, exchanged(foreign, *pair)):
+            return _of_swapped(scene, foreign, pair, tolerance)
+        return of_friction.answer_of(scene, foreign)
     column = rectangle_of(scene)
     if not features.linear(scene) and column is None:
         raise InputError(
@@ -152,7 +152,7 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     case, verdict = _best(cases)
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
-        verdict = Verdict(verdict.own, replace(verdict.best, moves=(), fit=verdict.own), True)
+        verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     theirs: RivalVerdict | None = None
     if not verdict.explains and scene.contact.law == "locked":
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
@@ -183,7 +183,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     fewest = min(len(case.reading.corrected) for case in cases)
     verdicts: list[tuple[Case, Verdict]] = []
     for case in cases:
-        verdict = simple(case.target, case.own)
+        verdict = simple(case.target, case.scene_variant)
         verdicts.append((case, verdict))
         # a slip of sign or unit beside another cause is less likely than that of a datum alone
         if verdict.explains and (len(case.reading.corrected) == fewest or verdict.same):
@@ -203,7 +203,7 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
 
 
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
-    target, scene_variant, best_fit = case.target, case.own, verdict.best.fit
+    target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
     stages = _stages(case)
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
@@ -217,7 +217,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     ids = all_causes if verdict.explained else [UNEXPLAINED]
     v = best_fit.variant if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
-    shown = verdict.best.fit if verdict.explained else verdict.own
+    shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
     first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
     refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
@@ -288,7 +288,7 @@ def _diverged(case: Case, factor: float) -> Answer:
     target, stages = case.target, _stages(case, factor)
     expected = case.expected[0]
     first_departure = evidence.unbounded(expected, target.displacement, target.rows)
-    v = case.own
+    v = case.scene_variant
     return Answer(
         scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
         departure=first_departure,
@@ -349,43 +349,6 @@ def _answer_of_rival(
         evidence=tuple(stages),
         own_model=best.model == DDA,
     )
-
-
-def _with_friction(scene: Scene, foreign: Foreign) -> Answer:
-    """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
-    read = of_friction.read(scene, foreign)
-    result = judge(scene, read.place, read.step, read.rounding)
-    ids = of_friction.ids_of(result, read)
-    t = scene.time
-    unexplained = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
-    near = {"causes": list(result.causes), "values": result.values, "left": unexplained}
-    softer = result.values.get("base-compliance", 0.0)
-    return Answer(
-        scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
-        departure=of_friction.departure_of(result, ids),
-        causes=ids,
-        opened=result.opened if result.explained else None,
-        sentence=of_friction.sentence(scene, result, ids, read.corrected),
-        notes=(*foreign.notes, *read.notes),
-        misfit=result.normal,
-        curves={"the file": (foreign.time, foreign.displacement)},
-        values=result.values if result.explained else {},
-        unexplained=0.0 if result.explained else unexplained,
-        nearest=None if result.explained else near,
-        alike=[_alone(one) for one in result.alike],
-        evidence=tuple(of_friction.stages(result, read)),
-        slips=read.corrected,
-    )
-
-
-def _alone(change: OneChange) -> dict[str, Any]:
-    """Return one of several changes that give the same rows, as plain data."""
-    values = {} if change.value is None else {change.id: change.value}
-    further = "another slope or coefficient of friction"
-    if "springs" in change.id:
-        further = CAUSES["springs-factor"].further_scene
-    return {"causes": [change.id], "values": values, "further_scene": further}
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:

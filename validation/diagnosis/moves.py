@@ -6,8 +6,10 @@ Where its numbers start is part of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -40,34 +42,55 @@ def fitted(name: str, number: str, starts: Sequence[float], **changes: Any) -> M
 
 UNITS = (1e-6, 1e-3, 1e3, 1e6)  # factors of data in other units
 BY_HAND = np.geomspace(0.1, 10, 24).tolist()
-FACTORS = (*BY_HAND, *UNITS)
-SOFTNESSES = [0.02, *np.linspace(-math.log(30), math.log(30), 24).tolist(), *np.log(UNITS).tolist()]
+STARTS = {
+    "by hand": BY_HAND,
+    "factors": [*BY_HAND, *UNITS],
+    "softnesses": [0.02, *np.linspace(-math.log(30), math.log(30), 24).tolist(), *np.log(UNITS).tolist()],
+}
 DISCOUNTS = (0.999, 0.99, 0.97, 0.93, 0.8, 0.5)
-DRAGS = (1.0, 10.0, 100.0)  # 1/s
 STIFFNESS_DRAGS = np.array([0.02, 0.2, 1.0])  # steps
 RAMPS = np.array([3.0, 8.0, 20.0])  # steps
-INERTIAS = (1 / 12, 0.5, 3.0, 12.0)  # 3 is a mass in the corners, 12 a twelfth that is missing
 HHT, CHUNG_HULBERT = (0.05, 0.15, 0.3), (0.2, 0.5, 0.8)  # e, and the spectral radius at high frequency
 PARTS = (2, 3, 4, 5, 8, 10, 20)  # steps of a program in one of the scene's
 UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
-LATE = (1.0, -1.0, 0.5, 2.0)  # steps, 1/2 the mean of two
 BANDS = np.geomspace(1e-4, 2.0, 44).tolist()  # over the static displacement
 FINE_BANDS = np.geomspace(1e-4, 2.0, 131).tolist()  # between closings of successive steps
 REOPENINGS = (0.0, 1e-3, 1.0)  # gap that opens over the penetration that closes; ntdda has 1e-3
-WRONG = (0.0, -1.0)  # missing, of the wrong sign
-TWICE = (0.5, 2.0)
+
+
+TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 def moves(target: Target, scene: Variant) -> list[Move]:
     """Return every way in which the catalogue's causes may be in a history of a scene."""
     return [
         *_integrator(target, scene),
-        *_output(target),
+        *_of_table("output", target, scene),
+        *_of_table("model", target, scene),
         *_model(target, scene),
-        fitted("own-weight", "weight", (0.5, 1.0)),
-        fixed("geometry-updated", updated=True),
         *_contact(target, scene),
     ]
+
+
+def _of_table(part: str, target: Target, scene: Variant) -> Iterator[Move]:
+    """Yield the changes of the table that a scene and what is recorded of it allow."""
+    met = {
+        "": True,
+        "locked": not scene.opens,
+        "pressure": target.pressure is not None,
+        "gravity": bool(target.column.gravity),
+        "poisson": bool(target.column.poisson),
+    }
+    for row in TABLE[part]:
+        if not met[row.get("when", "")]:
+            continue
+        for name, values in row.get("each", {}).items():
+            for value in values:
+                yield fixed(row["cause"], **{name: value})
+        if "free" in row:
+            starts = row["starts"]
+            starts = STARTS[starts] if isinstance(starts, str) else starts
+            yield fitted(row["cause"], row["free"], starts, **row.get("with", {}))
 
 
 def _integrator(target: Target, scene: Variant) -> list[Move]:
@@ -94,40 +117,19 @@ def _integrator(target: Target, scene: Variant) -> list[Move]:
     return [*candidates, fixed("velocity", secant=True)]
 
 
-def _output(target: Target) -> list[Move]:
-    candidates = [fixed("time-shift", shift=late) for late in (1, -1, 2, -2)]
-    if target.pressure is not None:
-        candidates += [fixed("pressure-shift", late=late) for late in LATE]
-        candidates.append(fitted("pressure-factor", "pressure_factor", TWICE))
-    candidates += [fixed("reported-point", point=place) for place in (1.0, -1.0)]
-    return [*candidates, fitted("reported-point", "point", (0.5, -0.5))]
-
-
 def _model(target: Target, scene: Variant) -> list[Move]:
-    candidates = [fitted(f"{name}-factor", name, FACTORS) for name in ("density", "young", "side")]
-    candidates.append(fitted("load-factor", "load", BY_HAND))
-    candidates += [fitted("height-factor", "tall", FACTORS), fitted("viscous-damping", "viscous", DRAGS)]
-    if not scene.opens:
-        step = np.mean(target.steps)
-        candidates.append(fitted("stiffness-damping", "structural", (step * STIFFNESS_DRAGS).tolist()))
-        # the loads of a ramp begin with none; a program may start from the acceleration of the full load all the same
-        for start in dict.fromkeys(("zero", scene.start)):
-            candidates.append(fitted("load-ramp", "ramp", (step * RAMPS).tolist(), start=start))
-        candidates += [fitted("inertia", "inertia", INERTIAS), fixed("one-spring", one_spring=True)]
-    if target.column.gravity:
-        candidates += [fixed("gravity-factor", gravity=part) for part in WRONG]
-        candidates.append(fitted("gravity-factor", "gravity", TWICE))
-    if target.pressure is not None:
-        candidates.append(fitted("load-factor", "displacement_factor", TWICE))
-    candidates.append(fitted("springs-factor", "softness", SOFTNESSES))
+    """Return the changes of the model whose numbers are those of the scene or of its steps."""
+    candidates = []
     if target.column.poisson:
-        candidates.append(fitted("springs-factor", "softness", SOFTNESSES, tied=False))
-        candidates.append(fixed("hypothesis", other_plane=True))
         candidates.append(fixed("poisson", poisson=-target.column.poisson))
-    candidates.append(fitted("poisson", "poisson", (0.05, 0.15, 0.3)))
-    candidates += [fixed("load-row", strain_load=part) for part in WRONG]
-    candidates += [fixed("coupling", coupling=part) for part in WRONG]
-    return [*candidates, *(fixed("stress-not-kept", kept=name) for name in ("springs", "stress"))]
+    if scene.opens:
+        return candidates
+    step = np.mean(target.steps)
+    candidates.append(fitted("stiffness-damping", "structural", (step * STIFFNESS_DRAGS).tolist()))
+    # the loads of a ramp begin with none; a program may start from the acceleration of the full load all the same
+    for start in dict.fromkeys(("zero", scene.start)):
+        candidates.append(fitted("load-ramp", "ramp", (step * RAMPS).tolist(), start=start))
+    return candidates
 
 
 def _contact(target: Target, scene: Variant) -> list[Move]:

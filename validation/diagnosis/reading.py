@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +51,22 @@ class Foreign:
     scale: Mapping[str, float] = field(default_factory=dict)
 
 
+def _pairs(text: str | None, option: str, theirs: str) -> dict[str, str]:
+    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``."""
+    pairs = {}
+    for part in filter(str.strip, (text or "").split(",")):
+        name, _, value = map(str.strip, part.partition("="))
+        if not value or name not in OURS:
+            raise _refused_option(text, option, theirs)
+        pairs[name] = value
+    return pairs
+
+
+def _refused_option(text: str | None, option: str, theirs: str) -> InputError:
+    rule = f"must be OURS={theirs} with ours among {', '.join(OURS)}"
+    return InputError(rule, field=option, value=repr(text))
+
+
 def parse_columns(text: str | None) -> dict[str, str]:
     """Return the mapping of ``time=t,displacement=uy``: our column to theirs.
 
@@ -58,13 +75,7 @@ def parse_columns(text: str | None) -> dict[str, str]:
     InputError
         A part is not ours=theirs, or names no column of ours.
     """
-    pairs = [part.partition("=") for part in (text or "").split(",") if part.strip()]
-    for ours, equals, theirs in pairs:
-        if not equals or not theirs.strip() or ours.strip() not in OURS:
-            raise InputError(
-                f"must be OURS=THEIRS with ours among {', '.join(OURS)}", field="--columns", value=repr(text)
-            )
-    return {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
+    return _pairs(text, "--columns", "THEIRS")
 
 
 def parse_scale(text: str | None) -> dict[str, float]:
@@ -76,19 +87,13 @@ def parse_scale(text: str | None) -> dict[str, float]:
         A part is not ours=factor, or a factor is no finite number other than zero.
     """
     factors = {}
-    for part in (text or "").split(","):
-        if not part.strip():
-            continue
-        ours, _, number = (piece.strip() for piece in part.partition("="))
+    for name, number in _pairs(text, "--scale", "FACTOR").items():
         try:
-            factor = float(number)
+            factors[name] = float(number)
         except ValueError:
-            factor = math.nan
-        if ours not in OURS or not math.isfinite(factor) or factor == 0:
-            raise InputError(
-                f"must be OURS=FACTOR with ours among {', '.join(OURS)}", field="--scale", value=repr(text)
-            )
-        factors[ours] = factor
+            raise _refused_option(text, "--scale", "FACTOR") from None
+    if not all(map(math.isfinite, factors.values())) or 0 in factors.values():
+        raise _refused_option(text, "--scale", "FACTOR")
     return factors
 
 
@@ -125,7 +130,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         for name in OURS[1:]
         if name in columns_of_file
     }
-    history = _checked(scaled, rounded, columns_of_file.get("dt"), path, _notes_of(columns_of_file, columns))
+    history = _checked(scaled, rounded, columns_of_file.get("dt"), path)
     return replace(history, names=columns, scale=scale)
 
 
@@ -230,10 +235,6 @@ def _bounded(rows: int, path: Path) -> None:
         )
 
 
-def _notes_of(columns_of_file: Mapping[str, Array], columns: Mapping[str, str]) -> tuple[str, ...]:
-    return () if PRESSURE in columns_of_file else ("no contact pressure in the file: only the displacement is judged",)
-
-
 # ---- checks -------------------------------------------------------------------------------------------------------
 
 
@@ -242,29 +243,29 @@ def _checked(
     rounded: Mapping[str, Array],
     dt: Array | None,
     path: Path,
-    notes: tuple[str, ...],
 ) -> Foreign:
     """Return the history without its row at t = 0."""
+    refused = partial(InputError, source=path)
     time = columns_of_file["time"]
+    pressure = columns_of_file.get(PRESSURE)
+    notes = () if pressure is not None else ("no contact pressure in the file: only the displacement is judged",)
     for name, values in columns_of_file.items():
         sound = np.isfinite(values) & (np.abs(values) < LARGEST)
         if not np.all(sound):
-            row = int(np.flatnonzero(~sound)[0]) + 1
+            row = int(np.argmin(sound)) + 1
             rule = f"must be finite numbers below {LARGEST:g} in size"
-            raise InputError(rule, source=path, field=name, value=f"{values[row - 1]} in row {row}")
-    if len(time) and np.any(np.diff(time) <= 0):
-        row = int(np.flatnonzero(np.diff(time) <= 0)[0]) + 2
-        raise InputError(
-            "must increase from row to row", source=path, field="time", value=f"{time[row - 1]:g} in row {row}"
-        )
+            raise refused(rule, field=name, value=f"{values[row - 1]} in row {row}")
+    later = np.diff(time) > 0
+    if not np.all(later):
+        row = int(np.argmin(later)) + 2
+        raise refused("must increase from row to row", field="time", value=f"{time[row - 1]:g} in row {row}")
     if len(time) and time[0] < 0:
-        raise InputError("must not be negative", source=path, field="time", value=f"{time[0]:g} in row 1")
+        raise refused("must not be negative", field="time", value=f"{time[0]:g} in row 1")
     keep = time > 0
-    if int(np.sum(keep)) < LEAST_ROWS:
-        raise InputError(f"must hold at least {LEAST_ROWS} rows after t = 0", source=path, value=int(np.sum(keep)))
+    if np.sum(keep) < LEAST_ROWS:
+        raise refused(f"must hold at least {LEAST_ROWS} rows after t = 0", value=int(np.sum(keep)))
     if not np.all(keep):
         notes = (*notes, "the row at t = 0 is ignored")
-    pressure = columns_of_file.get(PRESSURE)
     return Foreign(
         time[keep],
         columns_of_file[DISPLACEMENT][keep],
@@ -311,13 +312,12 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
         note = f"the times are {slip:g} times those of the scene: a unit error"
         return [Stepping(inner.steps, inner.rows, note, slip)]
-    ways_to_read = []
     if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
         return [Stepping(foreign.steps, every, "the times are not uniform: the program changed its step")]
-    ways_to_read += _multiples(gaps, step)
-    if not ways_to_read or len(ways_to_read[0].rows) != len(ways_to_read[0].steps):
-        ways_to_read += _own_steps(gaps, usual, step)
-    return ways_to_read
+    multiples = _multiples(gaps, step)
+    if multiples and len(multiples[0].rows) == len(multiples[0].steps):
+        return multiples
+    return multiples + _own_steps(gaps, usual, step)
 
 
 def _multiples(gaps: Array, step: float) -> list[Stepping]:

@@ -15,14 +15,18 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
-from validation.solvers.registry import get_solver
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role, get_solver
 from validation.solvers.user import UNITS
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
 FURTHEST = 1e3  # times its first row, beyond which the history of a scene of one block is unstable
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
-FIELDS = {DISPLACEMENT: "displacement", PRESSURE: "pressure", SIDEWAYS: "sideways"}  # of `Foreign`
-ROUNDINGS = {"displacement": "rounding", "pressure": "pressure_rounding", "sideways": "sideways_rounding"}
+FIELDS = {  # of a column and its rounding in `Foreign`
+    DISPLACEMENT: ("displacement", "rounding"),
+    PRESSURE: ("pressure", "pressure_rounding"),
+    SIDEWAYS: ("sideways", "sideways_rounding"),
+}
 NEAR, FAR = (
     3.5,
     4.5,
@@ -62,27 +66,26 @@ def words_of_slips(slips: Sequence[Slip]) -> dict[str, str]:
     return {cause: " and ".join(slip.words for slip in slips if slip.cause == cause) for cause in causes}
 
 
-def exchanged(foreign: Foreign, one: str, other: str) -> Foreign:
+def exchanged(foreign: Foreign, first: str, second: str) -> Foreign:
     """Return a history with two columns in each other's place."""
-    names = {one: foreign.names.get(other, other), other: foreign.names.get(one, one)}
-    scale = {one: foreign.scale.get(other, 1.0), other: foreign.scale.get(one, 1.0)}
-    field, other_field = FIELDS[one], FIELDS[other]
-    places = {field: other_field, other_field: field}
-    places |= {ROUNDINGS[field]: ROUNDINGS[other_field], ROUNDINGS[other_field]: ROUNDINGS[field]}
-    columns = {place: getattr(foreign, source) for place, source in places.items()}
-    return replace(foreign, names=foreign.names | names, scale=foreign.scale | scale, **columns)
+    names = {first: foreign.names.get(second, second), second: foreign.names.get(first, first)}
+    scale = {first: foreign.scale.get(second, 1.0), second: foreign.scale.get(first, 1.0)}
+    places = FIELDS[first] + FIELDS[second]
+    sources = FIELDS[second] + FIELDS[first]
+    columns = {place: getattr(foreign, source) for place, source in zip(places, sources, strict=True)}
+    return replace(foreign, names={**foreign.names, **names}, scale={**foreign.scale, **scale}, **columns)
 
 
 def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:
     """Whether displacement and pressure have each other's size, and far from their own."""
-    if foreign.pressure is None or np.max(np.abs(foreign.displacement)) <= np.max(np.abs(foreign.pressure)):
+    if foreign.pressure is None or largest(foreign.displacement) <= largest(foreign.pressure):
         return False  # metres are smaller numbers than pascals
-    run = get_solver("dda").solve(scene)
+    run = get_solver(by_role(Role.JUDGED)[0]).solve(scene)
     if run.history is None:
         return False
     with np.errstate(all="ignore"):
-        expected = np.log10([np.max(np.abs(run.displacement)), np.max(np.abs(run.contact_pressure))])
-        recorded = np.log10([np.max(np.abs(foreign.displacement)), np.max(np.abs(foreign.pressure))])
+        expected = np.log10([largest(run.displacement), largest(run.contact_pressure)])
+        recorded = np.log10([largest(foreign.displacement), largest(foreign.pressure)])
         near = np.abs(recorded[::-1] - expected) < NEAR
         far = np.abs(recorded - expected) > FAR
     return bool(np.all(near & far))

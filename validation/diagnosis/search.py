@@ -151,7 +151,7 @@ def _period(target: Target) -> float:
 class Verdict:
     """What the search came to."""
 
-    own: Fit  # of the scene as it is
+    scene_fit: Fit  # of the scene as it is
     best: Explanation  # what explains it, or comes nearest
     explained: bool
     alike: tuple[Explanation, ...] = ()  # others that explain it as well
@@ -172,7 +172,7 @@ class Verdict:
     @property
     def left(self) -> float:
         """Share of the difference that the best explanation leaves [-]."""
-        return 0.0 if self.same else min(self.best.fit.misfit / max(self.own.misfit, 1e-300), 1.0)
+        return 0.0 if self.same else min(self.best.fit.misfit / max(self.scene_fit.misfit, 1e-300), 1.0)
 
 
 # ---- the decision ---------------------------------------------------------------------------------------------------
@@ -329,12 +329,12 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
     few = _few(target, scene, before.single)
     if before.reached:
         return before  # one cause would do
-    if target.spread > 3 * HIDDEN_TWO * before.own.misfit:
+    if target.spread > 3 * HIDDEN_TWO * before.scene_fit.misfit:
         return before  # noise hides too much for two causes to be told
     pairs: list[tuple[Move, ...]] = [pair for pair in combinations(few, 2) if _together(pair)]
     damping = tuple(move for move in moves(target, scene) if move.id in RAYLEIGH)
     pairs += [damping] if len(damping) == len(RAYLEIGH) else []
-    verdict = decided(target, before.own, fitted(target, scene, pairs))
+    verdict = decided(target, before.scene_fit, fitted(target, scene, pairs))
     if verdict.reached or before.around < FAULT:
         return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))
     return _nearer(verdict, beside(target, scene, before))
@@ -353,8 +353,9 @@ def beside(target: Target, scene: Variant, before: Verdict) -> Verdict:
     faults += [move for move in moves(target, scene) if move.changes.get("reopening") == OTHER_PROGRAMS]
     explanations = fitted(target, scene, [(move, *around) for move in faults if _together((move, *around))])
     explanations = [*explanations[:3], *_heavy(target, explanations[:3])]
-    fine = [f for f in explanations if accepted(target, before.own, f.fit)]
-    last = decided(target, before.own, [_without_excess(target, before.own, f) for f in fine] or explanations)
+    fine = [f for f in explanations if accepted(target, before.scene_fit, f.fit)]
+    needed = [_without_excess(target, before.scene_fit, f) for f in fine]
+    last = decided(target, before.scene_fit, needed or explanations)
     return _nearer(last, before)
 
 

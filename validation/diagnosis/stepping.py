@@ -109,7 +109,6 @@ class Stepper:
 
     def __init__(self, rectangle: Rectangle, variants: Sequence[Variant], unknowns: int) -> None:
         self.rectangle, self.variants, self.d = rectangle, variants, unknowns
-
         # every number of the variants by its name, one array each
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
@@ -225,7 +224,7 @@ class Stepper:
         return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
 
     def _damping(self, q: Equations) -> Array:
-        return self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness
+        return np.asarray(self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness)
 
     def matrix(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step, by stepping the unit vectors, (variants, 3 + 3 d, 3 + 3 d)."""

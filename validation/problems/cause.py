@@ -266,11 +266,11 @@ def _units(answer: Columns, runs: Runs) -> Cause | None:
     remainder = runs.apart({name: answer[name] / factor for name, factor in factors.items()}, exact)
     if len({*factors.values()}) == 1 or remainder > 1:
         return None
-    other = {name: factor for name, factor in factors.items() if factor != 1}
+    factors_of_columns = {name: factor for name, factor in factors.items() if factor != 1}
     sentence = " and ".join(
-        f"{name} is in other units, {factor:g} times the motion's" for name, factor in other.items()
+        f"{name} is in other units, {factor:g} times the motion's" for name, factor in factors_of_columns.items()
     )
-    return Cause(sentence, ("unit",), other, (), remainder)
+    return Cause(sentence, ("unit",), factors_of_columns, (), remainder)
 
 
 def _size(name: str, reference: Standard) -> float:
@@ -286,14 +286,14 @@ class Search:
 
     def causes(self) -> list[Cause]:
         """Return all causes that leave less than the bar, the one that leaves least first."""
-        causes = sorted(self._schemes(), key=lambda one: one.left)
+        causes = sorted(self._schemes(), key=lambda each: each.left)
         if causes and causes[0].left <= SAME:  # digit for digit
             return causes
         exact = self.runs.exact()
         cheap = self._is_cheap()
         for base in self._bases(exact, cheap):
             causes += [*self._laws(base), *self._changes(base, cheap)]
-        return sorted(causes, key=lambda one: (one.left, len(one.ids)))
+        return sorted(causes, key=lambda each: (each.left, len(each.ids)))
 
     def _is_cheap(self) -> bool:
         """Whether runs take so little that fits may begin from many numbers."""
@@ -386,36 +386,36 @@ def _with(name: str, words: str, values: dict[str, float], remainder: float, bas
 
 def _named(causes: Sequence[Cause]) -> Cause:
     """Return the usual one of the causes that leave hardly more than the least; nothing where these are too many."""
-    near = alike(causes, lambda one: one.left, CLEAR, BAR / CLEAR**2)
-    fewest = min(len(one.ids) for one in near)
+    near = alike(causes, lambda each: each.left, CLEAR, BAR / CLEAR**2)
+    fewest = min(len(each.ids) for each in near)
     distinct: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
-    for one in sorted((one for one in near if len(one.ids) == fewest), key=_rank):
-        distinct.setdefault((one.ids, *(significant(value, 2) for value in one.values.values())), one)
+    for each in sorted((each for each in near if len(each.ids) == fewest), key=_rank):
+        distinct.setdefault((each.ids, *(significant(value, 2) for value in each.values.values())), each)
     best, *others = distinct.values()
     if not others:
         return best
     if len(others) >= MOST_ALIKE:
-        names = ", ".join(_short(one) for one in distinct.values())
+        names = ", ".join(_short(each) for each in distinct.values())
         return Cause(
             f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, distinct.values()))
         )
     first, joint, _ = best.sentence.partition("; and ")
-    same_rows = tuple(one.sentence.removeprefix(first + joint) if joint else one.sentence for one in others)
+    same_rows = tuple(each.sentence.removeprefix(first + joint) if joint else each.sentence for each in others)
     sentence = f"{best.sentence} (the same rows: {'; or '.join(same_rows)})"
     return Cause(sentence, best.ids, best.values, same_rows, best.left)
 
 
-def _short(one: Cause) -> str:
+def _short(each: Cause) -> str:
     """Return a cause by its ids and the number of the last, ``friction-factor 1.1``."""
-    value = one.values.get(one.ids[-1])
-    return " and ".join(one.ids) + ("" if value is None else f" {value:.4g}")
+    value = each.values.get(each.ids[-1])
+    return " and ".join(each.ids) + ("" if value is None else f" {value:.4g}")
 
 
-def _rank(one: Cause) -> tuple[int, float]:
+def _rank(each: Cause) -> tuple[int, float]:
     """Order causes by how usual they are, then by what they leave; one without a fitted number comes first."""
-    if not one.values:
-        return -1, one.left
-    return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in one.ids), one.left
+    if not each.values:
+        return -1, each.left
+    return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in each.ids), each.left
 
 
 # ---- compare --------------------------------------------------------------------------------------------------------

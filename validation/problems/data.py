@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Final, Literal, Self
+import re
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene
 
 PACK: Final = "3.0"
@@ -43,6 +43,7 @@ MEANINGS = {
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
+UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
 
 
@@ -77,6 +78,17 @@ class Data(BaseModel):
     """Plain data: immutable, unknown keys refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @classmethod
+    def of(cls, source: object, **others: Any) -> Self:
+        """Return the data whose names without their units are attributes of a source, and others by their names."""
+        values: dict[str, Any] = dict(others)
+        for name in cls.model_fields:
+            plain = UNIT_OF_NAME.sub("", name)
+            if name not in values and hasattr(source, plain):
+                value = getattr(source, plain)
+                values[name] = INFINITE if value == math.inf else value
+        return cls(**values)
 
 
 class BlockData(Data):
@@ -251,43 +263,19 @@ class SubmissionData(Data):
 
 def block_data(scene: Scene) -> BlockData:
     """Return the block of a scene."""
-    b = scene.block
-    (left, low), (right, high) = b.outline[0], b.outline[2]
-    return BlockData(
-        width_m=right - left,
-        height_m=high - low,
-        density_kg_per_m3=b.density,
-        young_Pa=b.young,
-        poisson=b.poisson,
-        hypothesis=b.hypothesis,
-        velocity_m_per_s=b.velocity,
-        tilt_deg=b.tilt,
-    )
+    (left, low), (right, high) = scene.block.outline[0], scene.block.outline[2]
+    return BlockData.of(scene.block, width_m=right - left, height_m=high - low, thickness_m=1.0)
 
 
 def contact_data(scene: Scene) -> ContactData:
     """Return the springs of a scene."""
     c = scene.contact
-    return ContactData(
-        law=c.law,
-        normal_stiffness_N_per_m=c.stiffness,
-        shear_stiffness_N_per_m=c.shear,
-        friction_deg=c.friction,
-        cohesion_Pa=c.cohesion,
-        gap_m=c.gap,
-    )
+    return ContactData.of(c, normal_stiffness_N_per_m=c.stiffness, shear_stiffness_N_per_m=c.shear)
 
 
 def load_data(scene: Scene) -> LoadData:
     """Return the loads of a scene."""
-    q = scene.load
-    return LoadData(
-        pressure_Pa=q.pressure,
-        eccentricity_m=q.eccentricity,
-        traction_Pa=q.traction,
-        gravity_m_per_s2=q.gravity,
-        slope_deg=q.slope,
-    )
+    return LoadData.of(scene.load)
 
 
 def column_data(scene: Scene) -> ColumnData | None:
@@ -301,80 +289,27 @@ def column_data(scene: Scene) -> ColumnData | None:
     c = scene.column
     if c is None:
         return None
-    layers = [
-        LayerData(
-            thickness_m=layer.thickness,
-            density_kg_per_m3=layer.density,
-            young_Pa=_or_infinite(layer.young),
-            poisson=layer.poisson,
-            velocity_m_per_s=layer.velocity,
-        )
-        for layer in c.layer
-    ]
-    bonded = c.law == "bonded"
-    joints = [JointData(height_m=joint.height, stiffness_Pa_per_m=joint.stiffness) for joint in c.joint]
-    return ColumnData(
-        motion=c.motion,
-        law=c.law,
-        layers=tuple(layers),
-        joints=tuple(joints) if bonded else (),
-        contacts=_column_contacts(c),
-        gravity_m_per_s2=c.gravity if c.law == "unilateral" else 0.0,
-        settled=c.settled,
-        base=_base_data(c),
-        heights_m=c.heights,
-        input=_input_data(scene),
-    )
-
-
-def _or_infinite(value: float) -> float | Literal["inf"]:
-    return INFINITE if math.isinf(value) else value
-
-
-def _column_contacts(column: ColumnSection) -> tuple[ColumnContactData, ...]:
-    """Return the contacts with their own numbers: friction is the strength that it amounts to."""
     contacts = []
-    for contact in column.contacts:
+    for contact in c.contacts:  # friction is the strength that it amounts to
         strength = None if math.isinf(contact.strength) else contact.strength
-        stiffness = _or_infinite(contact.stiffness)
-        contacts.append(
-            ColumnContactData(
-                height_m=contact.height, stiffness_Pa_per_m=stiffness, gap_m=contact.gap, strength_Pa=strength
-            )
-        )
-    return tuple(contacts)
-
-
-def _base_data(column: ColumnSection) -> BaseData:
-    """Return what a column stands on; springs that open or slip are the lowest of its contacts."""
-    if column.base == "springs" and column.law != "bonded":
-        return BaseData(kind="rigid", stiffness_Pa_per_m=None, impedance_Pa_s_per_m=None)
-    return BaseData(kind=column.base, stiffness_Pa_per_m=column.base_stiffness, impedance_Pa_s_per_m=column.impedance)
-
-
-def _input_data(scene: Scene) -> InputData | None:
-    """Return what drives a scene, None where weight and velocities alone do.
-
-    Raises
-    ------
-    InputError
-        A record drives it, which plain data do not hold.
-    """
-    if scene.stated_input is None:
-        return None
-    drive = scene.input
-    if drive.shape is None:
+        contacts.append(ColumnContactData.of(contact, strength_Pa=strength))
+    base = BaseData.of(c, kind=c.base, stiffness_Pa_per_m=c.base_stiffness)
+    if c.base == "springs" and c.law != "bonded":  # springs that open or slip are the lowest of the contacts
+        base = BaseData(kind="rigid", stiffness_Pa_per_m=None, impedance_Pa_s_per_m=None)
+    drive = scene.stated_input
+    if drive is not None and drive.shape is None:
         raise InputError(
             "must be a shape in a problem, whose data hold no record",
             source=scene.name,
             field="input.shape",
             value="a record",
         )
-    return InputData(
-        at=drive.at,
-        shape=drive.shape,
-        velocity_m_per_s=drive.velocity,
-        pressure_Pa=drive.pressure,
-        frequency_Hz=drive.frequency,
-        duration_s=drive.duration,
+    return ColumnData.of(
+        c,
+        layers=tuple(map(LayerData.of, c.layer)),
+        joints=tuple(map(JointData.of, c.joint)) if c.law == "bonded" else (),
+        contacts=tuple(contacts),
+        gravity_m_per_s2=c.gravity if c.law == "unilateral" else 0.0,
+        base=base,
+        input=None if drive is None else InputData.of(drive),
     )

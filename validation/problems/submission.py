@@ -7,6 +7,7 @@ import difflib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -52,30 +53,31 @@ def read_submission(directory: Path, own_problem: Problem | None = None) -> Subm
     """
     if not directory.is_dir():
         raise InputError(f"must be a directory with {FILE} and one CSV file", source=directory, advice=EXPORT)
-    data = _data(directory / FILE)
-    posed = own_problem or _problem(directory / FILE, data.problem)
-    if data.problem != posed.name:
+    path = directory / FILE
+    data = _data(path)
+    if own_problem is None and data.problem not in PROBLEMS:
+        near = difflib.get_close_matches(data.problem, PROBLEMS, n=1)
         raise InputError(
-            f"must be {posed.name!r}, the scene's name",
-            source=directory / FILE,
+            f"must be among {', '.join(PROBLEMS)}",
+            source=path,
             field="problem",
             value=repr(data.problem),
+            advice=f"did you mean {near[0]}?" if near else None,
         )
-    columns = _reported(directory / FILE, data, posed.scene.run.columns)
-    table = _table(directory)
-    return Submission(data, posed, _history(table, posed, columns))
+    posed = own_problem or problem(data.problem)
+    if data.problem != posed.name:
+        raise InputError(
+            f"must be {posed.name!r}, the scene's name", source=path, field="problem", value=repr(data.problem)
+        )
+    columns = _reported(path, data, posed.scene.run.columns)
+    return Submission(data, posed, _history(_table(directory), posed, columns))
 
 
 def _data(path: Path) -> SubmissionData:
     stated = _object(path)
     if "pack" in stated and stated["pack"] != PACK:
-        raise InputError(
-            f"must be {PACK!r}, the version of this pack",
-            source=path,
-            field="pack",
-            value=repr(stated["pack"]),
-            advice=EXPORT,
-        )
+        rule = f"must be {PACK!r}, the version of this pack"
+        raise InputError(rule, source=path, field="pack", value=repr(stated["pack"]), advice=EXPORT)
     try:
         data = SubmissionData.model_validate(stated)
     except ValidationError as error:
@@ -114,30 +116,16 @@ def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     return dict(pairs)
 
 
-def _problem(path: Path, name: str) -> Problem:
-    if name in PROBLEMS:
-        return problem(name)
-    near = difflib.get_close_matches(name, PROBLEMS, n=1)
-    raise InputError(
-        f"must be among {', '.join(PROBLEMS)}",
-        source=path,
-        field="problem",
-        value=repr(name),
-        advice=f"did you mean {near[0]}?" if near else None,
-    )
-
-
 def _reported(path: Path, data: SubmissionData, columns: Sequence[str]) -> list[str]:
     """Return the columns of the history that the table has to hold."""
-    names = [united(column) for column in columns]
+    names = ", ".join(map(united, columns))
+    refused = partial(InputError, source=path, field="not_reported")
     for name in data.not_reported:
-        if name not in names:
-            raise InputError(f"must be among {', '.join(names)}", source=path, field="not_reported", value=repr(name))
+        if name not in map(united, columns):
+            raise refused(f"must be among {names}", value=repr(name))
     reported = [column for column in columns if united(column) not in data.not_reported]
     if not reported:
-        raise InputError(
-            "must leave a column to judge", source=path, field="not_reported", value=f"all of {', '.join(names)}"
-        )
+        raise refused("must leave a column to judge", value=f"all of {names}")
     return reported
 
 
@@ -206,48 +194,38 @@ def _numbers(path: Path, names: Sequence[str], number: int, row: Sequence[str]) 
 
 
 def _number(path: Path, field: str, cell: str) -> float:
+    refused = partial(InputError, source=path, field=field)
     try:
         if "_" in cell or not cell.isascii():  # Python's own ways to write a number
             raise ValueError
         value = float(cell)
     except ValueError:
         advice = "a decimal comma?" if cell.count(",") == 1 else None
-        raise InputError("must be a number", source=path, field=field, value=repr(cell), advice=advice) from None
+        raise refused("must be a number", value=repr(cell), advice=advice) from None
     if not np.isfinite(value):
-        raise InputError("must be a finite number", source=path, field=field, value=cell)
+        raise refused("must be a finite number", value=cell)
     if abs(value) > LARGEST:
-        raise InputError(f"must be at most {LARGEST:g} in size", source=path, field=field, value=cell)
+        raise refused(f"must be at most {LARGEST:g} in size", value=cell)
     return value
 
 
 def _check_header(path: Path, names: Sequence[str], posed: Problem, columns: Sequence[str]) -> None:
     unit_by_name = {TIME: "s"} | {united(column): unit(column) for column in columns}
-    if between := next((s for s in SEPARATORS if TIME in names[0].split(s)[:-1]), ""):
-        raise InputError(
-            "must be separated by commas", source=path, field="header", value=f"{SEPARATORS[between]}: {names[0]!r}"
-        )
+    refused = partial(InputError, source=path, field="header")
+    for mark, separator in SEPARATORS.items():
+        if TIME in names[0].split(mark)[:-1]:
+            raise refused("must be separated by commas", value=f"{separator}: {names[0]!r}")
     for place, name in enumerate(names, start=1):
         if not name:
-            raise InputError(
-                f"column {place}: must be among {', '.join(unit_by_name)}", source=path, field="header", value="no name"
-            )
+            raise refused(f"column {place}: must be among {', '.join(unit_by_name)}", value="no name")
         if name not in unit_by_name:
-            raise InputError(
-                f"{name}: {_rule(name, unit_by_name, posed)}", source=path, field="header", value=repr(name)
-            )
+            raise refused(f"{name}: {_rule(name, unit_by_name, posed)}", value=repr(name))
         if names.count(name) > 1:
-            raise InputError(
-                f"{name}: must appear once", source=path, field="header", value=f"it {names.count(name)} times"
-            )
+            raise refused(f"{name}: must appear once", value=f"it {names.count(name)} times")
     for name in unit_by_name:
         if name not in names:
-            raise InputError(
-                f"{name}: is required",
-                source=path,
-                field="header",
-                value=", ".join(names),
-                advice=None if name == TIME else f"not_reported in {FILE} is for what the program cannot report",
-            )
+            advice = None if name == TIME else f"not_reported in {FILE} is for what the program cannot report"
+            raise refused(f"{name}: is required", value=", ".join(names), advice=advice)
 
 
 def _rule(name: str, unit_by_name: dict[str, str], posed: Problem) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -115,42 +116,33 @@ def _comes_down(scene: Scene) -> float:
     return quarter_period(width, height, abs(math.radians(scene.block.tilt)), scene.load.gravity)
 
 
-SETTLES = 1e-3  # of what the tilt lifts the other corner: what a corner that still counts as rigid gives way
-
-
 def _refuse_other_rocking(scene: Scene) -> None:
+    refused = partial(InputError, source=scene.name)
+    b, c, tilt = scene.block, scene.contact, abs(math.radians(scene.block.tilt))
     apart = [f.name for f in features.FEATURES if f.name in features.of(scene) and f.name not in OF_ROCKING]
     if apart:
-        raise InputError(f"no exact motion is known of a block that turns with {', '.join(apart)}", source=scene.name)
-    if scene.block.tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
-        raise InputError(
-            "a block that turns is known exactly where it is let go from a tilt, by weight", source=scene.name
-        )
-    c, turns = scene.contact, "the block does not turn about its corner alone"
-    if c.gap or scene.block.velocity or c.cohesion:
-        raise InputError(f"no exact motion is known: {turns}: it has a gap, a velocity or cohesion", source=scene.name)
+        raise refused(f"no exact motion is known of a block that turns with {', '.join(apart)}")
+    if tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
+        raise refused("a block that turns is known exactly where it is let go from a tilt, by weight")
+    if c.gap or b.velocity or c.cohesion:
+        turns = "the block does not turn about its corner alone"
+        raise refused(f"no exact motion is known: {turns}: it has a gap, a velocity or cohesion")
     width, height = _sizes(scene)
-    needed = math.degrees(math.atan(friction_needed(width, height, abs(math.radians(scene.block.tilt)))))
+    needed = math.degrees(math.atan(friction_needed(width, height, tilt)))
     if c.shear == 0 or (c.friction is not None and c.friction <= needed):
-        raise InputError(
-            f"must be above {needed:.4g} degrees, else the corner slides",
-            source=scene.name,
-            field="contact.friction",
-            value="no shear springs" if c.shear == 0 else format(c.friction, "g"),
-        )
-    weight = scene.block.mass * scene.load.gravity
-    settles = weight / min(c.stiffness, c.shear) + weight * height / (scene.block.young * width)
-    if settles > SETTLES * width * math.sin(abs(math.radians(scene.block.tilt))):
-        raise InputError("no exact motion is known: springs or block are not rigid beside the tilt", source=scene.name)
+        friction = "no shear springs" if c.shear == 0 else format(c.friction, "g")
+        rule = f"must be above {needed:.4g} degrees, else the corner slides"
+        raise refused(rule, field="contact.friction", value=friction)
+    weight = b.mass * scene.load.gravity
+    settles = weight / min(c.stiffness, c.shear) + weight * height / (b.young * width)
+    if settles > SETTLES * width * math.sin(tilt):
+        raise refused("no exact motion is known: springs or block are not rigid beside the tilt")
     if set(scene.run.columns) != {"rotation"}:
-        raise InputError(
-            "must be rotation alone, which is known exactly",
-            source=scene.name,
-            field="run.columns",
-            value=", ".join(scene.run.columns),
-        )
+        columns = ", ".join(scene.run.columns)
+        raise refused("must be rotation alone, which is known exactly", field="run.columns", value=columns)
 
 
+SETTLES = 1e-3  # of what the tilt lifts the other corner: what a corner that still counts as rigid gives way
 OF_ROCKING = (features.WEIGHT, features.UNILATERAL, features.FRICTION, features.ROTATION)
 
 

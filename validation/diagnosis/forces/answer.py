@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from validation.diagnosis import sentences
-from validation.diagnosis.causes import UNEXPLAINED, all_benign, words_of
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign, words_of
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding
+from validation.diagnosis.fits.bar import last_digits, significant
+from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding, judge
 from validation.diagnosis.forces.laws import body_of
-from validation.diagnosis.forces.runs import agreement, at_step, displacements
+from validation.diagnosis.forces.runs import DDA, OneChange, agreement, at_step, displacements
+from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
-from validation.diagnosis.readings import Slip, words_of_slips
+from validation.diagnosis.readings import Slip, remedy_of, words_of_slips
 from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
@@ -81,34 +85,32 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
             f"{scene.time.step:.6g} s",
             advice=f"if that is the program's step, use --set time.step={last:.6g}",
         )
-    if np.ptp(steps) > UNIFORM * steps[0] or stepping.factor != 1:
-        raise InputError(
-            "with friction all steps must be equal, in seconds", source=scene.name, field="time", value="others"
-        )
+    refused = partial(InputError, "with friction all steps must be equal, in seconds", source=scene.name, field="time")
+    if stepping.factor != 1:
+        value = f"{stepping.factor:g} times the scene's"
+        raise refused(value=value, advice=f"use {remedy_of(foreign, [Slip('unit', 'time', stepping.factor)])}")
+    if np.ptp(steps) > UNIFORM * steps[0]:
+        raise refused(value="others")
     place = np.column_stack([foreign.sideways, foreign.displacement])
     units = [
         last_digits(column) if unit is None else unit
         for column, unit in zip(place.T, (foreign.sideways_rounding, foreign.rounding), strict=True)
     ]
-    signs = [_sign(column, load) for column, load in zip(place.T, body_of(scene).load, strict=True)]
+    # a column goes with its load at first
+    first = np.sum(place[: max(4, len(place) // 50)], axis=0)
+    signs = np.where(first * body_of(scene).load < 0, -1.0, 1.0)
     names = SIDEWAYS, DISPLACEMENT
     corrected = [Slip("sign", name, -1.0) for name, sign in zip(names, signs, strict=True) if sign < 0]
     step = float(np.mean(steps))
-    factor = _unit(scene, step, place)
+    factor = 1.0
+    run = displacements(at_step(scene, step, len(place)))
+    if run is not None and np.any(run) and np.any(place):
+        ratio = math.log10(largest(place) / largest(run))
+        factor = next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
     if factor != 1:
         corrected += [Slip("unit", name, factor) for name in names]
     notes = (stepping.note,) if stepping.note else ()
     return SlopeReading(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
-
-
-def _unit(scene: Scene, step: float, place: Array) -> float:
-    """Return the power of ten by which both displacements are larger than those of the scene's own run, else one."""
-    run = displacements(at_step(scene, step, len(place)))
-    size = 0.0 if run is None else largest(run)
-    if size == 0 or not np.any(place):
-        return 1.0
-    ratio = math.log10(largest(place) / size)
-    return next((10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER), 1.0)
 
 
 def is_scene(scene: Scene, foreign: Foreign) -> bool:
@@ -130,67 +132,77 @@ def _check(scene: Scene) -> None:
     features.refuse_sweep(scene)
 
 
-def _sign(column: Array, load: float) -> float:
-    """Return the factor that makes a column go with its load at first."""
-    first = float(np.sum(column[: max(4, len(column) // 50)]))
-    return -1.0 if first * load < 0 else 1.0
+def answer_of(scene: Scene, foreign: Foreign) -> Answer:
+    """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
+    reading = read(scene, foreign)
+    result = judge(scene, reading.place, reading.step, reading.rounding)
+    ids = [*reading.slips, *result.causes] if result.explained else [UNEXPLAINED]
+    departure = None
+    if not all_benign(ids):
+        first = 1 if reading.corrected and result.explained else result.first
+        departure = Departure(first or 1, "offset")
+    t = scene.time
+    softer = result.values.get("base-compliance", 0.0)
+    answer = Answer(
+        scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
+        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
+        departure=departure,
+        causes=ids,
+        opened=result.opened,
+        sentence=sentence(scene, result, ids, departure, reading.corrected),
+        notes=(*foreign.notes, *reading.notes),
+        misfit=result.normal,
+        curves={"the file": (foreign.time, foreign.displacement)},
+        values=result.values,
+        alike=[_alone(change) for change in result.alike],
+        evidence=tuple(stages(result, reading)),
+        slips=reading.corrected,
+    )
+    if result.explained:
+        return answer
+    left = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
+    nearest = {"causes": list(result.causes), "values": result.values, "left": left}
+    return replace(answer, opened=None, values={}, unexplained=left, nearest=nearest, slips=())
 
 
-def ids_of(result: ContactFinding, read: SlopeReading) -> list[str]:
-    """Return the ids of an answer."""
-    return [*read.slips, *result.causes] if result.explained else [UNEXPLAINED]
-
-
-def departure_of(result: ContactFinding, ids: Sequence[str]) -> Departure | None:
-    """Return where the scene's own law is left; None if nothing but what surrounds a block is found."""
-    if all_benign(ids):
-        return None
-    first = 1 if {"sign", "unit"} & set(ids) else result.first
-    return Departure(first or 1, "offset")
+def _alone(change: OneChange) -> dict[str, Any]:
+    """Return one of several changes that give the same rows, as plain data."""
+    values = {} if change.value is None else {change.id: change.value}
+    further = "another slope or coefficient of friction"
+    if "springs" in change.id:
+        further = CAUSES["springs-factor"].further_scene
+    return {"causes": [change.id], "values": values, "further_scene": further}
 
 
 def stages(result: ContactFinding, read: SlopeReading) -> list[Stage]:
     """Return what was measured: signs, normal law, friction."""
     per_cents = {name: 100 * share for name, share in result.shares.items()}
     shares = f"consistent in {per_cents['consistent']:.3g} % of the steps, lagged in {per_cents['lagged']:.3g} %"
-    telling = f"{result.telling} steps tell them apart"
-    blurred = "; the digits of the file do not show it" if result.tolerance > BLURRED else ""
+    friction = f"rules that hold to {per_cent(result.tolerance, 2)} % of the limit: {shares}"
+    friction += f"; {result.telling} steps tell them apart"
     numbers: dict[str, float | None] = {**result.shares, "telling": float(result.telling), "allowed": result.tolerance}
     right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
     pressed = f"the normal forces of the motion are those of the springs to {per_cent(result.normal, 2)} %"
-    run = result.run
-    of_scene = result.scene_run if result.change else run
+    of_scene = result.scene_run if result.change else result.run
     misfit = None if math.isnan(of_scene.left) else of_scene.left
+    causes = {*result.causes} if result.explained else set()
+    is_normal = result.normal <= NORMAL and causes.isdisjoint(NORMAL_CAUSES)
+    # whether the scene's own law gives the forces; not known where the forces suit it and the motion does not
+    law_holds: bool | None = None
+    if result.tolerance > BLURRED:
+        friction += "; the digits of the file do not show it"
+    elif result.change:
+        law_holds = None if causes.isdisjoint(FRICTION_CAUSES) else False
+    elif result.first is not None or max(result.shares.values()) < MOST:
+        law_holds = False
+    elif result.run.same:
+        law_holds = True
     return [
         Stage("reading", not read.slips, right, {}),
-        Stage("motion", run.same and not result.change, _motion(result), {"misfit": misfit}),
-        Stage(
-            "normal forces",
-            result.normal <= NORMAL and not _faulty(result, NORMAL_CAUSES),
-            pressed,
-            {"misfit": result.normal, "allowed": NORMAL},
-        ),
-        Stage(
-            "friction",
-            None if blurred else _law_holds(result),
-            f"rules that hold to {per_cent(result.tolerance, 2)} % of the limit: {shares}; {telling}{blurred}",
-            numbers,
-        ),
+        Stage("motion", result.run.same and not result.change, _motion(result), {"misfit": misfit}),
+        Stage("normal forces", is_normal, pressed, {"misfit": result.normal, "allowed": NORMAL}),
+        Stage("friction", law_holds, friction, numbers),
     ]
-
-
-def _faulty(result: ContactFinding, causes: frozenset[str]) -> bool:
-    """Whether an explanation holds one of some causes."""
-    return result.explained and not causes.isdisjoint(result.causes)
-
-
-def _law_holds(result: ContactFinding) -> bool | None:
-    """Whether the scene's own law gives the forces; not known where the forces suit it and the motion does not."""
-    if result.change:
-        return False if _faulty(result, FRICTION_CAUSES) else None
-    if result.first is not None or max(result.shares.values()) < MOST:
-        return False
-    return True if result.run.same else None
 
 
 def _motion(result: ContactFinding, with_change: bool = False) -> str:
@@ -206,9 +218,10 @@ def _motion(result: ContactFinding, with_change: bool = False) -> str:
     return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
 
 
-def sentence(scene: Scene, result: ContactFinding, ids: Sequence[str], corrected: Sequence[Slip] = ()) -> str:
+def sentence(
+    scene: Scene, result: ContactFinding, ids: Sequence[str], departure: Departure | None, corrected: Sequence[Slip]
+) -> str:
     """Return the first line of the answer."""
-    t = scene.time
     law = "lagged" if result.lagged else "consistent"
     share = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
     if not result.explained:
@@ -224,8 +237,6 @@ def sentence(scene: Scene, result: ContactFinding, ids: Sequence[str], corrected
         return f"Departs: {' and '.join(faults)}; {_motion(result, with_change=True)}."
     words_by_id = {name: words_of(name, result.values.get(name, 0.0)) for name in ids} | words_of_slips(corrected)
     remainder = _motion(result) if all_benign(ids) else share
-    return sentences.sentence(
-        sentences.Subject(
-            sentences.scheme_words(t.alpha, t.delta, t.discount), words_by_id, departure_of(result, ids), remainder
-        )
-    )
+    t = scene.time
+    scheme = sentences.scheme_words(t.alpha, t.delta, t.discount)
+    return sentences.sentence(sentences.Subject(scheme, words_by_id, departure, remainder))

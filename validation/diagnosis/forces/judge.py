@@ -127,20 +127,20 @@ def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[ContactFindin
     soft = _compliance(scene, softness)
     yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
     bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
-    followed = [_FollowedBody.of(one, time, place, rounding) for one in bodies]
-    chosen = max(followed, key=lambda one: max(one.shares.values()))
+    followed = [_FollowedBody.of(body, time, place, rounding) for body in bodies]
+    chosen = max(followed, key=lambda each: max(each.shares.values()))
     body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
     scene_rules = scene.contact.rules
     telling = _telling(body, runs, tolerance)
     best = _law(right, telling, scene_rules)
     run = runs[best]
-    normal = float(np.linalg.norm((run.given - run.shown)[:, 1]) / np.linalg.norm(run.shown[:, 1]))
+    normal = float(np.linalg.norm((run.law_forces - run.motion_forces)[:, 1]) / np.linalg.norm(run.motion_forces[:, 1]))
     band = _band(body, run)
     causes, values = _causes(scene, weight, softness, soft, best, band)
     if "springs-factor" in causes and not _along_too(yields, softness, time, place, best):
         causes[causes.index("springs-factor")] = "springs-factor?"
     shares = chosen.shares
-    active = run.settled & np.logical_or(*(one.slips for one in runs.values()))
+    active = run.settled & np.logical_or(*(law_run.slips for law_run in runs.values()))
     least = MOST if telling.sum() < MANY else MOST_OF_MANY
     is_obeyed = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
     sound = normal <= NORMAL and is_obeyed and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
@@ -183,26 +183,26 @@ def _fitted(body: Body, time: TimeSection, place: Array) -> tuple[float, float]:
     """Return the share of the own weight and the softness [ln] that the normal resultants ask for."""
     from scipy.optimize import least_squares
 
-    def left(z: Array) -> Array:
+    def remainder(z: Array) -> Array:
         trial = body.heavier(float(z[0])).softer(float(z[1]))
         run = follow(trial, motion_of(place, time, trial), False)
-        return np.asarray((run.given - run.shown)[:, 1] / run.scale)
+        return np.asarray((run.law_forces - run.motion_forces)[:, 1] / run.scale)
 
     starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
-    start = min(starts, key=lambda z: norm(left(z)))
-    solution = least_squares(left, start, x_scale=(1.0, 0.1), max_nfev=12)
+    start = min(starts, key=lambda z: norm(remainder(z)))
+    solution = least_squares(remainder, start, x_scale=(1.0, 0.1), max_nfev=12)
     return float(solution.x[0]), float(solution.x[1])
 
 
 def _along_too(body: Body, softness: float, time: TimeSection, place: Array, law: str) -> bool:
     """Whether springs along the base by the factor of those across it suit a motion better than by its other powers."""
 
-    def left(power: float) -> float:
+    def remainder(power: float) -> float:
         trial = replace(body, shear=body.shear * math.exp((1 - power) * softness))
         run = follow(trial, motion_of(place, time, trial), law == "lagged")
-        return float(np.mean(np.abs(run.given - run.shown)[run.settled, 0]))
+        return float(np.mean(np.abs(run.law_forces - run.motion_forces)[run.settled, 0]))
 
-    return left(1.0) < 0.5 * min(left(power) for power in POWERS)
+    return remainder(1.0) < 0.5 * min(remainder(power) for power in POWERS)
 
 
 def _compliance(scene: Scene, softness: float) -> float:
@@ -225,20 +225,20 @@ def _limit(body: Body, run: Followed) -> float:
 
 def _limits(body: Body, run: Followed) -> Array:
     """Return the limit of friction at each step, of the larger resultant there or a step before, or of the mean [N]."""
-    pressed = np.maximum(run.shown[:, 1], np.concatenate(([0.0], run.shown[:-1, 1])))
+    pressed = np.maximum(run.motion_forces[:, 1], np.concatenate(([0.0], run.motion_forces[:-1, 1])))
     return np.asarray(body.coefficient * np.maximum(pressed, run.scale) + body.cohesion)
 
 
 def _right(body: Body, run: Followed, tolerance: float) -> np.ndarray:
     """Return the steps in which a law gives the force that the motion shows."""
-    return np.asarray(np.abs(run.given - run.shown)[:, 0] <= tolerance * _limits(body, run))
+    return np.asarray(np.abs(run.law_forces - run.motion_forces)[:, 0] <= tolerance * _limits(body, run))
 
 
 def _telling(body: Body, runs: dict[str, Followed], tolerance: float) -> np.ndarray:
     """Return the steps in which two laws ask for forces that digits tell apart."""
-    one, other = runs.values()
-    apart = np.abs(one.given - other.given)[:, 0] > 3 * tolerance * _limits(body, one)
-    return np.asarray(apart & one.settled & other.settled)
+    first, second = runs.values()
+    apart = np.abs(first.law_forces - second.law_forces)[:, 0] > 3 * tolerance * _limits(body, first)
+    return np.asarray(apart & first.settled & second.settled)
 
 
 def _law(right: dict[str, np.ndarray], telling: np.ndarray, scene_rules: str) -> str:

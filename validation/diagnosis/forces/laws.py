@@ -114,8 +114,8 @@ def motion_of(place: Array, time: TimeSection, body: Body) -> Motion:
 class Followed:
     """A motion with the forces of a law, at each step."""
 
-    shown: Array  # resultants that the motion shows, along and across [N], (steps, 2)
-    given: Array  # resultants of the law [N], (steps, 2)
+    motion_forces: Array  # resultants that the motion shows, along and across [N], (steps, 2)
+    law_forces: Array  # resultants of the law [N], (steps, 2)
     gap: Array  # of the corners [m], (steps, 2)
     closed: np.ndarray  # (steps, 2)
     settled: np.ndarray  # (steps,), whether the corners that are closed were so a step before
@@ -124,7 +124,7 @@ class Followed:
     @property
     def scale(self) -> float:
         """Mean size of the normal resultant [N]."""
-        return float(np.mean(np.abs(self.shown[:, 1]))) or 1.0
+        return float(np.mean(np.abs(self.motion_forces[:, 1]))) or 1.0
 
 
 class _Corner:
@@ -161,20 +161,21 @@ def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
         for _ in range(TRIES):
             end = observer.step(place, force, corners, shears, before)
             responses = [_corner_response(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
-            new_shears = tuple(one.slip_force for one in responses)
+            new_shears = tuple(response.slip_force for response in responses)
             if lagged or new_shears == shears:
                 break
             shears = new_shears
         observer.accept(end)
-        unbalanced = force[0] - sum(one.force for one in responses)
-        sticks = [one for one in responses if one.force and one.slip_force is None]
-        for c, (corner, one) in enumerate(zip(corners, responses, strict=True)):
-            corner.state, corner.reference = one.state, one.reference
+        unbalanced = force[0] - sum(response.force for response in responses)
+        sticks = [response for response in responses if response.force and response.slip_force is None]
+        for c, (corner, response) in enumerate(zip(corners, responses, strict=True)):
+            corner.state, corner.reference = response.state, response.reference
             corner.normal, corner.slide, corner.gap = end.normal[c], end.slide[c], end.gap[c]
-            if one in sticks and one.state == STICK:  # what the law leaves is taken for a reference that is off
+            # what the law leaves is taken for a reference that is off
+            if response in sticks and response.state == STICK:
                 corner.reference += unbalanced / (body.shear * len(sticks))
         springs = -body.stiffness * sum(end.gap[c] for c in (0, 1) if end.closed[c])
-        slips = any(one.slip_force is not None for one in responses)
+        slips = any(response.slip_force is not None for response in responses)
         rows.append((force[0] - unbalanced, springs, end.gap, end.closed, end.closed == before, slips))
         before = end.closed
     columns = [np.array(column) for column in zip(*rows, strict=True)]
@@ -253,7 +254,7 @@ class _Observer:
         right = body.inertia @ ahead + self.e * loads
         closed, (x, gap) = before, self._end(right, before, place, force, corners, shears)
         if self._off(before, gap, force[1]) > NEAR * self.scale:
-            ends = {one: self._end(right, one, place, force, corners, shears) for one in CLOSED}
+            ends = {closed: self._end(right, closed, place, force, corners, shears) for closed in CLOSED}
             closed = self._nearest(ends, before, force[1])
             x, gap = ends[closed]
         A = (x - ahead) / self.e
@@ -265,8 +266,8 @@ class _Observer:
     def _nearest(self, ends: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
         """Return the closed corners that fit the normal resultant; of two that do so alike, those nearer to before."""
         off = {closed: self._off(closed, gap, normal) for closed, (_, gap) in ends.items()}
-        near = [one for one in CLOSED if off[one] <= max(2 * min(off.values()), NEAR * self.scale)]
-        return min(near, key=lambda one: (sum(a != b for a, b in zip(one, before, strict=True)), off[one]))
+        near = [closed for closed in CLOSED if off[closed] <= max(2 * min(off.values()), NEAR * self.scale)]
+        return min(near, key=lambda closed: (sum(a != b for a, b in zip(closed, before, strict=True)), off[closed]))
 
     def accept(self, end: _StepEnd) -> None:
         """Move to the end of a step."""
