@@ -88,7 +88,7 @@ def advise(
         _advise_contacts(case, known, as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
-        raise InputError(f"--damping, --fmax: one of them must be given, got {number}")
+        raise InputError("one of them must be given", field="--damping, --fmax", value=number)
     elif damping is None:
         _advise_wave(case, float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:

@@ -85,12 +85,12 @@ def _judge_target(
             raise InputError(
                 "goes with a submission",
                 field="--scene",
-                value=f"it with --solver {solver}",
+                value=f"--solver {solver} too",
                 advice="name the scene first",
             )
         return _judge_solver(target, solver, assignments, progress)
     if assignments and scene is None:
-        raise InputError("goes with --scene or --solver", field="--set", value="it with a problem of the pack")
+        raise InputError("goes with --scene or --solver", field="--set", value="a submission to a problem of the pack")
     scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
     progress(0, 3, "reading, and the exact motion")
     submission = read_submission(Path(target), scene_problem)
