@@ -17,7 +17,7 @@ COSTS = {
     "limits": 0.3,
     "stiff-contact": 0.3,
     "stability-small": 0.6,
-    "stability": 20.0,
+    "stability": 5.5,
     "subblocks": 2.1,
     "opening": 4.3,
     "rebound": 1.1,
