@@ -56,9 +56,9 @@ MASS = np.array([1.0, 1 / 12])
 STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
-def quarter_mass_frequency(scene: Scene, stiffness: float | None = None) -> float:
+def quarter_mass_frequency(scene: Scene) -> float:
     """Return sqrt(8 p / m), of springs much stiffer than the block, p >> E [rad/s]."""
-    return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / scene.block.mass)
+    return math.sqrt(8 * scene.contact.stiffness / scene.block.mass)
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
@@ -77,14 +77,9 @@ class OwnLanding:
 
     restitution: float  # speed of the centre of mass after it over that before it [-]
     first_rate: float  # rate at which the gap opens after the first contact over that at which it closed [-]
-    depth: float  # greatest penetration over V sqrt(m / (8 p)), that of a quarter of the mass [-]
+    depth: float  # greatest penetration over V sqrt(m / (8 p)), and force over V sqrt(p m / 2), of a quarter of m [-]
     duration: float  # of the first contact, over h / c [-]
     contacts: int
-
-    @property
-    def force(self) -> float:
-        """Greatest contact force over V sqrt(p m / 2), that of a quarter of the mass [-]; it equals `depth`."""
-        return self.depth
 
 
 @dataclass(frozen=True)
