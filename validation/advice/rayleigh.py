@@ -135,9 +135,7 @@ def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayle
 def check_band(low: float, high: float, step: float) -> None:
     """Refuse the ends of a range of frequencies that is none, or that a step does not sample."""
     if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
-        raise InputError(
-            "must be positive and in this order", field="--from, --to", value=f"{low:g} and {high:g}"
-        )
+        raise InputError("must be positive and in this order", field="--from, --to", value=f"{low:g} and {high:g}")
     check_sampled(high, step, "--to")
 
 
