@@ -13,7 +13,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
-LINES = (  # what a line is called, its metric, and how the value is scaled and written
+LINES: tuple[contact_page.MetricRow, ...] = (
     ("switches", "switches.count", 1.0, ""),
     ("mean of the contacts' open shares", "contact.open_share", 100.0, " %"),
     ("largest gap", "contact.gap", 1e3, " mm"),
@@ -24,7 +24,7 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
     ("solves that one step in a hundred exceeds", "contact.p99_solves", 1.0, ""),
     ("most solves in a step", "contact.most_solves", 1.0, ""),
     ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
-    ("repeatable to 1e-6 up to", "horizon.time", 1.0, " s"),
+    contact_page.REPEATABLE,
 )
 
 
@@ -67,8 +67,7 @@ def page(
 def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[contact_page.Line]:
     """Return the runs side by side; a line that no run has a number for is left out."""
     lines: list[contact_page.Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
-    for words, metric, factor, unit in LINES:
-        values = [contact_page.written(run.get(metric), factor, unit) for run in runs.values()]
-        if any(value != contact_page.NONE for value in values):
-            lines.append((words, *values))
+    for line in contact_page.measured_lines(LINES, runs):
+        if any(value != contact_page.NONE for value in line[1:]):
+            lines.append(line)
     return lines

@@ -67,6 +67,7 @@ FullOption = Annotated[
 RanksOption = Annotated[
     int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 SummaryOption = Annotated[
     Path | None,
     typer.Option("--summary", help="Write the verdicts as Markdown, for the summary page of a CI job.", metavar="FILE"),

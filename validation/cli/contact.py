@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +11,7 @@ import typer
 from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
+    JsonOption,
     SceneArgument,
     SetOption,
     _progress,
@@ -19,8 +19,7 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
-from validation.cli.damping import JsonOption
-from validation.cli.printing.output import broken, echo
+from validation.cli.printing.output import broken, echo, echo_json
 
 if TYPE_CHECKING:
     from validation.advice.columns import ColumnLimits
@@ -71,7 +70,7 @@ def contact(
         probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
         contact_answer = contact_page.answer(case, rows, error, penetration, probe)
     if as_json:
-        echo(json.dumps(contact_page.plain(contact_answer | {"absent": absent}), indent=1, allow_nan=False))
+        echo_json(contact_page.plain(contact_answer | {"absent": absent}))
     else:
         echo("\n".join(contact_page.page(case, contact_answer, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
@@ -85,7 +84,7 @@ def _of_column(case: Scene, known: ColumnLimits, as_json: bool) -> int:
         rows, absent = _rows(column_page.scenes(case), progress)
     data = column_page.answer(case, rows, known)
     if as_json:
-        echo(json.dumps(contact_page.plain(data | {"absent": absent}), indent=1, allow_nan=False))
+        echo_json(contact_page.plain(data | {"absent": absent}))
     else:
         echo("\n".join(broken(line) for line in column_page.page(case, known, data, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE

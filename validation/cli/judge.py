@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, SetOption, _progress, app, one_case
-from validation.cli.damping import JsonOption
-from validation.cli.printing.output import echo
+from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOption, _progress, app, one_case
+from validation.cli.printing.output import echo, echo_json
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
@@ -65,7 +63,7 @@ def judge(
             directory = Path(target)
         written = [] if directory is None else _write_page(judged, program, directory, progress)
     if as_json:
-        echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
+        echo_json(as_data(judged, program))
     else:
         _print(judged, program, written)
     if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
