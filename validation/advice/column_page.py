@@ -36,30 +36,30 @@ def scenes(scene: Scene) -> dict[str, Scene]:
     return {contact_page.own(): scene} | dict.fromkeys(exact, free)
 
 
-def answer(scene: Scene, rows: Mapping[str, Row], known: columns.ColumnLimits) -> dict[str, Any]:
+def answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> dict[str, Any]:
     """Return everything as plain data."""
     return {
         "scene": scene.name,
-        "limits": asdict(known),
+        "limits": asdict(bound),
         "runs": {name: contact_page.measured(row) for name, row in rows.items()},
         "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
     }
 
 
 def page(
-    scene: Scene, known: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
+    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
     t = scene.time
     yield f"{scene.name}: {scene.title or 'a column whose contacts open or slip'}"
     yield (
-        f"{known.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
+        f"{bound.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
     )
     yield ""
     yield from contact_page.aligned(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
-    yield from columns.advised(scene, known)
+    yield from columns.advised(scene, bound)
     for alarm in data["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
 

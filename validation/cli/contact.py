@@ -58,12 +58,12 @@ def contact(
     from validation.advice.columns import limits
 
     case = one_case(scene, assignments)
-    if (known := limits(case)) is not None:
+    if (bounds := limits(case)) is not None:
         if error is not None or penetration is not None:
             from validation.scenes import features
 
             features.refuse_column(case, "contact with --restitution-error or --penetration")
-        return _of_column(case, known, as_json)
+        return _of_column(case, bounds, as_json)
     scenes = contact_page.scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
@@ -76,17 +76,17 @@ def contact(
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
-def _of_column(case: Scene, known: ColumnLimits, as_json: bool) -> int:
+def _of_column(case: Scene, bounds: ColumnLimits, as_json: bool) -> int:
     """Say what the contacts of a column did, and what its steps need."""
     from validation.advice import column_page, contact_page
 
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(column_page.scenes(case), progress)
-    data = column_page.answer(case, rows, known)
+    data = column_page.answer(case, rows, bounds)
     if as_json:
         echo_json(contact_page.plain(data | {"absent": absent}))
     else:
-        echo("\n".join(broken(line) for line in column_page.page(case, known, data, absent)))
+        echo("\n".join(broken(line) for line in column_page.page(case, bounds, data, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

@@ -88,10 +88,10 @@ def advise(
     from validation.scenes.features import refuse_nonlinear
 
     case = one_case(scene, assignments)
-    if (known := limits(case)) is not None:
+    if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
-        _advise_contacts(case, known, as_json)
+        _advise_contacts(case, bounds, as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
@@ -101,7 +101,7 @@ def advise(
         _advise_damping(case, damping, solve_for, as_json)
 
 
-def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
+def _advise_contacts(case: Scene, bounds: ColumnLimits, as_json: bool) -> None:
     """Say what a column whose contacts open or slip needs of its steps."""
     from dataclasses import asdict
 
@@ -109,9 +109,9 @@ def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
     from validation.advice.contact_page import plain
 
     if as_json:
-        echo_json(plain(asdict(known)))
+        echo_json(plain(asdict(bounds)))
         return
-    for sentence in advised(case, known):
+    for sentence in advised(case, bounds):
         echo(broken(sentence))
     for alarm in column_alarms(case):
         echo(broken(f"ALARM {alarm.kind}: {alarm.sentence}"))
