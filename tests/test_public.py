@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import subprocess
 import sys
 from importlib.metadata import version
@@ -31,6 +32,8 @@ def test_dir_lists_the_public_names_and_all_of_them_load() -> None:
     assert not {name for name in dir(validation) if name.startswith("_")} - {"__version__"}
     assert all(getattr(validation, name) is not None for name in dir(validation))
     assert validation.__version__ == version("dda-validation")
+    for name in ("solve", "damping", "advise", "response"):
+        assert pickle.loads(pickle.dumps(getattr(validation, name))) is getattr(validation, name)
 
 
 def test_type_checkers_see_the_names_that_are_loaded() -> None:

@@ -83,4 +83,5 @@ def _warning(function: Callable[..., Any]) -> Callable[..., Any]:
         warn_implausible(scene)
         return function(scene, *arguments, **options)
 
+    warned.__module__ = __name__  # where pickle finds it, for who runs scenes in processes
     return warned

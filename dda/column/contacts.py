@@ -190,12 +190,15 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
     if column.law == "bonded":
         raise ValueError("law: must be unilateral or frictional, got 'bonded', which solve_column steps")
     if scheme.damped:
-        raise ValueError("mass_damping: viscous damping does not go with contacts of a column, got it")
+        raise ValueError("mass_damping, stiffness_damping: must be 0 where a column has contacts, got viscous damping")
     lowest = int(not column.rests_on_base or column.contacts[0] is None)
     if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
     if options.settled and not (column.law == "unilateral" and column.rests_on_base):
-        raise ValueError("settled: goes with unilateral contacts on a base that is prescribed, got it without")
+        base = "such a base" if column.rests_on_base else "another base"
+        raise ValueError(
+            f"settled: goes with law = 'unilateral' on a base of prescribed motion only, got {column.law!r} on {base}"
+        )
 
 
 # ---- equations -------------------------------------------------------------------------------------------------------

@@ -167,7 +167,8 @@ def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
     if scheme.damped or model.load.motion is not None:
-        raise ValueError("adaptive discount: goes with neither viscous damping nor a base that moves, got it")
+        excluded = "viscous damping" if scheme.damped else "a base of prescribed motion"
+        raise ValueError(f"adaptive discount: excludes viscous damping and a base of prescribed motion, got {excluded}")
 
 
 def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool) -> str | None:

@@ -86,7 +86,13 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
     if scheme.damped or problem.motion is not None or problem.ramp:
-        raise ValueError("adaptive discount: does not go with viscous damping, a moving base or a ramp, got it")
+        present = {
+            "viscous damping": scheme.damped,
+            "a moving base": problem.motion is not None,
+            "a ramp": problem.ramp,
+        }
+        excluded = next(name for name, is_there in present.items() if is_there)
+        raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {excluded}")
 
 
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:

@@ -68,11 +68,11 @@ def test_the_own_landing_is_that_of_the_exact_motion(ratio: float) -> None:
 def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
     """A quarter of the mass at p >> E, all of it at p << E; at p = E the first contact is neither, nor is it at 3E."""
     scene = on_springs(1.0)
+    whole = math.sqrt(2 * scene.block.young / scene.block.mass)  # at p = E; that of a quarter is twice as high
     stiff, soft, middle = (landing.contact_frequency(scene, r * scene.block.young) for r in (1e5, 1e-5, 1.0))
-    assert stiff == pytest.approx(landing.quarter_mass_frequency(scene, 1e5 * scene.block.young), rel=1e-4)
-    assert soft == pytest.approx(landing.quarter_mass_frequency(scene, 1e-5 * scene.block.young) / 2, rel=1e-4)
-    whole = landing.quarter_mass_frequency(scene) / 2
-    assert middle < 0.9 * whole < 0.5 * landing.quarter_mass_frequency(scene)
+    assert stiff == pytest.approx(2 * math.sqrt(1e5) * whole, rel=1e-4)
+    assert soft == pytest.approx(math.sqrt(1e-5) * whole, rel=1e-4)
+    assert middle < 0.9 * whole
     assert landing.own_landing(2e5).first_rate == pytest.approx(1.0, abs=1e-4)
     assert landing.own_landing(2e-5).restitution == pytest.approx(1.0, abs=1e-6)
     assert landing.own_landing(2.0).first_rate == pytest.approx(0.4445, abs=1e-4)
@@ -93,7 +93,7 @@ def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(landing._Motion, "gap", ring)
     assert landing.own_landing(1.08e-16).duration == pytest.approx(math.pi / math.sqrt(1.08e-16))
     rigid_block = load_scene("rebound-constant").expand()[0]
-    expected = landing.quarter_mass_frequency(rigid_block) / 2
+    expected = math.sqrt(2 * rigid_block.contact.stiffness / rigid_block.block.mass)
     assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
 
 

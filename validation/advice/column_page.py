@@ -13,7 +13,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
-LINES = (  # what a line is called, its metric, and how the value is scaled and written
+LINES: tuple[contact_page.MetricRow, ...] = (
     ("switches", "switches.count", 1.0, ""),
     ("mean of the contacts' open shares", "contact.open_share", 100.0, " %"),
     ("largest gap", "contact.gap", 1e3, " mm"),
@@ -24,7 +24,7 @@ LINES = (  # what a line is called, its metric, and how the value is scaled and 
     ("solves that one step in a hundred exceeds", "contact.p99_solves", 1.0, ""),
     ("most solves in a step", "contact.most_solves", 1.0, ""),
     ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
-    ("repeatable to 1e-6 up to", "horizon.time", 1.0, " s"),
+    contact_page.REPEATABLE,
 )
 
 
@@ -36,30 +36,30 @@ def scenes(scene: Scene) -> dict[str, Scene]:
     return {contact_page.own(): scene} | dict.fromkeys(exact, free)
 
 
-def answer(scene: Scene, rows: Mapping[str, Row], known: columns.ColumnLimits) -> dict[str, Any]:
+def answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> dict[str, Any]:
     """Return everything as plain data."""
     return {
         "scene": scene.name,
-        "limits": asdict(known),
+        "limits": asdict(bound),
         "runs": {name: contact_page.measured(row) for name, row in rows.items()},
         "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
     }
 
 
 def page(
-    scene: Scene, known: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
+    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
     t = scene.time
     yield f"{scene.name}: {scene.title or 'a column whose contacts open or slip'}"
     yield (
-        f"{known.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
+        f"{bound.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
     )
     yield ""
     yield from contact_page.aligned(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
-    yield from columns.advised(scene, known)
+    yield from columns.advised(scene, bound)
     for alarm in data["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
 
@@ -67,8 +67,7 @@ def page(
 def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[contact_page.Line]:
     """Return the runs side by side; a line that no run has a number for is left out."""
     lines: list[contact_page.Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
-    for words, metric, factor, unit in LINES:
-        values = [contact_page.written(run.get(metric), factor, unit) for run in runs.values()]
-        if any(value != contact_page.NONE for value in values):
-            lines.append((words, *values))
+    for line in contact_page.measured_lines(LINES, runs):
+        if any(value != contact_page.NONE for value in line[1:]):
+            lines.append(line)
     return lines

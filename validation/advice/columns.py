@@ -90,65 +90,65 @@ def _lowest(column: ColumnSection) -> float | None:
     return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
 
 
-def advised(scene: Scene, known: ColumnLimits) -> Iterator[str]:
+def advised(scene: Scene, bound: ColumnLimits) -> Iterator[str]:
     """Yield in words what to allow and to choose for a column whose contacts open or slip."""
     t = scene.time
     if scene.column is not None and scene.column.law == "frictional":
         yield (
             "Cut no step: the joints have one solution at any step; where all states change at once no known column "
-            f"took more than {2 * known.contacts + 1} solves."
+            f"took more than {2 * bound.contacts + 1} solves."
         )
-    elif known.solves is not None:
+    elif bound.solves is not None:
         yield (
-            f"Allow {known.solves} solves of the open-close iteration in a step, one more than there are contacts, and "
+            f"Allow {bound.solves} solves of the open-close iteration in a step, one more than there are contacts, and "
             "cut no step: more are never needed, and a shorter step does not spare them where blocks touch."
         )
     else:
         yield (
             "Cut no step: the contacts have one solution at any step. How many solves it takes is proven only above "
-            f"dt = {known.far_face_step:.3g} s; no known column took more than {known.contacts + 1}."
+            f"dt = {bound.far_face_step:.3g} s; no known column took more than {bound.contacts + 1}."
         )
-    if known.far_face_step > t.step and all(known.blocks):
+    if bound.far_face_step > t.step and all(bound.blocks):
         yield (
             f"At dt = {t.step:g} s a block of one strain answers a push with its far face moving the wrong way; "
-            f"{', '.join(map(str, known.blocks))} blocks in the layers, or dt >= {known.far_face_step:.3g} s, do not."
+            f"{', '.join(map(str, bound.blocks))} blocks in the layers, or dt >= {bound.far_face_step:.3g} s, do not."
         )
-    if known.settling is not None and math.isfinite(known.settling):
+    if bound.settling is not None and math.isfinite(bound.settling):
         yield (
-            f"The stack comes to rest to a thousandth in about {known.settling:.3g} s: the scheme takes "
+            f"The stack comes to rest to a thousandth in about {bound.settling:.3g} s: the scheme takes "
             f"w1^2 (delta - 1/2) dt / 2 and the discount (1 - gg) / (2 dt) of the amplitude a second, w1 = "
-            f"{known.lowest or 0:.4g} rad/s."
+            f"{bound.lowest or 0:.4g} rad/s."
         )
-    elif known.settling is not None:
+    elif bound.settling is not None:
         yield "The stack never comes to rest: delta = 1/2 and gg = 1 take no energy."
 
 
 def column_alarms(scene: Scene) -> Iterator[Alarm]:
     """Yield the alarms of a scene with a column whose contacts open or slip."""
     column = scene.column
-    known = limits(scene)
-    if column is None or known is None:
+    bound = limits(scene)
+    if column is None or bound is None:
         return
     t = scene.time
     if column.law == "frictional":
         yield from _path(scene)
         return
-    needed = columns.greatest_solves(known.contacts)
+    needed = columns.greatest_solves(bound.contacts)
     if column.solve_limit is not None and column.solve_limit < needed:
         yield Alarm(
             FEW_SOLVES,
             scene.name,
-            f"{column.solve_limit} solves of the open-close iteration are allowed, where {known.contacts} contacts can "
+            f"{column.solve_limit} solves of the open-close iteration are allowed, where {bound.contacts} contacts can "
             f"need {needed}; a shorter step does not help blocks that touch",
             {"solve_limit": column.solve_limit, "needed": needed},
         )
-    if t.step < known.far_face_step:
+    if t.step < bound.far_face_step:
         yield Alarm(
             FAR_FACE,
             scene.name,
-            f"below a step of {known.far_face_step:.3g} s a push at one face of a block of one strain moves its other "
+            f"below a step of {bound.far_face_step:.3g} s a push at one face of a block of one strain moves its other "
             "face the wrong way: contacts open before the wave arrives; more blocks a layer lower this step",
-            {"step": t.step, "far_face_step": known.far_face_step},
+            {"step": t.step, "far_face_step": bound.far_face_step},
         )
     if t.delta == 0.5 and t.discount == 1:
         yield Alarm(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -30,7 +30,8 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 NONE = "-"  # in place of a number that a run has not
 
 Line = tuple[str, ...]
-LINES = (  # what a line is called, its metric, and how the value is scaled and written
+MetricRow = tuple[str, str, float, str]  # what a line is called, its metric, and how the value is scaled and written
+LINES = (
     ("switches", "switches.count", 1.0, ""),
     ("share of the time open", "contact.open_share", 100.0, " %"),
     ("largest gap", "contact.gap", 1e3, " mm"),
@@ -49,7 +50,13 @@ SLIPS = (
     ("slip", "contact.slip", 1e3, " mm"),
     ("slip per second, at the end", "contact.slip_rate", 1e3, " mm/s"),
 )
-LOSSES = (("the scheme", "algorithmic"), ("gg", "kinetic_damping"), ("switching", "switching"))
+LOSSES = (
+    ("energy lost by the scheme", "energy.lost_algorithmic", 1e-3, " kJ"),
+    ("energy lost by gg", "energy.lost_kinetic_damping", 1e-3, " kJ"),
+    ("energy lost by switching", "energy.lost_switching", 1e-3, " kJ"),
+)
+FRICTION_LOSS = "energy lost by friction", "energy.lost_friction", 1e-3, " kJ"
+REPEATABLE = "repeatable to 1e-6 up to", "horizon.time", 1.0, " s"
 ALARMS = (contact_alarms, friction.friction_alarms)
 
 
@@ -199,19 +206,18 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
-    rubs = features.FRICTION in features.of(scene)
-    for words, metric, factor, unit in (*LINES, *(SLIPS if rubs else ())):
-        lines.append((words, *(written(run.get(metric), factor, unit) for run in runs.values())))
-    for words, name in (*LOSSES, *((("friction", "friction"),) if rubs else ())):
-        lines.append(
-            (
-                f"energy lost by {words}",
-                *(written(run.get(f"energy.lost_{name}"), 1e-3, " kJ") for run in runs.values()),
-            )
-        )
+    with_friction = features.FRICTION in features.of(scene)
+    lines += measured_lines((*LINES, *SLIPS, *LOSSES, FRICTION_LOSS) if with_friction else (*LINES, *LOSSES), runs)
     lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
-    lines.append(("repeatable to 1e-6 up to", *(written(run.get("horizon.time"), 1.0, " s") for run in runs.values())))
-    return lines
+    return [*lines, *measured_lines([REPEATABLE], runs)]
+
+
+def measured_lines(rows: Iterable[MetricRow], runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
+    """Return a line of each metric, with its number in every run."""
+    return [
+        (words, *(written(run.get(metric), factor, unit) for run in runs.values()))
+        for words, metric, factor, unit in rows
+    ]
 
 
 def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:

@@ -106,7 +106,7 @@ def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Poi
     """
     both = a0 is not None or a1 is not None
     if both and texts:
-        raise InputError("--ratio and --a0, --a1 exclude each other, got both")
+        raise InputError("exclude each other", field="--ratio, and --a0 or --a1", value="both")
     if not both and len(texts) != 2:
         raise InputError("must be given twice", field="--ratio", value=f"{len(texts)} of them")
     pairs = []
@@ -135,7 +135,7 @@ def wanted(points: Sequence[Point], a0: float | None, a1: float | None) -> Rayle
 def check_band(low: float, high: float, step: float) -> None:
     """Refuse the ends of a range of frequencies that is none, or that a step does not sample."""
     if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
-        raise InputError(f"--from, --to: must be positive and in this order, got {low:g} and {high:g}")
+        raise InputError("must be positive and in this order", field="--from, --to", value=f"{low:g} and {high:g}")
     check_sampled(high, step, "--to")
 
 

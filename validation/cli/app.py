@@ -67,6 +67,7 @@ FullOption = Annotated[
 RanksOption = Annotated[
     int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 SummaryOption = Annotated[
     Path | None,
     typer.Option("--summary", help="Write the verdicts as Markdown, for the summary page of a CI job.", metavar="FILE"),
@@ -161,13 +162,15 @@ def _progress(
     from rich.table import Column
 
     start = time.monotonic()
+    console = Console(stderr=True)
     bar = Progress(
         TextColumn("{task.description}"),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TextColumn("{task.fields[label]}", table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)),
-        console=Console(stderr=True),
+        console=console,
         transient=True,
+        disable=not console.is_terminal,  # of which a file would get an empty line
         expand=True,
     )
     task = bar.add_task(title, total=1, label="")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import SetOption, _progress, app, one_case
-from validation.cli.printing.output import echo
+from validation.cli.app import JsonOption, SetOption, _progress, app, one_case
+from validation.cli.printing.output import echo, echo_json
 
 if TYPE_CHECKING:
     from validation.diagnosis.answer import Answer
@@ -40,7 +39,7 @@ def compare(
         Path | None, typer.Option("--out", "--report", help="Write a one-page report.", metavar="FILE.pdf")
     ] = None,
     assignments: SetOption = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Judge another program's history: same model and scheme, or where and how it departs, and why.
 
@@ -62,7 +61,7 @@ def compare(
 
         write_page(case, history.name, answer, report)
     if as_json:
-        echo(json.dumps(answer.as_dict(), indent=1, allow_nan=False))
+        echo_json(answer.as_dict())
     else:
         _print(answer)
     if answer.departs:

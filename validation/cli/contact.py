@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +11,7 @@ import typer
 from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
+    JsonOption,
     SceneArgument,
     SetOption,
     _progress,
@@ -19,8 +19,7 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
-from validation.cli.damping import JsonOption
-from validation.cli.printing.output import broken, echo
+from validation.cli.printing.output import broken, echo, echo_json
 
 if TYPE_CHECKING:
     from validation.advice.columns import ColumnLimits
@@ -59,35 +58,35 @@ def contact(
     from validation.advice.columns import limits
 
     case = one_case(scene, assignments)
-    if (known := limits(case)) is not None:
+    if (bounds := limits(case)) is not None:
         if error is not None or penetration is not None:
             from validation.scenes import features
 
             features.refuse_column(case, "contact with --restitution-error or --penetration")
-        return _of_column(case, known, as_json)
+        return _of_column(case, bounds, as_json)
     scenes = contact_page.scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
         probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
         contact_answer = contact_page.answer(case, rows, error, penetration, probe)
     if as_json:
-        echo(json.dumps(contact_page.plain(contact_answer | {"absent": absent}), indent=1, allow_nan=False))
+        echo_json(contact_page.plain(contact_answer | {"absent": absent}))
     else:
         echo("\n".join(contact_page.page(case, contact_answer, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
-def _of_column(case: Scene, known: ColumnLimits, as_json: bool) -> int:
+def _of_column(case: Scene, bounds: ColumnLimits, as_json: bool) -> int:
     """Say what the contacts of a column did, and what its steps need."""
     from validation.advice import column_page, contact_page
 
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(column_page.scenes(case), progress)
-    data = column_page.answer(case, rows, known)
+    data = column_page.answer(case, rows, bounds)
     if as_json:
-        echo(json.dumps(contact_page.plain(data | {"absent": absent}), indent=1, allow_nan=False))
+        echo_json(contact_page.plain(data | {"absent": absent}))
     else:
-        echo("\n".join(broken(line) for line in column_page.page(case, known, data, absent)))
+        echo("\n".join(broken(line) for line in column_page.page(case, bounds, data, absent)))
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

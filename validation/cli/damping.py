@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import RESULTS, ResultsOption, SceneArgument, SetOption, _progress, app, one_case
+from validation.cli.app import (
+    RESULTS,
+    JsonOption,
+    ResultsOption,
+    SceneArgument,
+    SetOption,
+    _progress,
+    app,
+    one_case,
+)
 from validation.cli.printing.listing import in_columns
-from validation.cli.printing.output import broken, echo, terminal_width
+from validation.cli.printing.output import broken, echo, echo_json, terminal_width
 
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
     from validation.advice.columns import ColumnLimits
     from validation.advice.spectra import Damping
     from validation.scenes.scene import Scene
-
-JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 
 
 @app.command()
@@ -32,7 +38,7 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
 
     analysis = analyse(one_case(scene, assignments), references=True)
     if as_json:
-        echo(json.dumps(analysis.as_dict(), indent=1, allow_nan=False))
+        echo_json(analysis.as_dict())
     else:
         _print_damping(analysis)
 
@@ -82,20 +88,20 @@ def advise(
     from validation.scenes.features import refuse_nonlinear
 
     case = one_case(scene, assignments)
-    if (known := limits(case)) is not None:
+    if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
-        _advise_contacts(case, known, as_json)
+        _advise_contacts(case, bounds, as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
-        raise InputError(f"--damping, --fmax: one of them must be given, got {number}")
+        raise InputError("one of them must be given", field="--damping, --fmax", value=number)
     elif damping is None:
         _advise_wave(case, float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:
         _advise_damping(case, damping, solve_for, as_json)
 
 
-def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
+def _advise_contacts(case: Scene, bounds: ColumnLimits, as_json: bool) -> None:
     """Say what a column whose contacts open or slip needs of its steps."""
     from dataclasses import asdict
 
@@ -103,9 +109,9 @@ def _advise_contacts(case: Scene, known: ColumnLimits, as_json: bool) -> None:
     from validation.advice.contact_page import plain
 
     if as_json:
-        echo(json.dumps(plain(asdict(known)), indent=1, allow_nan=False))
+        echo_json(plain(asdict(bounds)))
         return
-    for sentence in advised(case, known):
+    for sentence in advised(case, bounds):
         echo(broken(sentence))
     for alarm in column_alarms(case):
         echo(broken(f"ALARM {alarm.kind}: {alarm.sentence}"))
@@ -117,7 +123,7 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
 
     wave_advice = advise_wave(case, fmax, *limits)
     if as_json:
-        echo(json.dumps(wave_advice.as_dict(), indent=1, allow_nan=False))
+        echo_json(wave_advice.as_dict())
         return
     echo(f"{broken(wave_advice.sentence)}\n{broken(wave_advice.advice)}\n")
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
@@ -148,7 +154,7 @@ def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) 
         data = advice.as_dict()
         for solution, error in zip(data["solutions"], errors, strict=True):
             solution["errors"] = error
-        echo(json.dumps(data, indent=1, allow_nan=False))
+        echo_json(data)
     else:
         _print_advice(advice, errors)
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, SetOption, _progress, app, one_case
-from validation.cli.damping import JsonOption
-from validation.cli.printing.output import echo
+from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOption, _progress, app, one_case
+from validation.cli.printing.output import echo, echo_json
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
@@ -65,7 +63,7 @@ def judge(
             directory = Path(target)
         written = [] if directory is None else _write_page(judged, program, directory, progress)
     if as_json:
-        echo(json.dumps(as_data(judged, program), indent=1, allow_nan=False))
+        echo_json(as_data(judged, program))
     else:
         _print(judged, program, written)
     if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
@@ -85,12 +83,12 @@ def _judge_target(
             raise InputError(
                 "goes with a submission",
                 field="--scene",
-                value=f"it with --solver {solver}",
+                value=f"--solver {solver} too",
                 advice="name the scene first",
             )
         return _judge_solver(target, solver, assignments, progress)
     if assignments and scene is None:
-        raise InputError("goes with --scene or --solver", field="--set", value="it with a problem of the pack")
+        raise InputError("goes with --scene or --solver", field="--set", value="a submission to a problem of the pack")
     scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
     progress(0, 3, "reading, and the exact motion")
     submission = read_submission(Path(target), scene_problem)

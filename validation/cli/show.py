@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
-
-from validation.cli.app import SceneArgument, SetOption, app, print_warnings, stated_scene
-from validation.cli.damping import JsonOption
-from validation.cli.printing.output import echo
+from validation.cli.app import JsonOption, SceneArgument, SetOption, app, print_warnings, stated_scene
+from validation.cli.printing.output import echo, echo_json
 
 
 @app.command()
@@ -24,6 +21,6 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
     stated = stated_scene(scene, assignments)
     print_warnings(stated)
     if as_json:
-        echo(json.dumps(scene_page.as_data(stated), indent=1, allow_nan=False))
+        echo_json(scene_page.as_data(stated))
     else:
         echo("\n".join(scene_page.page(stated, scene, terminal_width())))

@@ -65,7 +65,9 @@ def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Arr
     from validation.errors import InputError
 
     if not (math.isfinite(low) and math.isfinite(high) and 0 <= low <= high):
-        raise InputError(f"--from, --to: must be finite, not negative and in this order, got {low:g} and {high:g}")
+        raise InputError(
+            "must be finite, not negative and in this order", field="--from, --to", value=f"{low:g} and {high:g}"
+        )
     if logarithmic and low == 0:
         raise InputError("must be greater than 0 with --log", field="--from", value="0")
     spaced = np.geomspace if logarithmic else np.linspace

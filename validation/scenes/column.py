@@ -122,11 +122,11 @@ class ColumnSection(Section):
         return self
 
     def _check_base(self) -> None:
-        given = sorted(name for name in self.model_fields_set if name.startswith("base_"))
+        base_keys = sorted(name for name in self.model_fields_set if name.startswith("base_"))
         allowed = {"rigid": (), "springs": ("base_stiffness",)}.get(
             self.base, ("base_density", "base_speed", "base_young", "base_poisson")
         )
-        if wrong := [name for name in given if name not in allowed]:
+        if wrong := [name for name in base_keys if name not in allowed]:
             raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got {getattr(self, wrong[0])!r}")
         if self.base == "springs" and self.base_stiffness is None:
             raise ValueError("base_stiffness is required with base = 'springs', got nothing")
@@ -134,10 +134,10 @@ class ColumnSection(Section):
             if self.base_density is None or (self.base_speed is None) == (self.base_young is None):
                 raise ValueError(
                     "base_density and either base_speed or base_young are required with base = 'transmitting', got "
-                    f"{', '.join(given) or 'nothing'}"
+                    f"{', '.join(base_keys) or 'nothing'}"
                 )
-            if self.base_speed is not None and "base_poisson" in given:
-                raise ValueError("base_poisson goes with base_young only, got {self.base_poisson:g} with base_speed")
+            if self.base_speed is not None and "base_poisson" in base_keys:
+                raise ValueError(f"base_poisson goes with base_young only, got {self.base_poisson:g} with base_speed")
         if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
             raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
 
@@ -271,10 +271,10 @@ class InputSection(Section):
         if self.shape is not None:
             needed = {"velocity" if self.at == "base" else "pressure"}
             needed |= {"duration" if self.shape in ("half-sine", "triangle") else "frequency"}
-        given = self.model_fields_set & {"velocity", "pressure", "frequency", "duration"}
+        stated_keys = self.model_fields_set & {"velocity", "pressure", "frequency", "duration"}
         what = f"{self.shape or 'a record'} at the {self.at}"
-        if missing := sorted(needed - given):
+        if missing := sorted(needed - stated_keys):
             raise ValueError(f"{missing[0]} is required with {what}, got nothing")
-        if more := sorted(given - needed):
+        if more := sorted(stated_keys - needed):
             raise ValueError(f"{more[0]} does not go with {what}, got {getattr(self, more[0])!r}")
         return self

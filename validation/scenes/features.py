@@ -87,8 +87,8 @@ FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than t
 
 
 def _present(scene: Scene) -> tuple[Feature, ...]:
-    asked = FEATURES if scene.column is None else [feature for feature in FEATURES if feature.of_columns]
-    return tuple(feature for feature in asked if feature.present(scene))
+    candidates = FEATURES if scene.column is None else [feature for feature in FEATURES if feature.of_columns]
+    return tuple(feature for feature in candidates if feature.present(scene))
 
 
 def of(scene: Scene) -> tuple[str, ...]:

@@ -84,15 +84,17 @@ class SceneTables(Section):
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:
-        given = {field: getattr(self, f"stated_{field}") for field in (*OF_BLOCK, "input")} | {"column": self.column}
-        wanted, other = (OF_COLUMN, OF_BLOCK) if self.column is not None else (OF_BLOCK, OF_COLUMN)
+        stated_tables = {field: getattr(self, f"stated_{field}") for field in (*OF_BLOCK, "input")} | {
+            "column": self.column
+        }
+        required, other = (OF_COLUMN, OF_BLOCK) if self.column is not None else (OF_BLOCK, OF_COLUMN)
         for field in other:
-            if given[field] is not None:
+            if stated_tables[field] is not None:
                 raise ValueError(
                     f"{field}: does not go {'with' if self.column else 'without'} column, got a table of it"
                 )
-        for field in wanted:
-            if given[field] is None and not (field == "input" and self._moves_alone()):
+        for field in required:
+            if stated_tables[field] is None and not (field == "input" and self._moves_alone()):
                 raise ValueError(f"{field}: is required, got nothing")
         if self.column is not None and (more := sorted(self.fem.model_fields_set - {"elements", "degree"})):
             raise ValueError(f"fem: {more[0]} does not go with column, got {getattr(self.fem, more[0])!r}")

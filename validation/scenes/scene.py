@@ -89,11 +89,11 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check_rule(self) -> Self:
-        given = self.time.alpha, self.time.delta
-        if self.column is None and self.contact.rule != "newmark" and given != (0.25, 0.5):
+        weights = self.time.alpha, self.time.delta
+        if self.column is None and self.contact.rule != "newmark" and weights != (0.25, 0.5):
             raise ValueError(
                 f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: time.alpha must be "
-                f"0.25 and time.delta 0.5, got {given[0]:g} and {given[1]:g}"
+                f"0.25 and time.delta 0.5, got {weights[0]:g} and {weights[1]:g}"
             )
         return self
 
@@ -157,8 +157,8 @@ class Scene(SceneTables):
             if both := [other for other in _EXCLUSIVE.get(field, ()) if other in values]:
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
             _set_dotted(data, field, value, self.name)
-        gone = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
-        sweep = {f: v for f, v in self.sweep.items() if f not in gone}
+        replaced_keys = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
+        sweep = {f: v for f, v in self.sweep.items() if f not in replaced_keys}
         data["sweep"] = sweep if set(sweep) - {"mode"} else {}
         if label:
             inside = ",".join(f"{field}={_short(value)}" for field, value in values.items())
@@ -333,8 +333,8 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise
     except FileNotFoundError:
         near = ", ".join(difflib.get_close_matches(path.stem, scene_names(), cutoff=0.5))
-        meant = f"did you mean {near}? " if near else ""
-        advice = f"{meant}dda-validate list scenes names the built-in ones"
+        suggestion = f"did you mean {near}? " if near else ""
+        advice = f"{suggestion}dda-validate list scenes names the built-in ones"
         raise InputError("no such scene file", source=path, advice=advice) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None

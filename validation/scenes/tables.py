@@ -123,17 +123,17 @@ class BlockSection(Section):
         return self
 
     def _check_one_outline(self) -> None:
-        given = {
+        stated = {
             "side": self.side is not None,
             "width and height": self.width is not None or self.height is not None,
             "vertices": self.vertices is not None,
         }
-        names = [name for name, present in given.items() if present]
+        names = [name for name, present in stated.items() if present]
         if len(names) > 1:
             raise ValueError(f"{names[0]} and {names[1]} exclude each other, got both")
         if not names:
             raise ValueError("one of side, width and height, or vertices must be given, got none")
-        if given["width and height"] and (self.width is None or self.height is None):
+        if stated["width and height"] and (self.width is None or self.height is None):
             raise ValueError("width and height must be given together, got one")
 
     @property
@@ -205,8 +205,8 @@ class ContactSection(Section):
 
     def _check_rigid(self) -> None:
         if self.law == "locked" or self.rule == "energy-conserving":
-            held = 'law = "locked"' if self.law == "locked" else 'rule = "energy-conserving"'
-            raise ValueError(f"stiffness must be finite with {held}, got inf")
+            stated_rule = 'law = "locked"' if self.law == "locked" else 'rule = "energy-conserving"'
+            raise ValueError(f"stiffness must be finite with {stated_rule}, got inf")
         if self.shear_stiffness is None:
             raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
         if self.band[1] > 0:

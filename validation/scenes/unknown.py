@@ -68,13 +68,13 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     for place, stated_at, name, value in unknown:
         # What stands in a table of an unknown name is not looked up: the table's name comes first.
         candidates = [] if isinstance(value, dict) else known_keys
-        if meant := _meant(place, name, tables, candidates):
-            suggestions[f"{stated_at}{name}"] = meant
+        if suggestion := _meant(place, name, tables, candidates):
+            suggestions[f"{stated_at}{name}"] = suggestion
     fields = [f"{stated_at}{name}" for _, stated_at, name, _ in unknown]
     more = f" and {len(fields) - NAMED} more" if len(fields) > NAMED else ""
     if len(fields) == 1:
-        meant = suggestions.get(fields[0])
-        advice = "dda-validate list keys names all" if meant is None else f"did you mean {meant}?"
+        suggestion = suggestions.get(fields[0])
+        advice = "dda-validate list keys names all" if suggestion is None else f"did you mean {suggestion}?"
         raise InputError("unknown key", source=source, field=fields[0], value=clip(unknown[0][3]), advice=advice)
     questions = [f"{suggestions[field]} for {field}" for field in fields[:NAMED] if field in suggestions]
     advice = f"did you mean {', '.join(questions)}? " if questions else ""
@@ -132,7 +132,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
         if plain in fields:
             return fields[plain]
     for fields in (named_here, named_elsewhere):
-        words = [known for known in fields if len(known) >= SHORTEST]
+        words = [word for word in fields if len(word) >= SHORTEST]
         if near := difflib.get_close_matches(plain, words, n=1, cutoff=CLOSE):
             return fields[near[0]]
     return None
@@ -143,9 +143,9 @@ def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> d
     by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
     for field in reversed(fields):
         place, _, name = field.rpartition(".")
-        symbols = [key.symbol for known, _, key in keys_of(tables[place]) if known == name]
-        known = field.replace("column.layer.", "block.")  # a layer's material is called as a block's
-        for other in (*OTHER_NAMES.get(known, ()), *filter(None, symbols)):
+        symbols = [key.symbol for key_name, _, key in keys_of(tables[place]) if key_name == name]
+        block_field = field.replace("column.layer.", "block.")  # a layer's material is called as a block's
+        for other in (*OTHER_NAMES.get(block_field, ()), *filter(None, symbols)):
             by_name.setdefault(_plain(other), field)
     return by_name
 

@@ -79,8 +79,8 @@ def threshold_angle(scene: Scene) -> float:
     phi + asin(c a cos(phi) / (m g)), from g sin(b) = tan(phi) g cos(b) + c a / m; 90 deg where it always stands.
     """
     phi = math.atan(coefficient(scene))
-    held = adhesion(scene) * math.cos(phi) / scene.load.gravity
-    return math.degrees(phi + math.asin(held)) if held < math.cos(phi) else 90.0
+    adhesion_share = adhesion(scene) * math.cos(phi) / scene.load.gravity
+    return math.degrees(phi + math.asin(adhesion_share)) if adhesion_share < math.cos(phi) else 90.0
 
 
 def normal_frequency(scene: Scene) -> float:
@@ -121,8 +121,9 @@ def damped_creep(scene: Scene) -> float:
     The weight comes on at once, so that the normal force swings between nothing and twice its rest; the block stands
     once it stays above tan(b) / tan(phi) of its rest: t_s = ln(tan(phi) / (tan(phi) - tan(b))) / decay.
     """
-    held, pushed = coefficient(scene), math.tan(math.radians(scene.load.slope))
-    return creep_scale(scene) * math.log(held / (held - pushed)) / ringing_decay(scene)
+    friction = coefficient(scene)
+    slope = math.tan(math.radians(scene.load.slope))
+    return creep_scale(scene) * math.log(friction / (friction - slope)) / ringing_decay(scene)
 
 
 # ---- the discount as a drag -----------------------------------------------------------------------------------------
@@ -159,8 +160,8 @@ def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
     begun = t.step**2 * acceleration * ((0.5 - t.alpha) * s + t.alpha)
     gained, summed = _series(t.discount, n - 1)
     velocity = t.discount ** (n - 1) * first + t.step * acceleration * gained
-    way = t.step * (first * gained + t.step * acceleration * summed)
-    return begun + t.discount * way + (n - 1) * t.step**2 * acceleration / 2, velocity
+    distance = t.step * (first * gained + t.step * acceleration * summed)
+    return begun + t.discount * distance + (n - 1) * t.step**2 * acceleration / 2, velocity
 
 
 def _series(gg: float, n: Array) -> tuple[Array, Array]:

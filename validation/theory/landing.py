@@ -56,9 +56,9 @@ MASS = np.array([1.0, 1 / 12])
 STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
-def quarter_mass_frequency(scene: Scene, stiffness: float | None = None) -> float:
+def quarter_mass_frequency(scene: Scene) -> float:
     """Return sqrt(8 p / m), of springs much stiffer than the block, p >> E [rad/s]."""
-    return math.sqrt(8 * (scene.contact.stiffness if stiffness is None else stiffness) / scene.block.mass)
+    return math.sqrt(8 * scene.contact.stiffness / scene.block.mass)
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
@@ -77,14 +77,9 @@ class OwnLanding:
 
     restitution: float  # speed of the centre of mass after it over that before it [-]
     first_rate: float  # rate at which the gap opens after the first contact over that at which it closed [-]
-    depth: float  # greatest penetration over V sqrt(m / (8 p)), that of a quarter of the mass [-]
+    depth: float  # greatest penetration over V sqrt(m / (8 p)), and force over V sqrt(p m / 2), of a quarter of m [-]
     duration: float  # of the first contact, over h / c [-]
     contacts: int
-
-    @property
-    def force(self) -> float:
-        """Greatest contact force over V sqrt(p m / 2), that of a quarter of the mass [-]; it equals `depth`."""
-        return self.depth
 
 
 @dataclass(frozen=True)
@@ -311,11 +306,11 @@ def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: floa
         dt and h / c [s].
     """
     values = restitutions(stepping, ratio, step, transit, PHASES)
-    own = rigid_stop()[-1] if math.isinf(ratio) else own_landing(ratio).restitution
+    own_restitution = rigid_stop()[-1] if math.isinf(ratio) else own_landing(ratio).restitution
     # any phase is as likely: its ends are half an interval each
     mean = np.trapezoid(values, PHASES)
     energy = np.trapezoid(values**2, PHASES)
-    return SteppedLanding(float(mean), float(values.min()), float(values.max()), float(energy), own)
+    return SteppedLanding(float(mean), float(values.min()), float(values.max()), float(energy), own_restitution)
 
 
 def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, phases: Array) -> Array:
@@ -340,16 +335,16 @@ def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, 
     contact = _Stretch.of(closed, free_gap, math.sqrt(12 + 4 * ratio) * tau, contact=True)
 
     passed = np.zeros(len(phases))
-    kept = np.zeros(len(phases))
+    greatest_speed = np.zeros(len(phases))
     active = np.arange(len(phases), dtype=np.intp)
     while active.size:
         contact.advance(state, passed, active, limit)
         active = active[passed[active] < limit]
         # the first step of a flight has the contact force of its start behind it
-        kept[active] = np.maximum(kept[active], state[active] @ opened[2])
+        greatest_speed[active] = np.maximum(greatest_speed[active], state[active] @ opened[2])
         flight.advance(state, passed, active, limit)
         active = active[passed[active] < limit]
-    return kept
+    return greatest_speed
 
 
 def _is_over(state: Array) -> Array:
@@ -496,8 +491,8 @@ def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float
     The map is solved on a grid of w_c dt from `LARGEST` down; the run of allowed steps that reaches farthest down is
     taken, so that one that is right by chance among wrong ones, such as w_c dt = 2 of average acceleration, is not.
     """
-    own = own_landing(ratio)
-    unit = own.duration / math.pi * transit  # 1 / w_c
+    exact = own_landing(ratio)
+    unit = exact.duration / math.pi * transit  # 1 / w_c
     smallest = max(SMALLEST / 10, min(SMALLEST, error / 10))
     omegas = np.geomspace(smallest, LARGEST, math.ceil(math.log(LARGEST / smallest, GRID)) + 1)
 

@@ -85,14 +85,14 @@ class Rectangle:
     def pulse_peak(self, k: float, duration: float) -> float:
         """Return the greatest tilt after a pulse that does not overturn the block [rad]."""
         end = self.pulse_end(k, duration)
-        held = float(self.pulse_rate2(k, np.array(end))) / (2 * self.rate2) + math.cos(self.alpha - end)
-        return self.alpha - math.acos(held)
+        cosine = float(self.pulse_rate2(k, np.array(end))) / (2 * self.rate2) + math.cos(self.alpha - end)
+        return self.alpha - math.acos(cosine)
 
     def pulse_overturning(self, k: float, duration: float) -> float:
         """Return the time at which the centroid passes over the corner after a pulse that overturns the block [s]."""
         end = self.pulse_end(k, duration)
-        held = float(self.pulse_rate2(k, np.array(end)))
-        return duration + _time(lambda x: held + 2 * self.rate2 * _less(self.alpha - end, -x), self.alpha - end)
+        rate2 = float(self.pulse_rate2(k, np.array(end)))
+        return duration + _time(lambda x: rate2 + 2 * self.rate2 * _less(self.alpha - end, -x), self.alpha - end)
 
 
 def _less(angle: float, turned: Array) -> Array:

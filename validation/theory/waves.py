@@ -47,9 +47,9 @@ class Column:
         opening = inertia / (-2 * B)  # 1 - cos(kh)
         if self.glue is not None:
             opening *= 1 + (2 * self.modulus / self.height - inertia / 6) / (2 * self.glue)  # (A - B + 2 kg) / (2 kg)
-        found = 2 * np.arcsin(np.sqrt(opening / 2)) / self.height
-        growing = found.imag * self.height > GROWTH
-        return np.asarray(np.where(growing, 2 * np.pi / self.height - found, found))
+        wavenumber = 2 * np.arcsin(np.sqrt(opening / 2)) / self.height
+        growing = wavenumber.imag * self.height > GROWTH
+        return np.asarray(np.where(growing, 2 * np.pi / self.height - wavenumber, wavenumber))
 
     def travelled(self, stepping: Stepping, omega: ArrayLike, distance: float) -> tuple[Array, Array]:
         """Return the share of the amplitude left over a distance, and the error w / Re k / c - 1 of the phase speed."""
@@ -91,5 +91,5 @@ def base_reflection(column: Column, stepping: Stepping, omega: ArrayLike, impeda
     w2 = stepping.squared_frequency(omega)
     A, B = column.ends(w2)
     decay = np.exp(-1j * column.wavenumber(w2) * column.height)
-    own = A + stepping.velocity_factor(omega) * impedance
-    return np.asarray(-(own + B / decay) / (own + B * decay))
+    diagonal = A + stepping.velocity_factor(omega) * impedance
+    return np.asarray(-(diagonal + B / decay) / (diagonal + B * decay))

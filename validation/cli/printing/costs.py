@@ -17,7 +17,7 @@ COSTS = {
     "limits": 0.3,
     "stiff-contact": 0.3,
     "stability-small": 0.6,
-    "stability": 13.0,
+    "stability": 5.5,
     "subblocks": 2.1,
     "opening": 4.3,
     "rebound": 1.1,
@@ -27,7 +27,7 @@ COSTS = {
     "rocking": 0.2,
     "toppling": 0.1,
     "waves": 0.3,
-    "columns": 3.0,
+    "columns": 5.0,
     "response": 0.1,
     "work-precision": 0.8,
     "field": 1.2,
@@ -50,13 +50,13 @@ def print_before_run(studies: Sequence[Study], quiet: bool) -> None:
 
 def announcement(studies: Sequence[str]) -> str | None:
     """Return a sentence on a long run of some studies; None for a short one, or one of scenes alone."""
-    known = [name for name in studies if name in COSTS]
-    total = sum(COSTS[name] for name in known)
+    timed = [name for name in studies if name in COSTS]
+    total = sum(COSTS[name] for name in timed)
     if total < LONG:
         return None
-    longest = max(known, key=lambda name: COSTS[name])
+    longest = max(timed, key=lambda name: COSTS[name])
     return (
-        f"{len(known)} studies, {total:.0f} times the work of core: about {total * SECONDS / 60:.0f} min where core "
+        f"{len(timed)} studies, {total:.0f} times the work of core: about {total * SECONDS / 60:.0f} min where core "
         f"takes {SECONDS:.0f} s; {longest} is {100 * COSTS[longest] / total:.0f} % of it. Finished cases are kept and "
         "not run again"
     )

@@ -200,18 +200,18 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
 
 def _contacts(scene: Scene) -> Iterator[Number]:
     """Yield what is known of contacts that open or slip."""
-    known = limits(scene)
-    if known is None:
+    bounds = limits(scene)
+    if bounds is None:
         return
-    yield Number("contacts", known.contacts, "", "that open or slip")
-    if known.solves is not None:
-        yield Number("solves", known.solves, "", "of the open-close iteration that a step can need at most")
-    if known.far_face_step > 0:
-        yield Number("dt face", known.far_face_step, "s", "step below which a block's far face moves the wrong way")
-    if known.lowest is not None:
-        yield Number("w1", known.lowest, "rad/s", "lowest frequency of the stack, all contacts closed")
-    if known.settling is not None:
-        yield Number("t rest", known.settling, "s", "time in which the stack comes to rest to a thousandth")
+    yield Number("contacts", bounds.contacts, "", "that open or slip")
+    if bounds.solves is not None:
+        yield Number("solves", bounds.solves, "", "of the open-close iteration that a step can need at most")
+    if bounds.far_face_step > 0:
+        yield Number("dt face", bounds.far_face_step, "s", "step below which a block's far face moves the wrong way")
+    if bounds.lowest is not None:
+        yield Number("w1", bounds.lowest, "rad/s", "lowest frequency of the stack, all contacts closed")
+    if bounds.settling is not None:
+        yield Number("t rest", bounds.settling, "s", "time in which the stack comes to rest to a thousandth")
 
 
 # ---- limits -------------------------------------------------------------------------------------------------------

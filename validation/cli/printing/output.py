@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import sys
 from collections.abc import Iterator
@@ -33,6 +34,11 @@ def prepare() -> None:
 def echo(text: str = "", err: bool = False) -> None:
     """Print lines of text; characters that would act on a terminal are written as escapes."""
     typer.echo(visible(text), err=err)
+
+
+def echo_json(data: Any) -> None:
+    """Print plain data as JSON."""
+    echo(json.dumps(data, indent=1, allow_nan=False))
 
 
 @contextmanager
