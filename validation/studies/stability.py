@@ -13,6 +13,7 @@ from typing import Any
 from validation.gates.gate import Gate
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import gate
 from validation.studies.declaration import Study
 from validation.theory import spectra, statics
 
@@ -90,7 +91,7 @@ def gates(scenes: Sequence[Scene]) -> Iterator[Gate]:
     for scene in scenes:
         for case in scene.expand():
             if case.load.pressure == 0:
-                yield Gate(case.name, ("dda",), "displacement.final", 0.0, 0.0, "no load moves nothing")
+                yield gate(case, "dda", "displacement.final", (0.0, 0.0), "no load moves nothing")
             elif bounded(case):
                 yield from digits(case)
             else:
@@ -117,18 +118,18 @@ def digits(case: Scene) -> Iterator[Gate]:
     ratio = case.contact.stiffness / case.block.young
     name = case.name
     why = "contact-gap coordinates, mode by mode: eleven digits from A0 = 0, nine from the consistent start"
-    yield Gate(name, ("dda", "dda-60"), "worst.max", 0.0, LIMIT[t.start], why)
+    yield gate(name, ("dda", "dda-60"), "worst.max", (0.0, LIMIT[t.start]), why)
     if FEM_RANGE[0] <= ratio <= FEM_RANGE[1] and not conditional(t.alpha, t.delta) and not incompressible(case):
         why = "solved for the displacement, against its own matrices taken as exact: nine digits for p/E 1e-3 to 1e12"
-        yield Gate(name, ("fem", "fem-60"), "worst.max", 0.0, FEM_LIMIT, why)
+        yield gate(name, ("fem", "fem-60"), "worst.max", (0.0, FEM_LIMIT), why)
     if "bar" in case.run.solvers:
         why = "exact modes, cut off at 1e-11 of the maximum; over the static value where the wave has not arrived"
         for quantity in ("displacement", "pressure"):
-            yield Gate(name, ("bar", "bar-60"), f"{quantity}.scaled", 0.0, BAR_LIMIT, why)
+            yield gate(name, ("bar", "bar-60"), f"{quantity}.scaled", (0.0, BAR_LIMIT), why)
     lost = LOST.get((t.alpha, case.contact.stiffness))
     if lost and t.start == "zero" and t.step == 1e-3 and t.discount == 1:
         why = "the printed recursion loses the pressure: independent program, within the scatter of rounding errors"
-        yield Gate(name, ("dda-textbook", "dda-60"), "pressure.max", lost / 20, lost * 20, why)
+        yield gate(name, ("dda-textbook", "dda-60"), "pressure.max", (lost / 20, lost * 20), why)
 
 
 def grown(case: Scene) -> Iterator[Gate]:
@@ -138,7 +139,7 @@ def grown(case: Scene) -> Iterator[Gate]:
     if slower > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
     why = "beyond the limit the history grows by the spectral radius of its stiffest mode, from trace and determinant"
-    yield Gate(case.name, ("dda",), "stability.growth", (1 - 1e-6) * rate, (1 + 1e-6) * rate, why)
+    yield gate(case, "dda", "stability.growth", ((1 - 1e-6) * rate, (1 + 1e-6) * rate), why)
 
 
 PURPOSE = (
