@@ -264,8 +264,7 @@ def test_what_is_no_part_is_refused(text: str) -> None:
     assert error.value.value == repr(text)
 
 
-def test_a_shard_whose_case_was_refused_says_so(tmp_path: Path) -> None:
-    """A part without cases is none; the options of judging are those of merge."""
+def test_a_part_without_cases_is_none_and_options_of_judging_are_those_of_merge(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SCENE.replace("steps = 50", "steps = 10") + '[run]\nsolvers = ["dda"]\n')
     statuses = []
     for part in ("1/2", "2/2"):
@@ -276,3 +275,15 @@ def test_a_shard_whose_case_was_refused_says_so(tmp_path: Path) -> None:
     assert done.returncode == 0 and len(Results(tmp_path / "all").rows()) == 1
     done = typed("run", tmp_path / "scene.toml", "--shard", "1/2", "--require", "dda")
     assert done.returncode == 2 and "--shard: goes without --require" in done.stderr
+
+
+@pytest.mark.parametrize(("solver", "memory_left", "status"), [("nowhere:solve", 1e12, 1), ("dda", 0.0, 2)])
+def test_a_shard_ends_as_its_cases_do(
+    solver: str, memory_left: float, status: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE + f'[run]\nsolvers = ["{solver}"]\n')
+    monkeypatch.setattr(memory, "available", lambda: memory_left)
+    done = typed("run", tmp_path / "scene.toml", "--shard", "1/1", "--results", tmp_path / "r")
+    assert done.returncode == status
+    merged = typed("merge", tmp_path / "r", "--out", tmp_path / "all")
+    assert merged.returncode == status, merged.stderr

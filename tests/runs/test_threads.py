@@ -151,7 +151,6 @@ try:
 except SystemExit:
     pass
 import numpy, scipy.linalg
-from conftest import thinned
 from threadpoolctl import threadpool_info
 print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_NUM_THREADS"))
 """

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 import os
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib.machinery import PathFinder
@@ -46,39 +48,33 @@ def executor(address: str | None, solvers: Iterable[str] = ()) -> Iterator[Execu
         yield None
         return
     try:
-        from distributed import Client, WorkerPlugin
+        distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise InputError(
             "needs the package distributed", field="--scheduler", advice="pip install 'dda-validation[cluster]'"
         ) from None
     try:
-        client = Client(address, timeout=PATIENCE)
+        client = distributed.Client(address, timeout=PATIENCE)
     except (OSError, ValueError) as error:
         raise InputError(
             "must be the address of a running Dask scheduler", field="--scheduler", value=f"{address!r}: {error}"
         ) from None
 
-    class Sources(WorkerPlugin):  # type: ignore[misc]
-        """The sources of users' solvers in a worker's own directory, where its processes look for modules."""
-
-        name = USER_SOURCES
-
-        def __init__(self, files: dict[str, bytes]) -> None:
-            self.files = files
-
-        def setup(self, worker: Any) -> None:
-            root = Path(worker.local_directory) / USER_SOURCES
-            for name, content in self.files.items():
-                path = root / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(content)
-            if str(root) not in sys.path:
-                sys.path.insert(0, str(root))
-
     with client:
         if files := user_sources(solvers):
-            client.register_plugin(Sources(files))
+            client.register_worker_callbacks(setup=functools.partial(place_sources, files))
         yield client.get_executor(pure=False)
+
+
+def place_sources(files: Mapping[str, bytes], dask_worker: Any) -> None:
+    """Write users' sources into a worker's own directory, and have its processes look for modules there."""
+    root = Path(dask_worker.local_directory) / USER_SOURCES
+    for name, content in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    if str(root) not in sys.path:
+        sys.path.insert(0, str(root))
 
 
 def user_sources(solvers: Iterable[str]) -> dict[str, bytes]:
@@ -109,10 +105,9 @@ def worker_memory() -> float:
     """
     if "distributed" not in sys.modules:
         return math.inf
-    from distributed import get_worker
-
+    distributed: Any = sys.modules["distributed"]
     try:
-        worker = get_worker()
+        worker = distributed.get_worker()
     except ValueError:
         return math.inf
     limit = worker.memory_manager.memory_limit

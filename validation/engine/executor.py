@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -60,7 +60,9 @@ class Pending:
             return 0.0
 
 
-def executed(pending: Sequence[Pending], jobs: int = 1, executor: Executor | None = None) -> Iterator[Ending]:
+def executed(
+    pending: Sequence[Pending], jobs: int = 1, executor: Executor | None = None
+) -> Generator[Ending, None, None]:
     """Run cases and yield their rows as they end: in this process where one worker or one case is all there is.
 
     A worker that is killed takes the pool with it. The cases that were on its workers then run once more, each in a
@@ -101,7 +103,7 @@ def executed(pending: Sequence[Pending], jobs: int = 1, executor: Executor | Non
             yield run_in_own_process(task)
 
 
-def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Iterator[Ending]:
+def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Generator[Ending, None, None]:
     """Run cases on an executor, which itself sees to workers that are lost."""
     futures = {executor.submit(task.run): task for task in pending}
     for future in as_completed(futures):
@@ -114,7 +116,7 @@ def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Iterator[Endi
             yield futures[future].failed(error_text(error))
 
 
-def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Iterator[Ending]:
+def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Generator[Ending, None, None]:
     """Run cases on worker processes; those that a lost worker has taken with it are left out.
 
     Each worker keeps a note of the case that it runs, in a file of its own in the directory `notes`.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -144,7 +144,7 @@ def run_cases(
     jobs: int = 1,
     executor: Executor | None = None,
     progress: Progress | None = None,
-) -> Iterator[StudyCases]:
+) -> Generator[StudyCases, None, None]:
     """Run the cases of all studies on one pool, each case once and its row kept as soon as it ends.
 
     No worker waits for the last case of a study. Studies of timings follow the others, in this process, one case

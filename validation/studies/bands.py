@@ -88,18 +88,50 @@ def decimals(value: float) -> float:
     return 0.5 * 10.0 ** -len(digits)
 
 
+def gate(
+    case: Scene | str,
+    solvers: str | tuple[str, ...],
+    metric: str,
+    band: tuple[float, float],
+    reason: str,
+    kind: str = "exact",
+    uncertainty: float = 0.0,
+    **window: Any,
+) -> Gate:
+    """Return a gate of a study.
+
+    Parameters
+    ----------
+    case, solvers, metric
+        What is judged: the case or its name, one solver or row, or two that are compared.
+    band, reason
+        The edges, and why these.
+    kind, uncertainty, window
+        Kind of the reference, its uncertainty, and further fields of the gate, such as `until`.
+    """
+    name = case if isinstance(case, str) else case.name
+    pair = (solvers,) if isinstance(solvers, str) else solvers
+    return Gate(name, pair, metric, *band, reason, kind, uncertainty, **window)
+
+
 def printed(
-    scene: str, pair: tuple[str, ...], metric: str, value: float, half: float, reason: str, **window: Any
+    scene: Scene | str,
+    solvers: str | tuple[str, ...],
+    metric: str,
+    value: float,
+    half: float,
+    reason: str,
+    **window: Any,
 ) -> Gate:
     """Return the gate on a number that an independent program printed.
 
     Parameters
     ----------
-    scene, pair, metric
+    scene, solvers, metric
         What is judged.
     value, half
         The number, and half a unit of its last digit: the half width of the band.
     reason, window
         Why it is so, and further fields of the gate, such as `until`.
     """
-    return Gate(scene, pair, metric, *about(value, half), reason, OTHER, half, **window)
+    return gate(scene, solvers, metric, about(value, half), reason, OTHER, half, **window)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
 from validation.studies import core_damping
-from validation.studies.bands import OTHER, OWN, about, cases, decimals, near, printed
+from validation.studies.bands import OTHER, OWN, about, cases, decimals, gate, near, printed
 from validation.studies.declaration import Study
 from validation.theory import spectra, statics
 
@@ -72,10 +72,10 @@ def gates_of_statics() -> Iterator[Gate]:
     why = "closed form of static equilibrium; the band is rounding: 1e4 eps, conditioning of the static system"
     for scene in cases("figures-5-6", "poisson-statics"):
         value = statics.static_displacement(scene)
-        yield Gate(scene.name, ("dda",), metric, *near(value, 1e4 * spectra.EPS), why)
+        yield gate(scene, "dda", metric, near(value, 1e4 * spectra.EPS), why)
     why = "mu = 0: every mesh holds the linear static field; band: rounding of a sparse solution"
     for scene in cases("figures-5-6"):
-        yield Gate(scene.name, ("fem",), metric, *near(statics.static_displacement(scene), 1e-9), why)
+        yield gate(scene, "fem", metric, near(statics.static_displacement(scene), 1e-9), why)
     why = "independent program, four digits: half a unit of the last"
     for scene in cases("poisson-statics"):
         yield printed(scene.name, ("fem",), metric, FE_STATICS[f"{scene.contact.stiffness:g}"], 5e-7, why)
@@ -85,7 +85,7 @@ def gates_of_statics() -> Iterator[Gate]:
     )
     for scene in cases("figures-3-4"):
         remaining_motion = spectra.remaining_motion(scene)
-        yield Gate(scene.name, ("dda",), "pressure.final", *near(scene.load.pressure, 2 * remaining_motion + 1e-9), why)
+        yield gate(scene, "dda", "pressure.final", near(scene.load.pressure, 2 * remaining_motion + 1e-9), why)
 
 
 def settling() -> Iterator[Gate]:
@@ -93,7 +93,7 @@ def settling() -> Iterator[Gate]:
     why = "first step from which the value stays within 1 % of static; independent program, whole number"
     for name, steps in SETTLING.items():
         for quantity, count in zip(("displacement", "pressure"), steps, strict=True):
-            yield Gate(name, ("dda",), f"{quantity}.settling_step", count, count, why, OTHER)
+            yield gate(name, "dda", f"{quantity}.settling_step", (count, count), why, OTHER)
 
 
 def frequencies() -> Iterator[Gate]:
@@ -110,10 +110,10 @@ def frequencies() -> Iterator[Gate]:
         error = spectra.mesh_frequency_error(scene)
         name = scene.name
         metric = "mode1.frequency"
-        yield Gate(name, ("dda",), metric, *near(w_dda, 1e-12), block)
-        yield Gate(name, ("bar",), metric, *near(w_bar, 1e-12), "b tan b = 2p/E; band: rounding")
-        yield Gate(name, ("fem", "bar"), metric, 0.9 * error - 2e-11, 1.1 * error + 2e-11, elements)
-        yield Gate(name, ("dda", "bar"), metric, *near(w_dda / w_bar - 1, 1e-10), form)
+        yield gate(name, "dda", metric, near(w_dda, 1e-12), block)
+        yield gate(name, "bar", metric, near(w_bar, 1e-12), "b tan b = 2p/E; band: rounding")
+        yield gate(name, ("fem", "bar"), metric, (0.9 * error - 2e-11, 1.1 * error + 2e-11), elements)
+        yield gate(name, ("dda", "bar"), metric, near(w_dda / w_bar - 1, 1e-10), form)
 
 
 def damping() -> Iterator[Gate]:
@@ -124,12 +124,12 @@ def damping() -> Iterator[Gate]:
         for solver, frequency in frequency_of.items():
             value = spectra.damping_ratio(scene, frequency)
             if abs(spectra.roots(scene, frequency)[0].imag) >= 1e-6:
-                yield Gate(scene.name, (solver,), "mode1.damping", *about(value, 1e-10 * abs(value) + 1e-12), operator)
+                yield gate(scene, solver, "mode1.damping", about(value, 1e-10 * abs(value) + 1e-12), operator)
     history = "matrix pencil on the displacement: the history holds the ratio that the operator has, to 1e-6"
     for scene in cases("figures-3-4", "figure-8", "figure-9"):
         value = spectra.damping_ratio(scene, spectra.dda_frequency(scene))
         if scene.time.step < 0.01:
-            yield Gate(scene.name, ("dda",), "mode1.measured_damping", *about(value, 1e-6), history)
+            yield gate(scene, "dda", "mode1.measured_damping", about(value, 1e-6), history)
 
 
 def mesh() -> Iterator[Gate]:
@@ -140,11 +140,11 @@ def mesh() -> Iterator[Gate]:
     )
     for scene in cases("figures-3-4", "figures-5-6"):
         for metric in ("displacement.max", "pressure.max"):
-            yield Gate(scene.name, ("fem", "bar"), metric, 1e-15, 1e-6, why)
+            yield gate(scene, ("fem", "bar"), metric, (1e-15, 1e-6), why)
     yield from dispersion()
     why = "one column of elements is exact where nothing depends on x; band: rounding of the full model"
     for metric in ("displacement.max", "pressure.max"):
-        yield Gate(FULL_MODEL, ("fem", "fem:full"), metric, 0, 1e-11, why)
+        yield gate(FULL_MODEL, ("fem", "fem:full"), metric, (0, 1e-11), why)
 
 
 def dispersion() -> Iterator[Gate]:
@@ -158,7 +158,7 @@ def dispersion() -> Iterator[Gate]:
             "order, takes up to a quarter off"
         )
         for quantity, value in spectra.mesh_error(scene).items():
-            yield Gate(scene.name, ("fem", "bar"), f"{quantity}.l2", 0.75 * value, 1.1 * value, why)
+            yield gate(scene, ("fem", "bar"), f"{quantity}.l2", (0.75 * value, 1.1 * value), why)
 
 
 def model_form() -> Iterator[Gate]:
@@ -172,7 +172,7 @@ def model_form() -> Iterator[Gate]:
         for quantity, percent in zip(("displacement", "pressure"), percents, strict=True):
             half = decimals(percent)
             edges = (percent - half) / 100, (percent + half) / 100
-            yield Gate(scene.name, ("dda", "bar"), f"{quantity}.l2", *edges, why, OTHER, half / 100, until=0.2)
+            yield gate(scene, ("dda", "bar"), f"{quantity}.l2", edges, why, OTHER, half / 100, until=0.2)
     why = "first peak of the pressure, which no window changes: independent program, half a unit of its last digit"
     for scene in cases("model-form"):
         excess = PEAKS[f"{scene.time.step:g}"]
@@ -199,11 +199,11 @@ def poisson() -> Iterator[Gate]:
     )
     for quantity, steps in (("displacement", (1.3e-4, 2.2e-5)), ("pressure", (2.4e-5, 4.4e-6))):
         for name, value in zip((coarse, middle), steps, strict=True):
-            yield Gate(name, ("fem", "fem"), f"{quantity}.l2", value / 1.5, value * 1.5, why, OWN, against=fine)
+            yield gate(name, ("fem", "fem"), f"{quantity}.l2", (value / 1.5, value * 1.5), why, OWN, against=fine)
     why = "model form, physics, at mu = 0.25: both meshes that are finer than four give this to its last digit"
     for quantity, percent in (("displacement", 2.753), ("pressure", 2.958)):
         edges = (percent - 0.01) / 100, (percent + 0.01) / 100
-        yield Gate(fine, ("dda", "fem"), f"{quantity}.l2", *edges, why, OWN, 6e-6)
+        yield gate(fine, ("dda", "fem"), f"{quantity}.l2", edges, why, OWN, 6e-6)
 
 
 def code() -> Iterator[Gate]:
@@ -214,7 +214,7 @@ def code() -> Iterator[Gate]:
     )
     for scene in cases("figures-3-4", "figures-5-6", "figure-8", "figure-9"):
         for metric in ("displacement.max", "pressure.max"):
-            yield Gate(scene.name, ("dda", "dda-textbook"), metric, 0, rounding(scene), why)
+            yield gate(scene, ("dda", "dda-textbook"), metric, (0, rounding(scene)), why)
 
 
 def rounding(scene: Scene) -> float:

@@ -14,7 +14,7 @@ from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import OWN, about, cases
+from validation.studies.bands import OWN, about, cases, gate
 from validation.theory import spectra
 
 NAME = "damping"
@@ -90,8 +90,8 @@ def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
     )
     history = "matrix pencil on each solver's displacement against its operator: the histories hold the mode to 1e-6"
     for scene in cases(*scenes):
-        yield Gate(scene.name, (NAME,), "operator", 0, 1e-12, operator)
-        yield Gate(scene.name, (NAME,), "history", 0, 1e-6, history)
+        yield gate(scene, NAME, "operator", (0, 1e-12), operator)
+        yield gate(scene, NAME, "history", (0, 1e-6), history)
         yield from ratio(scene)
 
 
@@ -107,7 +107,7 @@ def ratio(scene: Scene) -> Iterator[Gate]:
             "model form, physics: under (1/2, 1), w dt below 3.27, a stiffer block is damped more at the same dt; own "
             f"value, {why}"
         )
-        yield Gate(scene.name, pair, metric, *about(value, half), reason, OWN, half)
+        yield gate(scene, pair, metric, about(value, half), reason, OWN, half)
         return
     frequency = spectra.bar_frequency(scene)
     error = spectra.mesh_frequency_error(scene)
@@ -116,4 +116,4 @@ def ratio(scene: Scene) -> Iterator[Gate]:
     if min(abs(dda), abs(fem)) < UNDAMPED:
         return
     why = "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error"
-    yield Gate(scene.name, pair, metric, *about(dda / fem - 1, 1e-9 + error), why)
+    yield gate(scene, pair, metric, about(dda / fem - 1, 1e-9 + error), why)

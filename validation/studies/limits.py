@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
-from validation.studies.bands import OWN, cases
+from validation.studies.bands import OWN, cases, gate
 from validation.studies.declaration import Study
 from validation.theory.spectra import EPS
 
@@ -45,21 +45,21 @@ def gates() -> Iterator[Gate]:
     pair = ("fem", "fem")
     metric = "displacement.static"
     for poisson, band in LOCKED.items():
-        yield Gate(name(poisson, 1), pair, metric, *band, why, OWN, against=name(poisson, 2))
+        yield gate(name(poisson, 1), pair, metric, band, why, OWN, against=name(poisson, 2))
     why = (
         "quadratic elements do not lock, but at eight a side are not converged: a quarter about the difference from 32 "
         "a side, whose own from 64 a side is a tenth of it"
     )
     for (poisson, band), scene in zip(COARSE.items(), fine(), strict=True):
-        yield Gate(name(poisson, 2), pair, metric, *band, why, OWN, against=scene.name)
+        yield gate(name(poisson, 2), pair, metric, band, why, OWN, against=scene.name)
     why = (
         "quadratic elements do not see the last 1e-4 of mu: the solution changes by the order of 1/2 - mu "
         "times its slope, 0.2 %"
     )
-    yield Gate(name(0.499999, 2), pair, metric, -0.003, 0.0, why, OWN, against=name(0.4999, 2))
+    yield gate(name(0.499999, 2), pair, metric, (-0.003, 0.0), why, OWN, against=name(0.4999, 2))
     why = "|lambda| = 1: the energy of each mode stays, apart from one rounding a step"
     for case in cases("long-run"):
-        yield Gate(case.name, ("dda",), "energy.drift", 0.0, case.time.steps * EPS, why)
+        yield gate(case, "dda", "energy.drift", (0.0, case.time.steps * EPS), why)
 
 
 STUDY = Study(

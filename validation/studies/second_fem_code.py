@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, OTHER, cases, near
+from validation.studies.bands import APART, OTHER, cases, gate, near
 from validation.studies.declaration import Study
 
 SQUARES = ("two-codes-constant", "two-codes-average")
@@ -37,7 +37,7 @@ def equilibrium() -> Iterator[Gate]:
     for scene in cases(*POLYGONS):
         value = carried(scene)
         for solver in scene.run.solvers:
-            yield Gate(scene.name, (solver,), "pressure.static", *near(value, SAME), why)
+            yield gate(scene, solver, "pressure.static", near(value, SAME), why)
 
 
 def equal() -> Iterator[Gate]:
@@ -50,7 +50,7 @@ def equal() -> Iterator[Gate]:
         for solver in scene.run.solvers:
             if solver.startswith("fenicsx"):
                 for metric in ("displacement.max", "pressure.max"):
-                    yield Gate(scene.name, (solver, "fem:full"), metric, APART, SAME, why, OTHER)
+                    yield gate(scene, (solver, "fem:full"), metric, (APART, SAME), why, OTHER)
 
 
 TWO_CODES = Study(

@@ -13,6 +13,7 @@ from typing import Any
 from validation.gates.gate import Gate
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.bands import gate
 from validation.studies.declaration import Study
 from validation.theory import spectra
 
@@ -85,7 +86,7 @@ def gates(scenes: Sequence[Scene]) -> Iterator[Gate]:
     for scene in scenes:
         for case in scene.expand():
             if case.load.pressure == 0:
-                yield Gate(case.name, ("dda",), "displacement.final", 0.0, 0.0, "no load moves nothing")
+                yield gate(case, "dda", "displacement.final", (0.0, 0.0), "no load moves nothing")
             elif bounded(case):
                 yield from digits(case)
             else:
@@ -105,11 +106,11 @@ def digits(case: Scene) -> Iterator[Gate]:
     t = case.time
     name = case.name
     why = "contact-gap coordinates, mode by mode: eleven digits from A0 = 0, nine from the consistent start"
-    yield Gate(name, ("dda", "dda-60"), "worst.max", 0.0, LIMIT[t.start], why)
+    yield gate(name, ("dda", "dda-60"), "worst.max", (0.0, LIMIT[t.start]), why)
     lost = LOST.get((t.alpha, case.contact.stiffness))
     if lost and t.start == "zero" and t.step == 1e-3 and t.discount == 1:
         why = "the printed recursion loses the pressure: independent program, within the scatter of rounding errors"
-        yield Gate(name, ("dda-textbook", "dda-60"), "pressure.max", lost / 20, lost * 20, why)
+        yield gate(name, ("dda-textbook", "dda-60"), "pressure.max", (lost / 20, lost * 20), why)
 
 
 def grown(case: Scene) -> Iterator[Gate]:
@@ -119,7 +120,7 @@ def grown(case: Scene) -> Iterator[Gate]:
     if slower > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
     why = "beyond the limit the history grows by the spectral radius of its stiffest mode, from trace and determinant"
-    yield Gate(case.name, ("dda",), "stability.growth", (1 - 1e-6) * rate, (1 + 1e-6) * rate, why)
+    yield gate(case, "dda", "stability.growth", ((1 - 1e-6) * rate, (1 + 1e-6) * rate), why)
 
 
 PURPOSE = (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from validation.gates.gate import Gate
-from validation.studies.bands import about, cases
+from validation.studies.bands import about, cases, gate
 from validation.studies.declaration import Study
 from validation.theory import spectra
 
@@ -23,9 +23,9 @@ def gates() -> Iterator[Gate]:
     for case in cases(SCENE):
         radius = spectra.spectral_radius(case, spectra.contact_frequency(case))
         half = 1e-11  # rounding of a root near -1, whose distance from it may be 1e-8
-        yield Gate(case.name, ("dda",), "contact.spectral_radius", *about(radius, half), root)
+        yield gate(case, "dda", "contact.spectral_radius", about(radius, half), root)
         for quantity in ("displacement", "pressure"):
-            yield Gate(case.name, ("dda", "dda-60"), f"{quantity}.fine_settling_step", 0.0, 0.0, whole)
+            yield gate(case, ("dda", "dda-60"), f"{quantity}.fine_settling_step", (0.0, 0.0), whole)
 
 
 STUDY = Study(

@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, OTHER, OWN, cases, near
+from validation.studies.bands import APART, OTHER, OWN, cases, gate, near
 from validation.studies.declaration import Study
 from validation.theory import spectra, statics
 
@@ -50,10 +50,10 @@ def column() -> Iterator[Gate]:
     order = "linear elements overestimate by (b/n)^2 / 24, order 2; a tenth for the next order"
     for scene in cases("subblocks-column"):
         for metric in ("displacement.max", "pressure.max"):
-            yield Gate(scene.name, ("dda", "fem"), metric, APART, SAME, same, OTHER)
+            yield gate(scene, ("dda", "fem"), metric, (APART, SAME), same, OTHER)
         if scene.fem.per_side >= 4:
             error = spectra.mesh_frequency_error(scene)
-            yield Gate(scene.name, ("dda", "bar"), "mode1.frequency", 0.9 * error, 1.1 * error, order)
+            yield gate(scene, ("dda", "bar"), "mode1.frequency", (0.9 * error, 1.1 * error), order)
 
 
 def glue() -> Iterator[Gate]:
@@ -61,7 +61,7 @@ def glue() -> Iterator[Gate]:
     why = "n - 1 joints in series, 1 / (2 glue_ratio E) each, half of them below the middle; band: rounding"
     for scene in cases("subblocks-glue"):
         band = near(glued_column(scene), 1e4 * spectra.EPS)
-        yield Gate(scene.name, ("dda",), "displacement.static", *band, why)
+        yield gate(scene, "dda", "displacement.static", band, why)
 
 
 def glued_column(scene: Scene) -> float:
@@ -80,7 +80,7 @@ def triangles() -> Iterator[Gate]:
     )
     for scene in cases("subblocks-triangles"):
         for quantity in ("displacement", "pressure", "horizontal", "rotation"):
-            yield Gate(scene.name, ("dda", "fem"), f"{quantity}.max", APART, SAME, why, OTHER)
+            yield gate(scene, ("dda", "fem"), f"{quantity}.max", (APART, SAME), why, OTHER)
 
 
 def convergence() -> Iterator[Gate]:
@@ -94,7 +94,7 @@ def convergence() -> Iterator[Gate]:
             n = (scene.block.subdivide or (1, 1))[0]
             if scene.block.pattern == "triangles" and (kind, n) in TRIANGLES:
                 band = near(TRIANGLES[kind, n], 0.02)
-                yield Gate(scene.name, ("dda", "fem"), "mode1.frequency", *band, why, OWN)
+                yield gate(scene, ("dda", "fem"), "mode1.frequency", band, why, OWN)
 
 
 def locking() -> Iterator[Gate]:
@@ -109,7 +109,7 @@ def locking() -> Iterator[Gate]:
         value, half = numbers[scene.contact.stiffness / b.young, b.poisson]
         wave = spectra.bar_frequency(scene) / (b.young / b.density) ** 0.5 * statics.size(scene)[1]
         edges = value - half, value + half + (wave / 32) ** 2 / 24
-        yield Gate(scene.name, ("dda", "fem"), "mode1.frequency", *edges, why, reference_uncertainty=half)
+        yield gate(scene, ("dda", "fem"), "mode1.frequency", edges, why, uncertainty=half)
 
 
 def best_glue() -> Iterator[Gate]:
@@ -118,7 +118,7 @@ def best_glue() -> Iterator[Gate]:
     for scene in cases("subblocks-best-glue"):
         if scene.block.glue_ratio == 3.0:
             band = near(BEST_GLUE["rocking" if scene.load.traction else "axial"], 0.02)
-            yield Gate(scene.name, ("dda", "fem"), "mode1.frequency", *band, why, OWN)
+            yield gate(scene, ("dda", "fem"), "mode1.frequency", band, why, OWN)
 
 
 def rocking() -> Iterator[Gate]:
@@ -130,9 +130,9 @@ def rocking() -> Iterator[Gate]:
     )
     bands = {1.0: (136.5, 137.5), 0.4: (149.5, 151.5)}
     for scene in cases("rocking"):
-        yield Gate(scene.name, ("dda",), "mode1.frequency", *near(rocking_frequency(scene), 1e-12), lowest)
+        yield gate(scene, "dda", "mode1.frequency", near(rocking_frequency(scene), 1e-12), lowest)
         if (band := bands.get(scene.fem.patch_width or 0.0)) is not None:
-            yield Gate(scene.name, ("fem",), "mode1.frequency", *band, softer, reference_uncertainty=1.0)
+            yield gate(scene, "fem", "mode1.frequency", band, softer, uncertainty=1.0)
 
 
 def rocking_frequency(scene: Scene) -> float:

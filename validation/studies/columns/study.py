@@ -19,7 +19,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.bands import OTHER, about, cases, fitted_order, near
+from validation.studies.bands import OTHER, about, cases, fitted_order, gate, near
 from validation.studies.columns import known
 from validation.studies.declaration import Study
 from validation.theory import columns
@@ -202,18 +202,18 @@ def known_gates() -> Iterator[Gate]:
     for sample in known.KNOWN:
         half = sample.half + 1e-12 * abs(sample.value)
         band = about(sample.value, half)
-        yield Gate(sample.scene, (SAMPLES,), sample_name(sample), *band, WHY_KNOWN, OTHER, sample.half)
+        yield gate(sample.scene, SAMPLES, sample_name(sample), band, WHY_KNOWN, OTHER, sample.half)
 
 
 def order_gates() -> Iterator[Gate]:
     """Yield the gates on the orders of the blocks."""
     why_two = "average acceleration from a consistent start is of order 2, through switches too; three halvings"
-    yield Gate("columns-drop-average", (ORDER,), "displacement", 1.9, 2.1, why_two)
+    yield gate("columns-drop-average", ORDER, "displacement", (1.9, 2.1), why_two)
     why_one = (
         "constant acceleration is of order 1 with terms of order 2 beside it, which an independent program saw as 0.84 "
         "to 1.00 on eight columns"
     )
-    yield Gate("columns-drop-constant", (ORDER,), "displacement", 0.84, 1.05, why_one, OTHER)
+    yield gate("columns-drop-constant", ORDER, "displacement", (0.84, 1.05), why_one, OTHER)
 
 
 def solve_gates() -> Iterator[Gate]:
@@ -221,7 +221,7 @@ def solve_gates() -> Iterator[Gate]:
     for case in cases(DOMINO):
         most = columns.greatest_solves(len(column_of(case).contacts))
         why = "rigid blocks that touch close one contact in each solve: N + 1 solves, at every step and scheme"
-        yield Gate(case.name, (DDA,), "contact.most_solves", most, most, why)
+        yield gate(case, DDA, "contact.most_solves", (most, most), why)
     why_mean = (
         "mean solves of an independent program from other velocities; band: 15 %, thrice what another draw of the "
         "velocities changes, beside the length of the run, which is not printed"
@@ -231,10 +231,10 @@ def solve_gates() -> Iterator[Gate]:
             if case.time.delta in table:
                 index = STEPS.index(round(case.time.step * STIFF, 3))
                 band = near(table[case.time.delta][index], 0.15)
-                yield Gate(case.name, (DDA,), "contact.mean_solves", *band, why_mean, OTHER)
+                yield gate(case, DDA, "contact.mean_solves", band, why_mean, OTHER)
             most = columns.greatest_solves(len(column_of(case).contacts))
             why_most = "proven: at most N + 1 for rigid blocks, whatever step, delta and gg; one contact needs two"
-            yield Gate(case.name, (DDA,), "contact.most_solves", 2, most, why_most)
+            yield gate(case, DDA, "contact.most_solves", (2, most), why_most)
 
 
 def spall_gates() -> Iterator[Gate]:
@@ -242,10 +242,10 @@ def spall_gates() -> Iterator[Gate]:
     why_bars = "an independent program; a free piece's waves average to nothing over 2 h / c"
     top, below = known.BAR_PIECES[5], known.BAR_PIECES[4]
     for name, value in (("piece 6", top), ("piece 5", below)):
-        yield Gate(SPALL_BARS, (f"{known.BARS} {PIECES}",), name, *about(value, 1e-9), why_bars, OTHER, 5e-13)
+        yield gate(SPALL_BARS, f"{known.BARS} {PIECES}", name, about(value, 1e-9), why_bars, OTHER, 5e-13)
     for number, value in enumerate(known.CRADLE_BARS, start=1):
         name = f"piece {number}"
-        yield Gate(CRADLE, (f"{known.BARS} {PIECES}",), name, *about(value, 1e-9), why_bars, OTHER, 5e-15)
+        yield gate(CRADLE, f"{known.BARS} {PIECES}", name, about(value, 1e-9), why_bars, OTHER, 5e-15)
     why_fine = (
         "order 2 in blocks and steps, which an independent program saw as 6e-5 of the displacement with 64 a piece"
     )
@@ -253,12 +253,12 @@ def spall_gates() -> Iterator[Gate]:
     for case in cases(SPALL_BLOCKS):
         finest = column_of(case).layer[0].blocks == 64 * len(known.BAR_PIECES)
         if finest and case.time.delta == 0.5:
-            yield Gate(case.name, (f"{DDA} {PIECES}",), "piece 6", *about(top, 1e-3), why_fine, OTHER)
+            yield gate(case, f"{DDA} {PIECES}", "piece 6", about(top, 1e-3), why_fine, OTHER)
         elif finest:
             low = top * (1 - 0.032)
-            yield Gate(case.name, (f"{DDA} {PIECES}",), "piece 6", *near(low, 0.01), why_damped, OTHER)
+            yield gate(case, f"{DDA} {PIECES}", "piece 6", near(low, 0.01), why_damped, OTHER)
     why_blocks = "an independent program, exact in time; band: half a unit of its last digit, and c dt/h"
-    yield Gate(SPALL_BARS, (f"{known.EVENTS} {PIECES}",), "piece 6", *about(known.BLOCK_PIECES[5], 5e-3), why_blocks)
+    yield gate(SPALL_BARS, f"{known.EVENTS} {PIECES}", "piece 6", about(known.BLOCK_PIECES[5], 5e-3), why_blocks)
 
 
 def joint_gates() -> Iterator[Gate]:
@@ -266,7 +266,7 @@ def joint_gates() -> Iterator[Gate]:
     why = "closed form of a rigid joint of fixed strength under a sine; band: the rows of one period"
     for strength, scene in jointed():
         for name, value in zip(("transmitted", "reflected", "absorbed"), known.SLIPPING_JOINT[strength], strict=True):
-            yield Gate(scene.name, (f"{known.BARS} {PARTS}",), name, *about(value, 2e-3), why)
+            yield gate(scene, f"{known.BARS} {PARTS}", name, about(value, 2e-3), why)
 
 
 def rest_gates() -> Iterator[Gate]:
@@ -275,8 +275,8 @@ def rest_gates() -> Iterator[Gate]:
     for case in cases(SETTLE):
         t = case.time
         value = known.SETTLED[t.alpha, t.delta, t.discount, t.step]
-        yield Gate(case.name, (REST,), "time", *near(value, 0.05), why, OTHER)
-        yield Gate(case.name, (REST,), "final", 0.999, 1.001, "the static solution is unique, whatever came before")
+        yield gate(case, REST, "time", near(value, 0.05), why, OTHER)
+        yield gate(case, REST, "final", (0.999, 1.001), "the static solution is unique, whatever came before")
 
 
 def slip_gates() -> Iterator[Gate]:
@@ -287,7 +287,7 @@ def slip_gates() -> Iterator[Gate]:
         for name, printed in zip(("lowest", "highest"), values, strict=True):
             half = known.half_unit(printed)
             why = "an independent program with the same step; band: half a unit of its last digit"
-            yield Gate(case.name, (SAMPLES,), name, *about(float(printed), half), why, OTHER, half)
+            yield gate(case, SAMPLES, name, about(float(printed), half), why, OTHER, half)
 
 
 def study() -> Study:

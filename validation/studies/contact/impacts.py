@@ -15,7 +15,7 @@ from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.events import rectangle
-from validation.studies.bands import OTHER, about, cases
+from validation.studies.bands import OTHER, about, cases, gate
 from validation.studies.declaration import Study
 from validation.studies.opening import half_unit
 
@@ -113,7 +113,7 @@ def gates() -> tuple[Gate, ...]:
 
 
 def _near(scene: Scene, solver: str, metric: str, value: float, half: float) -> Gate:
-    return Gate(scene.name, (solver,), metric, *about(value, half + 1e-11 * abs(value)), PRINTED, OTHER, half)
+    return gate(scene, solver, metric, about(value, half + 1e-11 * abs(value)), PRINTED, OTHER, half)
 
 
 def other_gates() -> Iterator[Gate]:
@@ -134,7 +134,7 @@ def impact_gates() -> Iterator[Gate]:
             yield _near(case, solver, "contact.restitution", e, half_unit(e))
     wave = "a wall so stiff that the pressure reaches rho c V: e^(-400) is left, and the samples lie in the plateau"
     force = math.sqrt(case.block.density * case.block.young) * case.block.base_length * -case.block.velocity
-    yield Gate(case.name, (BAR,), "contact.peak_force", *about(force, 1e-11 * force), wave)
+    yield gate(case, BAR, "contact.peak_force", about(force, 1e-11 * force), wave)
 
 
 def stop_gates(case: Scene) -> Iterator[Gate]:
@@ -143,13 +143,13 @@ def stop_gates(case: Scene) -> Iterator[Gate]:
     why = "an independent program, on a rigid stop; band: sqrt(E / p), the length of an impact over a transit"
     for name, time in STOP.items():
         edges = about(time * transit(case), impact_length * transit(case))
-        yield Gate(case.name, (BLOCK,), f"switches.{name}", *edges, why, OTHER)
-    yield Gate(case.name, (BLOCK,), "contact.restitution", *about(RETURNED, impact_length), why, OTHER)
+        yield gate(case, BLOCK, f"switches.{name}", edges, why, OTHER)
+    yield gate(case, BLOCK, "contact.restitution", about(RETURNED, impact_length), why, OTHER)
     whole = "contact of 2 h / c on a rigid wall; band: E / p, the springs of a wall that stiff"
     compliance = 2 * impact_length**2
     edges = about(2 * transit(case), compliance * transit(case))
-    yield Gate(case.name, (BAR,), "switches.first_opening", *edges, whole)
-    yield Gate(case.name, (BAR,), "contact.restitution", 1 - compliance, 1 + 1e-12, whole)
+    yield gate(case, BAR, "switches.first_opening", edges, whole)
+    yield gate(case, BAR, "contact.restitution", (1 - compliance, 1 + 1e-12), whole)
 
 
 def fall_gates() -> Iterator[Gate]:
@@ -159,7 +159,7 @@ def fall_gates() -> Iterator[Gate]:
         free = "free fall, sqrt(2 s / g); band: rounding"
         block, bar, closing, opening = FALLS[case.contact.stiffness / case.block.young]
         for solver in (BLOCK, BAR):
-            yield Gate(case.name, (solver,), "switches.first_closing", *about(start, 1e-12), free)
+            yield gate(case, solver, "switches.first_closing", about(start, 1e-12), free)
         switch_times = ((BLOCK, SWITCHES[0], block), (BAR, SWITCHES[0], bar), (BLOCK, SWITCHES[1], closing))
         for solver, name, delay in (*switch_times, (BLOCK, SWITCHES[2], opening)):
             if delay is not None:
@@ -170,7 +170,7 @@ def bouncing_bar_gates() -> Iterator[Gate]:
     """Yield the gates on the bouncing bar, and on what its times tend to."""
     for case in cases("bouncing-bar"):
         falls = "free fall from 5 m under 10 m/s2: 1 s; band: rounding"
-        yield Gate(case.name, (BAR,), "switches.first_closing", *about(1.0, 1e-12), falls)
+        yield gate(case, BAR, "switches.first_closing", about(1.0, 1e-12), falls)
         for name, time in zip(SWITCHES, BOUNCES[round(stiffness_ratio(case), 6)], strict=True):
             yield _near(case, BAR, f"switches.{name}", time, half_unit(time))
     for name, time in RIGID.items():
@@ -178,7 +178,7 @@ def bouncing_bar_gates() -> Iterator[Gate]:
             "Doyen, Ern and Piperno 2011, on a rigid wall; band: of the two stiffest springs, extrapolated linearly "
             "in 1/p, what is quadratic is left, (E / (2 p h))^2 of both, ten times over"
         )
-        yield Gate("bouncing-bar", (LIMIT,), name, *about(time, 10 * 1e-3 * 1e-4), why, OTHER)
+        yield gate("bouncing-bar", LIMIT, name, about(time, 10 * 1e-3 * 1e-4), why, OTHER)
 
 
 def derived() -> tuple[Derived, ...]:
@@ -210,13 +210,11 @@ def wall_gates() -> Iterator[Gate]:
         start = case.contact.gap / -case.block.velocity
         end = release(case)
         closed = "contact lasts 2 L / c and what the springs add, 1.6783 / F of a transit; band: rounding"
-        yield Gate(
-            case.name, (BAR,), "switches.first_closing", *about(start, 1e-12 * start), "gap over speed; band: rounding"
-        )
-        yield Gate(case.name, (BAR,), "switches.first_opening", *about(end, 1e-12 * end), closed)
+        yield gate(case, BAR, "switches.first_closing", about(start, 1e-12 * start), "gap over speed; band: rounding")
+        yield gate(case, BAR, "switches.first_opening", about(end, 1e-12 * end), closed)
         F = stiffness_ratio(case)
         restitution_reason = "all of the momentum on a rigid wall; band: 1 / F of the springs"
-        yield Gate(case.name, (BAR,), "contact.restitution", 1 - 1 / F, 1.0, restitution_reason)
+        yield gate(case, BAR, "contact.restitution", (1 - 1 / F, 1.0), restitution_reason)
 
 
 def mass_gates() -> Iterator[Gate]:
@@ -226,11 +224,11 @@ def mass_gates() -> Iterator[Gate]:
     soft = (
         "closed form of code_aster V5.01.108 for a rigid mass; band: 2 p h / (E a) = 1e-4, by which the block gives way"
     )
-    yield Gate(case.name, (BLOCK,), "switches.first_closing", *about(landing, 1e-12), "free fall; band: rounding")
-    yield Gate(case.name, (BLOCK,), "switches.first_opening", *about(leaving, 1e-4 * (leaving - landing)), soft)
-    yield Gate(case.name, (BLOCK,), "contact.penetration", *about(depth, 1e-4 * depth), soft)
+    yield gate(case, BLOCK, "switches.first_closing", about(landing, 1e-12), "free fall; band: rounding")
+    yield gate(case, BLOCK, "switches.first_opening", about(leaving, 1e-4 * (leaving - landing)), soft)
+    yield gate(case, BLOCK, "contact.penetration", about(depth, 1e-4 * depth), soft)
     step = "the same; band: what a landing within the step leaves open, (w dt)^2 = 1e-4, and 1e-4 as above"
-    yield Gate(case.name, ("dda",), "contact.penetration", *about(depth, 2e-4 * depth), step)
+    yield gate(case, "dda", "contact.penetration", about(depth, 2e-4 * depth), step)
 
 
 STUDY = Study(

@@ -21,7 +21,7 @@ from validation.metrics.values import or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
-from validation.studies.bands import about, cases
+from validation.studies.bands import about, cases, gate
 from validation.studies.declaration import Study
 
 KINDS = ("constant", "average", "implicit", "conserving")
@@ -109,12 +109,12 @@ def impact_gates() -> Iterator[Gate]:
         "the piecewise linear map of the scheme, computed without DDA; band: the block's strain, 8 p/E, and rounding"
     )
     for name in IMPACTS:
-        yield Gate(name, (MAP,), "largest difference", 0.0, SOFT, why_map, "other code")
+        yield gate(name, MAP, "largest difference", (0.0, SOFT), why_map, "other code")
         for case in cases(name):
             if math.isclose(omega(case), 2.0):
                 e = TWO_STEPS[name]
                 why = f"contact of two steps: e = {e:.4g} whatever the phase; band: the block's strain"
-                yield Gate(case.name, ("dda",), "contact.restitution", *about(e, SOFT), why)
+                yield gate(case, "dda", "contact.restitution", about(e, SOFT), why)
 
 
 def statistics_gates() -> Iterator[Gate]:
@@ -123,7 +123,7 @@ def statistics_gates() -> Iterator[Gate]:
         for part, value in zip(PARTS, values, strict=True):
             why = "an independent computation: half a unit of its last digit" if half else "closed form"
             kind = "other code" if half else "exact"
-            yield Gate(MAP, (label(scheme),), part, *about(value, half + 1e-12), why, kind, half)
+            yield gate(MAP, label(scheme), part, about(value, half + 1e-12), why, kind, half)
 
 
 def map_gates() -> Iterator[Gate]:
@@ -141,14 +141,14 @@ def map_gates() -> Iterator[Gate]:
     closes = "the balance of stored and lost energy is an identity of the step; band: rounding over the steps"
     for name in MAPS:
         for case in cases(name):
-            yield Gate(case.name, ("dda",), "contact.most_solves", 1.0, 2.0, solves)
-            yield Gate(case.name, ("dda",), "energy.imbalance", 0.0, 1e-10, closes)
+            yield gate(case, "dda", "contact.most_solves", (1.0, 2.0), solves)
+            yield gate(case, "dda", "energy.imbalance", (0.0, 1e-10), closes)
             if 2 * case.time.alpha == case.time.delta == 1 or case.contact.rule != "newmark":
-                yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falling[case.contact.rule])
+                yield gate(case, "dda", "energy.rise", (0.0, 1e-10), falling[case.contact.rule])
     for case in finest():
         count = 2.0 * EXACT_SWITCHES[ratio(case)]
         why = "an independent program: a whole number, of each of the two corners"
-        yield Gate(case.name, ("block-events",), "switches.count", count, count, why, "other code")
+        yield gate(case, "block-events", "switches.count", (count, count), why, "other code")
 
 
 def ratio(scene: Scene) -> float:

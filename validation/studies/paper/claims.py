@@ -83,7 +83,7 @@ class Evidence:
 
 
 Measure = Callable[[Evidence], dict[str, float]]
-Tests = Mapping[str, tuple[Iterable[str], Measure]]  # by a claim's id: the cases that DDA runs for it, what it measures
+Tests = dict[str, tuple[Iterable[str], Measure]]  # by a claim's id: the cases that DDA runs for it, what it measures
 
 
 @dataclass(frozen=True)

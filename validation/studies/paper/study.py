@@ -11,7 +11,7 @@ import numpy as np
 from dda.scheme.spectral import spectral_radius
 from validation.engine.finished import Derived
 from validation.gates.gate import Gate
-from validation.studies.bands import about
+from validation.studies.bands import about, gate
 from validation.studies.declaration import Study
 from validation.studies.paper import friction, open_close, register, slips, viscous
 from validation.studies.paper.claims import REGISTER, read_claims
@@ -38,7 +38,7 @@ def numbers() -> Iterator[Gate]:
         for number, value, half in claim.numbers:
             why = "whole number" if half == 0 else "half a unit of its last digit"
             reason = f"independent program: {why}"
-            yield Gate(REGISTER, (claim.id,), number, *about(value, half), reason, reference_uncertainty=half)
+            yield gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half)
 
 
 @functools.cache

@@ -12,7 +12,7 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import cases
+from validation.studies.bands import cases, gate
 from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, landing, rectangle, settlement
 
@@ -91,8 +91,8 @@ def swing_gates() -> Iterator[Gate]:
         line = case.time.step**2 * block.rate2 * math.sin(block.alpha) / block.landing_rate(tilt)
         late = line / block.quarter_period(tilt)
         early = settlement(case) / (block.width * tilt) + late
-        yield Gate(case.name, (SWING,), "quarter period", 1 - early, 1 + late, why)
-        yield Gate(case.name, (SWING,), "rate ratio", 0.0, 1.0, falls)
+        yield gate(case, SWING, "quarter period", (1 - early, 1 + late), why)
+        yield gate(case, SWING, "rate ratio", (0.0, 1.0), falls)
 
 
 def pulse_gates() -> Iterator[Gate]:
@@ -107,16 +107,16 @@ def pulse_gates() -> Iterator[Gate]:
         off = (case.time.step / DURATION) ** 2
         edges = sorted(exact(size) / exact(1.0) for size in (1 - off, 1 + off))
         metric = "time" if overturns(case) else "peak"
-        yield Gate(case.name, (PASSAGE,), metric, edges[0], edges[1], why)
+        yield gate(case, PASSAGE, metric, (edges[0], edges[1]), why)
         if not overturns(case):
-            yield Gate(case.name, (PASSAGE,), "tipping", 0.0, 1.0, stays)
+            yield gate(case, PASSAGE, "tipping", (0.0, 1.0), stays)
 
 
 def balance_gates() -> Iterator[Gate]:
     """Yield the gates on energy."""
     falls = "delta = 1 and forces along the chord of the step: contact gains no energy at any angle; band: rounding"
     for case in cases(*LET_GO):
-        yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
+        yield gate(case, "dda", "energy.rise", (0.0, 1e-10), falls)
 
 
 STUDY = Study(

@@ -16,7 +16,7 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import about, cases
+from validation.studies.bands import about, cases, gate
 from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, increments, rectangle, settlement
 from validation.theory.friction import coefficient, sliding_acceleration
@@ -96,16 +96,16 @@ def sliding_gates() -> Iterator[Gate]:
     slips = "friction below the slope: dt^2 / 2 g (sin b - tan(phi) cos b) a step; band: what is left of settling"
     for case in cases(STATIC):
         if sliding_acceleration(case) > 0:
-            yield Gate(case.name, (ROW,), "moved", *about(1.0, 1e-6), slips)
+            yield gate(case, ROW, "moved", about(1.0, 1e-6), slips)
         else:
-            yield Gate(case.name, (ROW,), "moved", *about(0.0, ROUNDING), stands)
+            yield gate(case, ROW, "moved", about(0.0, ROUNDING), stands)
     for case in cases(SLIDE):
         sliding_distance = sliding_acceleration(case) * case.time.duration**2 / 2
         offset = coefficient(case) * settlement(case) / sliding_distance
         why = "both corners slip: the free motion of the scheme, exact for constant acceleration; band: rounding"
-        yield Gate(case.name, (ROW,), "identity", 0.0, ROUNDING, why)
+        yield gate(case, ROW, "identity", (0.0, ROUNDING), why)
         why = "rigid block; above: tan(phi) times the settlement, twice that of both corners at rest"
-        yield Gate(case.name, (ROW,), "run-out", 1.0, 1 + offset, why)
+        yield gate(case, ROW, "run-out", (1.0, 1 + offset), why)
 
 
 def toppling_gates() -> Iterator[Gate]:
@@ -118,12 +118,12 @@ def toppling_gates() -> Iterator[Gate]:
     for case in cases(*FROM_REST):
         block = rectangle(case)
         if beyond(case) < 0:
-            yield Gate(case.name, (ROW,), "turned", 0.0, 2 * settlement(case) / block.width, stands)
+            yield gate(case, ROW, "turned", (0.0, 2 * settlement(case) / block.width), stands)
             continue
         exact = block.fall_time(beyond(case), TURN)
         low = 1 - lifted(case) / exact
         high = 1 + straight(case)
-        yield Gate(case.name, (ROW,), "time", low, high, why)
+        yield gate(case, ROW, "time", (low, high), why)
 
 
 def lifted(scene: Scene) -> float:
@@ -159,11 +159,11 @@ def falling_gates() -> Iterator[Gate]:
         exact = case.run.rotation == "exact"
         strain = 4 * case.block.density * block.gravity * block.height / case.block.young
         slack = 2 * settlement(case) / block.width / beyond(case) + (0.0 if exact else grown) + straight(case)
-        yield Gate(case.name, (ROW,), "time", *about(1.0, slack), timed)
+        yield gate(case, ROW, "time", about(1.0, slack), timed)
         why = exact_reason if exact else product
-        yield Gate(case.name, (ROW,), "area", *about(1.0, strain), why)
+        yield gate(case, ROW, "area", about(1.0, strain), why)
         if not exact:
-            yield Gate(case.name, (ROW,), "growth", *about(grown, 2 * slowed(case) * grown**2 + strain), growing)
+            yield gate(case, ROW, "growth", about(grown, 2 * slowed(case) * grown**2 + strain), growing)
 
 
 def slowed(scene: Scene) -> float:

@@ -18,7 +18,7 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import APART, LAGS, OTHER, about, cases, order_row
+from validation.studies.bands import APART, LAGS, OTHER, about, cases, gate, order_row
 from validation.studies.declaration import Study
 from validation.theory import friction
 
@@ -102,12 +102,12 @@ def exact_gates() -> Iterator[Gate]:
         phi = case.contact.friction or 0.0
         if phi == 30:
             for k, mean_slide in enumerate(KNOWN, start=1):
-                yield Gate(case.name, ("base",), f"way.{k}", *about(mean_slide, HALF), digits_reason, OTHER, HALF)
+                yield gate(case, "base", f"way.{k}", about(mean_slide, HALF), digits_reason, OTHER, HALF)
         rate = RATES[phi]
         why = "an independent program, the speed over some tenths of a second; 5 % for where they begin and end"
-        yield Gate(case.name, ("base",), "speed", *about(rate, 0.05 * rate), why, OTHER, 5e-5)
+        yield gate(case, "base", "speed", about(rate, 0.05 * rate), why, OTHER, 5e-5)
         order = "at 20 degrees under 22 or 30 the speed is between a half and twice g / w_n = g sqrt(m / (2 p))"
-        yield Gate(case.name, ("base",), "share", 0.5, 2.0, order)
+        yield gate(case, "base", "share", (0.5, 2.0), order)
 
 
 def step_gates() -> Iterator[Gate]:
@@ -116,31 +116,31 @@ def step_gates() -> Iterator[Gate]:
         t = case.time
         if t.delta == 1 and t.discount == 1:
             stands = "constant acceleration damps the normal ringing: the block stands; band: rounding"
-            yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
+            yield gate(case, DDA, "contact.slip_rate", (0.0, 1e-9), stands)
             if t.step in STOPS:
                 digits_reason = "an independent program: where it stands; half a unit of its last digit"
-                yield Gate(case.name, ("base",), "way.4", *about(STOPS[t.step], STOPPED), digits_reason, OTHER, STOPPED)
+                yield gate(case, "base", "way.4", about(STOPS[t.step], STOPPED), digits_reason, OTHER, STOPPED)
         elif t.discount < 1:
             stands = "2 % a step damp the normal ringing: the block stands; band: rounding"
-            yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
+            yield gate(case, DDA, "contact.slip_rate", (0.0, 1e-9), stands)
         elif t.step <= 2e-4:
             goes = "average acceleration keeps the ringing from any start: the exact speed, between a half and twice"
-            yield Gate(case.name, ("base",), "mean_speed", 0.5 * RATES[30.0], 2 * RATES[30.0], goes)
+            yield gate(case, "base", "mean_speed", (0.5 * RATES[30.0], 2 * RATES[30.0]), goes)
 
 
 def stiffness_gates() -> Iterator[Gate]:
     """Yield the gates on springs of any stiffness: the creep of an undamped block, and where a damped one stands."""
     order = "on this slope the speed is between a half and twice g / w_n = g sqrt(m / (2 p)) on each of these springs"
     for case in cases(STIFFNESS):
-        yield Gate(case.name, ("base",), "share", 0.5, 2.0, order)
+        yield gate(case, "base", "share", (0.5, 2.0), order)
         for column in ("displacement", "horizontal"):
-            yield Gate(case.name, (DDA, EVENTS), f"{column}.l2", APART, friction.lag(case), LAGS)
+            yield gate(case, (DDA, EVENTS), f"{column}.l2", (APART, friction.lag(case)), LAGS)
     stands = "scheme or discount damp the normal ringing: the block stands; band: rounding"
     far = "more than one hop g / w_n^2, less than twice g / w_n until the damped ringing unloads the friction no more"
     for case in cases(DAMPED):
-        yield Gate(case.name, (DDA,), "contact.slip_rate", 0.0, 1e-9, stands)
+        yield gate(case, DDA, "contact.slip_rate", (0.0, 1e-9), stands)
         hop = friction.creep_scale(case) / friction.normal_frequency(case)
-        yield Gate(case.name, ("base",), "way.4", hop, 2 * friction.damped_creep(case), far)
+        yield gate(case, "base", "way.4", (hop, 2 * friction.damped_creep(case)), far)
 
 
 def lagged_gates() -> Iterator[Gate]:
@@ -152,7 +152,7 @@ def lagged_gates() -> Iterator[Gate]:
         )
         if program_slide > 0.1:
             why += "; 20 % at the finest step, where rounding decides the order of stick and slip"
-        yield Gate(LAGGED, (f"at {1e3 * step:g} ms",), "distance", -1.0, 1.0, why, OTHER, 1e-3)
+        yield gate(LAGGED, f"at {1e3 * step:g} ms", "distance", (-1.0, 1.0), why, OTHER, 1e-3)
 
 
 def order_gates() -> Iterator[Gate]:
@@ -160,7 +160,7 @@ def order_gates() -> Iterator[Gate]:
     for name, order in REFINED.items():
         why = f"order {order:g} of the scheme, kept through stick and slip; {NEXT:g} for the next order"
         for column in ("displacement", "horizontal"):
-            yield Gate(name, ("order",), column, *about(order, NEXT), why)
+            yield gate(name, "order", column, about(order, NEXT), why)
 
 
 STUDY = Study(

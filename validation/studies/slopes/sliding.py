@@ -19,7 +19,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
-from validation.studies.bands import APART, LAGS, about, cases
+from validation.studies.bands import APART, LAGS, about, cases, gate
 from validation.studies.declaration import Study
 from validation.theory import friction
 from validation.theory.statics import moduli, size
@@ -114,7 +114,7 @@ def identity_gates() -> Iterator[Gate]:
     """Yield the gates on the sliding identity."""
     why = "u_t + tan(phi) u_n is the free recursion under g (sin b - tan(phi) cos b); band: rounding over the steps"
     for case in cases(SLIDING, AVERAGE, DRAG):
-        yield Gate(case.name, (IDENTITY,), "largest difference", 0.0, ROUNDED, why)
+        yield gate(case, IDENTITY, "largest difference", (0.0, ROUNDED), why)
 
 
 def offset_gates() -> Iterator[Gate]:
@@ -122,7 +122,7 @@ def offset_gates() -> Iterator[Gate]:
     why = "tan(phi) x settlement, m g cos b (1/(2p) + h/(4 E a)), whatever dt; band: what still swings"
     for case in cases(SLIDING, DRAG):
         offset = friction.penalty_offset(case)
-        yield Gate(case.name, (IDENTITY,), "offset", *about(offset, SETTLED * offset), why)
+        yield gate(case, IDENTITY, "offset", about(offset, SETTLED * offset), why)
 
 
 def drag_gates() -> Iterator[Gate]:
@@ -132,24 +132,24 @@ def drag_gates() -> Iterator[Gate]:
         free_displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
         offset = friction.penalty_offset(case)
         edges = about(float(free_displacement[-1]) + offset, SETTLED * offset)
-        yield Gate(case.name, ("dda",), "horizontal.final", *edges, why)
+        yield gate(case, "dda", "horizontal.final", edges, why)
 
 
 def threshold_gates() -> Iterator[Gate]:
     """Yield the gates on the slope at which a block slides, and on the rates about it."""
     angle = friction.threshold_angle(next(cases(THRESHOLD)))
     why = "the angle of friction; band: the curvature of the acceleration over a hundredth of a degree"
-    yield Gate(THRESHOLD, ("threshold",), "angle", *about(angle, NEAR), why)
+    yield gate(THRESHOLD, "threshold", "angle", about(angle, NEAR), why)
     rate_reason = "g (sin b - tan(phi) cos b) once it slides; band: 1e-6 of gravity along the slope"
     for case in cases(THRESHOLD, MANUAL):
         if case.name.startswith(THRESHOLD) or (case.contact.friction or 0) < case.load.slope:
             edges = about(friction.sliding_acceleration(case), 1e-6 * friction.along(case))
-            yield Gate(case.name, (IDENTITY,), "acceleration", *edges, rate_reason)
+            yield gate(case, IDENTITY, "acceleration", edges, rate_reason)
         else:
             stands_reason = (
                 "its friction is above the slope, by a tenth of a degree at least: it stands; band: rounding"
             )
-            yield Gate(case.name, ("dda",), "contact.slip_rate", 0.0, 1e-9, stands_reason)
+            yield gate(case, "dda", "contact.slip_rate", (0.0, 1e-9), stands_reason)
 
 
 def energy_gates() -> Iterator[Gate]:
@@ -157,15 +157,15 @@ def energy_gates() -> Iterator[Gate]:
     falls = "delta = 1: no opening, closing, sticking or slipping adds energy; band: rounding"
     closes = "the balance of stored and lost energy is an identity of the step; band: rounding over the steps"
     for case in cases(SLIDING, DRAG, AVERAGE):
-        yield Gate(case.name, ("dda",), "energy.imbalance", 0.0, 1e-10, closes)
+        yield gate(case, "dda", "energy.imbalance", (0.0, 1e-10), closes)
         if case.time.delta == 1:
-            yield Gate(case.name, ("dda",), "energy.rise", 0.0, 1e-10, falls)
+            yield gate(case, "dda", "energy.rise", (0.0, 1e-10), falls)
     for case in cases(SLIDING):
         normal_force = case.block.mass * friction.across(case)
         sliding_resistance = friction.coefficient(case) * normal_force + case.block.mass * friction.adhesion(case)
         lost = sliding_resistance * friction.run_out(case, case.time.duration)
         why = "tan(phi) m g cos b + c a times the distance; band: the oscillation of the normal force at first, 1e-3"
-        yield Gate(case.name, ("dda",), "energy.lost_friction", *about(lost, 1e-3 * lost), why)
+        yield gate(case, "dda", "energy.lost_friction", about(lost, 1e-3 * lost), why)
 
 
 def element_gates() -> Iterator[Gate]:
@@ -175,7 +175,7 @@ def element_gates() -> Iterator[Gate]:
         why = (
             "one run-out for both: points of the base begin to slip while a wave travels up, 2 h / (c t) of the run-out"
         )
-        yield Gate(case.name, ("dda", "fem"), "horizontal.final", -late, late, why)
+        yield gate(case, ("dda", "fem"), "horizontal.final", (-late, late), why)
 
 
 def shaken_gates() -> Iterator[Gate]:
@@ -191,8 +191,8 @@ def shaken_gates() -> Iterator[Gate]:
         allowed = 2 * CYCLES * stretch + late
         rigid = rigid_motion(case)
         ends = float(rigid.at([rigid.end])[0][0])
-        yield Gate(case.name, (RIGID,), "slide", *about(ends, allowed), why)
-        yield Gate(case.name, (RIGID,), "largest difference", APART, allowed, why)
+        yield gate(case, RIGID, "slide", about(ends, allowed), why)
+        yield gate(case, RIGID, "largest difference", (APART, allowed), why)
 
 
 def quake_gates() -> Iterator[Gate]:
@@ -206,8 +206,8 @@ def quake_gates() -> Iterator[Gate]:
         rigid = rigid_motion(case, smooth=True)
         allowed = _late(case, rigid.switches)
         ends = float(rigid.at([rigid.end])[0][0])
-        yield Gate(case.name, (RIGID,), "slide", *about(ends, allowed), why)
-        yield Gate(case.name, (RIGID,), "largest difference", APART, allowed, why)
+        yield gate(case, RIGID, "slide", about(ends, allowed), why)
+        yield gate(case, RIGID, "largest difference", (APART, allowed), why)
 
 
 def _late(case: Scene, switches: tuple[tuple[float, int], ...]) -> float:
@@ -224,7 +224,7 @@ def quake_exact_gates() -> Iterator[Gate]:
     """Yield the gates on the same record against the exact motion of the block on its springs."""
     for case in cases(QUAKE_EXACT):
         for column in ("displacement", "horizontal"):
-            yield Gate(case.name, ("dda", "block-events"), f"{column}.l2", APART, friction.lag(case), LAGS)
+            yield gate(case, ("dda", "block-events"), f"{column}.l2", (APART, friction.lag(case)), LAGS)
 
 
 STUDY = Study(

@@ -22,7 +22,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.record import read_record
 from validation.scenes.scene import SCENE_DIRECTORY, Scene, load_scene
-from validation.studies.bands import about, cases
+from validation.studies.bands import about, cases, gate
 from validation.studies.declaration import Study
 from validation.theory import vibration
 from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
@@ -113,7 +113,7 @@ def loaded_gates() -> Iterator[Gate]:
             for f in FREQUENCIES:
                 band = float(answer.closed(solver, f).band[0])
                 for part in COLUMNS.values():
-                    yield Gate(answer.name, (row_name(solver, f),), f"{part}.off", 0.0, band, why)
+                    yield gate(answer.name, row_name(solver, f), f"{part}.off", (0.0, band), why)
 
 
 def mesh_gates() -> Iterator[Gate]:
@@ -126,7 +126,7 @@ def mesh_gates() -> Iterator[Gate]:
             for column, part in COLUMNS.items():
                 mesh = float(abs(getattr(fem, column)[0] / getattr(bar, column)[0]) - 1)
                 half = float(fem.band[0] + bar.band[0]) * (1 + abs(mesh))
-                yield Gate(answer.name, (row_name("fem", f),), f"{part}.mesh", *about(mesh, half), why)
+                yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
 def amplitudes() -> Iterator[dict[str, Any]]:
@@ -191,7 +191,7 @@ def stepped_gates() -> Iterator[Gate]:
         for solver in SOLVERS:
             band = remaining_transients(case, solver)
             for f, part in itertools.product(FREQUENCIES, COLUMNS.values()):
-                yield Gate(case.name, (row_name(solver, f),), f"{part}.off", 0.0, band, why)
+                yield gate(case, row_name(solver, f), f"{part}.off", (0.0, band), why)
 
 
 def remaining_transients(scene: Scene, solver: str) -> float:
@@ -242,8 +242,8 @@ def damping_gates() -> Iterator[Gate]:
         row = (row_name("dda", f),)
         sizes = (abs(amplitude) for amplitude in (closed_form.displacement, closed_form.contact_pressure))
         band_width = remaining_transients(scene, "dda") * sum(float(size.sum() / size[at]) for size in sizes) / 2
-        yield Gate(DAMPING, row, "damping.steps", *about(exact, band_width), why)
-        yield Gate(DAMPING, row, "damping.response", *about(exact, float(closed_form.band[at])), why)
+        yield gate(DAMPING, row, "damping.steps", about(exact, band_width), why)
+        yield gate(DAMPING, row, "damping.response", about(exact, float(closed_form.band[at])), why)
 
 
 # ---- the study ------------------------------------------------------------------------------------------------------

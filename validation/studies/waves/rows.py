@@ -16,7 +16,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.bands import about, cases, fitted_order, near
+from validation.studies.bands import about, cases, fitted_order, gate, near
 from validation.studies.waves.measure import Guide, joint_parts
 from validation.theory import waves
 
@@ -180,7 +180,7 @@ def averaged() -> list[Wave]:
 def order_gate() -> Gate:
     """Return the gate on the order."""
     why = "blocks are linear elements and the scheme is of second order: 2; a tenth for the next order"
-    return Gate(averaged()[-1].scene.name, ("order",), "joint.order", 1.9, 2.1, why)
+    return gate(averaged()[-1].scene, "order", "joint.order", (1.9, 2.1), why)
 
 
 # ---- transmitting base ----------------------------------------------------------------------------------------------
@@ -204,7 +204,7 @@ def base_gates() -> Iterator[Gate]:
     for wave in returned():
         guide = wave.guide
         R = waves.base_reflection(guide.column, guide.stepping, guide.omega, column_of(wave.scene).impedance or 0.0)
-        yield Gate(wave.scene.name, (wave.name,), "base.reflected", *about(float(abs(R)), JOINT), why)
+        yield gate(wave.scene, wave.name, "base.reflected", about(float(abs(R)), JOINT), why)
 
 
 # ---- what the page draws --------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from validation.metrics.values import or_nan
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import OWN, about, fitted_order
+from validation.studies.bands import OWN, about, fitted_order, gate
 from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
@@ -206,7 +206,7 @@ def time_orders() -> Iterator[Gate]:
     )
     for (scheme, start), value in TIME_ORDERS.items():
         for q in QUANTITIES:
-            yield Gate(f"work-dt-{scheme}-{start}", ("order",), f"order.{q}", *about(value, 0.02), why)
+            yield gate(f"work-dt-{scheme}-{start}", "order", f"order.{q}", about(value, 0.02), why)
 
 
 def mesh_orders() -> Iterator[Gate]:
@@ -217,15 +217,15 @@ def mesh_orders() -> Iterator[Gate]:
     )
     for degree in (1, 2):
         for q in QUANTITIES:
-            yield Gate(f"work-h-degree-{degree}", ("order",), f"order.{q}", *about(2.0 * degree, 0.02), why)
+            yield gate(f"work-h-degree-{degree}", "order", f"order.{q}", about(2.0 * degree, 0.02), why)
     smooth = "linear elements on a smooth foundation: order 2 from successive changes; corners of the base are weak"
     index = (
         f"grid-convergence index of the finest mesh, {SAFETY} |last change| / (2^order - 1): the uncertainty of "
         "the reference where no closed form exists; this suite's own last value, two percent for other roundings"
     )
     for q in QUANTITIES:
-        yield Gate("work-h-poisson", ("gci",), f"order.{q}", 1.85, 2.15, smooth)
-        yield Gate("work-h-poisson", ("gci",), f"gci.{q}", 0.98 * GCI[q], 1.02 * GCI[q], index, OWN)
+        yield gate("work-h-poisson", "gci", f"order.{q}", (1.85, 2.15), smooth)
+        yield gate("work-h-poisson", "gci", f"gci.{q}", (0.98 * GCI[q], 1.02 * GCI[q]), index, OWN)
 
 
 WORK_PRECISION = Study(
