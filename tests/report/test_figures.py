@@ -10,7 +10,7 @@ import pytest
 from conftest import thinned
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from validation.report.figures import curves, ledger, motion
+from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
 from validation.runs.history import History
 
@@ -154,13 +154,3 @@ def test_the_same_data_give_the_same_bytes(tmp_path):
     )
     assert first.read_bytes() == second.read_bytes()
     assert b"<text" not in first.read_bytes()  # letters are paths: no font is needed to show them
-
-
-def test_ledger_figure_shows_each_number_once():
-    lines = [
-        ledger.LedgerLine("one", {"code": (1e-13, 2e-13), "mesh": (None, None), "time": (None, None)}),
-        ledger.LedgerLine("two", {"code": (1e-12, None), "mesh": (1e-6, 1e-5)}),
-    ]
-    figure = ledger.ledger_figure(lines)
-    assert [len(axes.lines) for axes in figure.axes] == [3, 2]
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]

@@ -12,9 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, names_at
 
-from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.problems.quantities import Quantity
-from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
@@ -239,35 +237,6 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
     assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
-
-
-def raised(kind: str, scene: str, **values: float) -> Any:
-    named = {name.replace("_", "."): value for name, value in values.items()}
-    return {"kind": kind, "scene": scene, "sentence": f"the alarm of {scene}", "values": named}
-
-
-@pytest.mark.parametrize(
-    ("kind", "mild", "worst"),
-    [
-        (AGREEMENT, {"removed": 0.6, "agreement": 0.01}, {"removed": 0.9, "agreement": 0.2}),
-        (TENSION, {"dda_minimum": -1e6, "dda_time": 0.1}, {"dda_minimum": -2.5e6, "dda_time": 4e-3}),
-        (TENSION, {"fem_minimum": -9e6}, {"dda_minimum": -1e6, "fem_minimum": -2e6}),  # of the judged solver
-        (RINGING, {"root": -0.95, "radius": 0.95}, {"root": -0.99, "radius": 0.99}),
-    ],
-)
-def test_of_the_alarms_of_a_kind_the_worst_is_shown(kind: str, mild: Any, worst: Any) -> None:
-    alarms = [raised(kind, "a", **mild), raised(kind, "b", **worst)]
-    for ordered in (alarms, alarms[::-1]):
-        assert remark(ordered, {"a": "dt = 1", "b": "dt = 2"}) == "dt = 2: the alarm of b."
-
-
-@pytest.mark.parametrize(
-    ("said", "told"),
-    [("w_n dt = 4.3: it is damped", "w_n"), ("delta = 0.5 gains", "delta"), ("dt is varied", "dt"), ("a root", "A ")],
-)
-def test_a_remark_begins_with_a_capital_letter_unless_it_is_a_symbol(said: str, told: str) -> None:
-    alarm: Any = {"kind": "creep", "scene": "a", "sentence": said, "values": {}}
-    assert remark([alarm], {}).startswith(told)
 
 
 @pytest.mark.parametrize(("verdict", "said"), [("PASS", "passes"), ("FAIL", "fails"), ("NOT RUN", "did not run")])

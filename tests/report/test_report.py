@@ -289,18 +289,6 @@ def test_conclusion_of_a_scene_is_computed(results):
     assert "damping grows" not in chapters.conclusion(group_of(results, "figure-8"))  # two cases are no trend
 
 
-@pytest.mark.long
-def test_drift_of_corner_springs_is_fitted(results, tmp_path):
-    group = group_of(results, "corner-springs")
-    assert chapters.drift_values(group) == [
-        (n, pytest.approx(-0.010 - 0.005 * math.log2(n))) for n in (4, 8, 16, 32, 64)
-    ]
-    blocks = chapters.scene_section(group, tmp_path)
-    assert "−5.00 mm with every halving" in all_text(blocks)
-    assert (tmp_path / "corner-springs-drift.svg").exists()
-    assert chapters.drift_values(group_of(results, "poisson")) == []
-
-
 @pytest.mark.parametrize(
     ("band", "text"),
     [

@@ -27,7 +27,7 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
-from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.report.references import SOURCES
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
@@ -93,9 +93,6 @@ def scene_section(
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, apart, without))
-    drift = drift_values(group)
-    if len(drift) > 1:
-        blocks += _drift_blocks(group, drift, directory)
     scene = group.cases[0].scene
     if features.linear(scene) and scene.column is None:
         table = damping_table(group)
@@ -359,12 +356,3 @@ def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[C
         f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
         "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
     )
-
-
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> Blocks:
-    panel, sentence = drift_panel(group, drift)
-    caption = "Displacement at rest on corner point springs over the mesh."
-    return [
-        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption, group.name),
-        Callout(f'{sentence} The cure is foundation = "distributed" or "patch".', "warn"),
-    ]
