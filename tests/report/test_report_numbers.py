@@ -29,6 +29,7 @@ from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
+from validation.report.figures.charts import chart_figure
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
