@@ -85,17 +85,6 @@ def test_envelope_is_the_largest_magnitude_of_each_part():
     assert largest.tolist() == [3.0, 2.0, 5.0, 0.5]
 
 
-def test_differences_are_scaled_by_the_static_value():
-    time = np.arange(1.0, 5.0)
-    first = History(time, {"displacement": np.array([0.0, -0.5, -1.0, -2.0])})
-    second = History(time, {"displacement": np.array([0.0, -0.5, -1.5, -2.5])})
-    found = curves.differences(
-        curves.HistoryPanel("", {"dda": first, "bar": second}, {"displacement": -2.0}, "bar"), "displacement"
-    )
-    assert list(found) == ["dda"]
-    assert found["dda"][1].tolist() == [0.0, 0.0, 0.25, 0.25]
-
-
 def test_a_run_that_blew_up_neither_warns_nor_sets_the_scale():
     some = [panel(blown="dda-textbook")]
     low, high = curves.common_range(some, "displacement")

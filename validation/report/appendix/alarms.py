@@ -18,7 +18,8 @@ def alarm_table(groups: Groups) -> Blocks:
     for kind, alarms in sorted(kinds.items()):
         scenes = ", ".join(f"{name} ({len(raised)} of {len(groups[name].cases)})" for name, raised in alarms.items())
         name, (first, *_) = next(iter(alarms.items()))
-        rows.append((kind, scenes, f"{name}, {labels.get(first['scene'], '')}: {first['sentence']}."))
+        case = ", ".join(filter(None, (name, labels.get(first["scene"]))))
+        rows.append((kind, scenes, f"{case}: {first['sentence']}."))
     titles = ("Alarm", TableColumn("Scenes, and how many of their cases", "fill"), TableColumn("The first", "fill"))
     caption = "Results that look better than they are, as the runs raised them."
     return [Heading("Alarms", 2), table(titles, rows, caption, dense=True)] if rows else []
