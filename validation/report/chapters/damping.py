@@ -61,7 +61,6 @@ def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
             lines.append(ChartLine("", dt[ends], line.y[ends], line.color, width=0, dots=2.6, hollow=True))
     steps = np.array(budget["steps"])
     lines.append(ChartLine("", steps, np.full(steps.size, LEAST_RATIO), "black", width=0, dots=3.4))
-    names = {"real roots": f"ω₁dt = {budget['real roots at']:.3g}", "wave transit": "a/c"}
     return ChartPanel(
         title,
         "dt [s]",
@@ -70,7 +69,7 @@ def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
         (dt[0], dt[-1]),
         (LEAST_RATIO, 1e3),
         (True, True),
-        {names[name]: step for name, step in budget["limits"].items() if name in names},
+        {"a/c": budget["limits"]["wave transit"]},
         {"overdamped": 100.0} if budget["limits"].get("overdamped below") else {},
     )
 
