@@ -11,10 +11,10 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, places_of, rules_of
 
-from validation.report.chapters import damping, paper
+from validation.report.chapters import damping, ledger, paper
 from validation.report.chapters.limits import stability
 from validation.report.chapters.paper import PaperFigure, figure_block
-from validation.report.figures import cost, curves, ledger, motion
+from validation.report.figures import cost, curves, motion
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.maps import map_figure
 from validation.runs.results import Row
@@ -93,16 +93,21 @@ def test_names_of_a_chart_stand_at_last_values_with_their_notes() -> None:
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:
     parts = {"code": (1e-13, 2e-11), "mesh": (1e-6, 3e-5), "time": (0.1, None)}
-    figure = ledger.ledger_figure([ledger.LedgerLine("one", {}), ledger.LedgerLine("two", parts)])
-    assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 0), ("two", 1)]
+    panels = ledger.ledger_panels([("one", {}), ("two", parts)])
+    figure = chart_figure(panels, 12.0, ledger.MARGINS, shared=True)
+    assert [(t.get_text(), t.get_position()[1]) for t in figure.axes[0].get_yticklabels()] == [("one", 1), ("two", 0)]
     rounding = np.sqrt(ledger.EDGE * ledger.ROUNDING)  # a strip without places of its own
     for axes, (part, (displacement, pressure)) in zip(figure.axes, parts.items(), strict=True):
         assert axes.get_title(loc="left") == part
-        shown = {to_hex(line.get_markerfacecolor()): line for line in axes.lines}
+        shown = {
+            to_hex(line.get_markerfacecolor()): line
+            for line in axes.lines
+            if line.get_marker() == "o" and line.get_xdata().size
+        }
         filled = shown[to_hex(ledger.ROUNDING_COLOR if part == "code" else ledger.DOT_COLOR)]
         hollow = shown.get("#ffffff")
         assert filled.get_xdata()[0] == (rounding if part == "code" else displacement)
-        assert round(filled.get_ydata()[0]) == 1  # the second line of the ledger
+        assert round(filled.get_ydata()[0]) == 0  # the second line of the ledger, from above
         assert (None if hollow is None else hollow.get_xdata()[0]) == pressure
 
 

@@ -189,8 +189,8 @@ def test_each_part_of_the_ledger_is_its_own_pair(part: str) -> None:
 
 
 def test_the_lines_of_the_ledger_are_those_of_their_parts() -> None:
-    (line,) = chapters_ledger.ledger_lines([ledger_group()], chapters_ledger.PARTS)
-    assert line.parts == {part: values[2:] for part, values in PAIRS.items()}
+    ((_, entries),) = chapters_ledger.ledger_lines([ledger_group()], chapters_ledger.PARTS)
+    assert entries == {part: values[2:] for part, values in PAIRS.items()}
 
 
 OPENING_PAIRS = {  # contact that opens: part of the ledger -> solver, reference, displacement, pressure
