@@ -249,24 +249,3 @@ def test_a_map_of_digits_shows_the_worst_of_a_place_at_its_stiffness_and_step(
     assert [label.get_text() for label in left.get_yticklabels()] == ["$10^{0}$", "$10^{3}$"]
     assert [label.get_text() for label in left.get_xticklabels()] == ["$10^{-3}$", "$10^{-1}$"]
     assert (left.get_title(loc="left"), right.get_title(loc="left")) == ("Displacement", "Contact pressure")
-
-
-def test_the_one_factor_table_shows_radius_condition_residual_and_digits() -> None:
-    numbers = {"stability.radius": 0.98, "stability.condition": 4.5e7, "stability.residual": 6.1e-17}
-    found = [
-        extreme("dda", 1.0, 1e-3, 0.9e-13, scene="extreme-a", metrics=numbers),
-        extreme("dda-textbook", 1.0, 1e-3, None, scene="extreme-a", outcome=Outcome.REFUSED),
-    ]
-    _, table = chapters_stability.factor_tables(found)
-    heads = [c.title for c in table.columns]
-    assert heads == ["Scene", "|λ|", "condition", "residual", "dda", "dda-textbook"]
-    assert table.rows == (("extreme-a", "0.98", "4.5×10⁷", "6.1×10⁻¹⁷", "13 / 12", "refused"),)
-
-
-def test_of_many_extremes_the_table_shows_those_of_the_fewest_digits() -> None:
-    errors = {f"extreme-{i}": 10.0 ** -(15 - i % 3) / 2 for i in range(chapters_stability.MOST_ROWS + 6)}
-    found = [extreme("dda", 1.0, 1e-3, error, scene=scene) for scene, error in errors.items()]
-    _, table = chapters_stability.factor_tables(found)
-    assert table.caption == f"The 16 of {len(errors)} runs in which dda keeps the fewest digits."
-    left = set(errors) - {row[0] for row in table.rows}
-    assert len(left) == 6 and all(errors[scene] == min(errors.values()) for scene in left)

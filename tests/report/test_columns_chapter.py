@@ -17,6 +17,8 @@ from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.columns import study
 
+pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests
+
 CASES = {  # scene to the cases of its sweep that are run
     "columns-drop-constant": (0,),
     "columns-solves-rest": (3, 19),

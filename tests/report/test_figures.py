@@ -10,7 +10,7 @@ import pytest
 from conftest import thinned
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from validation.report.figures import curves, ledger, motion
+from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
 from validation.runs.history import History
 
@@ -85,17 +85,6 @@ def test_envelope_is_the_largest_magnitude_of_each_part():
     assert largest.tolist() == [3.0, 2.0, 5.0, 0.5]
 
 
-def test_differences_are_scaled_by_the_static_value():
-    time = np.arange(1.0, 5.0)
-    first = History(time, {"displacement": np.array([0.0, -0.5, -1.0, -2.0])})
-    second = History(time, {"displacement": np.array([0.0, -0.5, -1.5, -2.5])})
-    found = curves.differences(
-        curves.HistoryPanel("", {"dda": first, "bar": second}, {"displacement": -2.0}, "bar"), "displacement"
-    )
-    assert list(found) == ["dda"]
-    assert found["dda"][1].tolist() == [0.0, 0.0, 0.25, 0.25]
-
-
 def test_a_run_that_blew_up_neither_warns_nor_sets_the_scale():
     some = [panel(blown="dda-textbook")]
     low, high = curves.common_range(some, "displacement")
@@ -154,13 +143,3 @@ def test_the_same_data_give_the_same_bytes(tmp_path):
     )
     assert first.read_bytes() == second.read_bytes()
     assert b"<text" not in first.read_bytes()  # letters are paths: no font is needed to show them
-
-
-def test_ledger_figure_shows_each_number_once():
-    lines = [
-        ledger.LedgerLine("one", {"code": (1e-13, 2e-13), "mesh": (None, None), "time": (None, None)}),
-        ledger.LedgerLine("two", {"code": (1e-12, None), "mesh": (1e-6, 1e-5)}),
-    ]
-    figure = ledger.ledger_figure(lines)
-    assert [len(axes.lines) for axes in figure.axes] == [3, 2]
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["code", "mesh"]

@@ -12,9 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, names_at
 
-from validation.advice.alarms import AGREEMENT, RINGING, TENSION
 from validation.problems.quantities import Quantity
-from validation.report.appendix.alarms import remark
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
@@ -126,40 +124,15 @@ def test_a_figure_ends_when_all_lines_have_long_settled(drawn: dict[str, Figure]
     assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
 
 
-def exact_cases(*steps: float) -> list[Any]:
-    """Return cases of one exact vibration of 18 ms at several steps, beside a line that is stepped."""
-    cases = []
-    for step in steps:
-        time = step * np.arange(1, round(0.2 / step) + 1)
-        own = made_history(step, -0.01 * (1 - np.cos(345.0 * time)))
-        scene = PAPER.with_values({"time.step": step, "time.steps": len(time)}, label=True)
-        cases.append(made_case(scene, {}, {"dda": made_history(step, -0.02 * time), "continuum": own}))
-    return cases
-
-
-def exact_line(axes: Any) -> tuple[Any, str]:
+def test_an_exact_solution_of_few_instants_is_dots_and_no_zigzag(drawn: dict[str, Figure], tmp_path: Any) -> None:
+    time = 1e-2 * np.arange(1, 21)
+    exact = made_history(1e-2, -0.01 * (1 - np.cos(345.0 * time)))  # of 18 ms
+    case = made_case(PAPER, {}, {"dda": made_history(1e-2, -0.02 * time), "continuum": exact})
+    assert "Dots: continuum at the steps" in history_block(made_group(case), ["displacement"], tmp_path).caption
     color = to_hex(style_of("continuum").color)
+    (axes,) = drawn["scene-history.svg"].axes
     (line,) = [line for line in axes.lines if to_hex(line.get_color()) == color and len(line.get_xdata()) > 2]
-    return np.asarray(line.get_xdata()), line.get_linestyle()
-
-
-def test_an_exact_solution_is_no_zigzag_where_few_instants_show_it(drawn: dict[str, Figure], tmp_path: Any) -> None:
-    """At 10 ms it is drawn from the case of 1 ms, which has the same motion; alone, as dots."""
-    caption = history_block(made_group(*exact_cases(1e-2, 1e-3)), ["displacement"], tmp_path).caption
-    for axes in drawn["scene-history.svg"].axes[:2]:
-        instants, style = exact_line(axes)
-        assert (instants.size, style) == (200, "-")
-    assert "Dots" not in caption
-    drawn.clear()
-    caption = history_block(made_group(*exact_cases(1e-2)), ["displacement"], tmp_path).caption
-    instants, style = exact_line(drawn["scene-history.svg"].axes[0])
-    assert (instants.size, style) == (20, "None")
-    assert "Dots: continuum at the steps, too few to be joined." in caption
-    drawn.clear()
-    other = exact_cases(1e-2)[0]
-    other = replace(other, scene=other.scene.with_values({"load.pressure": 1e6}), name="other")
-    history_block(made_group(other, *exact_cases(1e-3)), ["displacement"], tmp_path)
-    assert exact_line(drawn["scene-history.svg"].axes[0])[0].size == 20  # of another motion
+    assert (len(line.get_xdata()), line.get_linestyle()) == (20, "None")
 
 
 def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure], tmp_path: Any) -> None:
@@ -239,35 +212,6 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
     assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
-
-
-def raised(kind: str, scene: str, **values: float) -> Any:
-    named = {name.replace("_", "."): value for name, value in values.items()}
-    return {"kind": kind, "scene": scene, "sentence": f"the alarm of {scene}", "values": named}
-
-
-@pytest.mark.parametrize(
-    ("kind", "mild", "worst"),
-    [
-        (AGREEMENT, {"removed": 0.6, "agreement": 0.01}, {"removed": 0.9, "agreement": 0.2}),
-        (TENSION, {"dda_minimum": -1e6, "dda_time": 0.1}, {"dda_minimum": -2.5e6, "dda_time": 4e-3}),
-        (TENSION, {"fem_minimum": -9e6}, {"dda_minimum": -1e6, "fem_minimum": -2e6}),  # of the judged solver
-        (RINGING, {"root": -0.95, "radius": 0.95}, {"root": -0.99, "radius": 0.99}),
-    ],
-)
-def test_of_the_alarms_of_a_kind_the_worst_is_shown(kind: str, mild: Any, worst: Any) -> None:
-    alarms = [raised(kind, "a", **mild), raised(kind, "b", **worst)]
-    for ordered in (alarms, alarms[::-1]):
-        assert remark(ordered, {"a": "dt = 1", "b": "dt = 2"}) == "dt = 2: the alarm of b."
-
-
-@pytest.mark.parametrize(
-    ("said", "told"),
-    [("w_n dt = 4.3: it is damped", "w_n"), ("delta = 0.5 gains", "delta"), ("dt is varied", "dt"), ("a root", "A ")],
-)
-def test_a_remark_begins_with_a_capital_letter_unless_it_is_a_symbol(said: str, told: str) -> None:
-    alarm: Any = {"kind": "creep", "scene": "a", "sentence": said, "values": {}}
-    assert remark([alarm], {}).startswith(told)
 
 
 @pytest.mark.parametrize(("verdict", "said"), [("PASS", "passes"), ("FAIL", "fails"), ("NOT RUN", "did not run")])

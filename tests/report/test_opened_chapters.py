@@ -14,6 +14,8 @@ from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.studies.contact import impacts, rebound
 
+pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests
+
 SWEEPS = {
     "rebound-constant": {"contact.stiffness": [2.16e10], "contact.gap": [0.0025]},
     "rebound-average": {"contact.stiffness": [5.4e11], "contact.gap": [0.0021, 0.0025]},

@@ -76,6 +76,7 @@ def test_the_register_lists_every_claim() -> None:
     assert "1 is confirmed, 1 holds under a condition" in conclusion({"C1": {"verdict": 2.0}, "C6": {"verdict": 1.0}})
 
 
+@pytest.mark.long
 def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     tmp_path: Path, finished_cases: Path, drawn: dict[str, Figure]
 ) -> None:

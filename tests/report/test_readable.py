@@ -19,6 +19,8 @@ from validation.report.front.pages import front_pages
 from validation.report.typesetting import write_document
 from validation.studies.catalogue import get_study, judged_studies
 
+pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests
+
 ROOT = Path(__file__).parents[2]
 SHORT, WHOLE = 15, 39  # pages, two of columns; the long study `stability`, which is not run here, takes three more
 SCENES = ("figures-3-4", "figures-5-6", "model-form")
@@ -87,7 +89,6 @@ def reported() -> list[str]:
     return line[1].split()
 
 
-@pytest.mark.long
 def test_make_report_has_at_most_fifteen_pages(tmp_path: Path, finished_cases: Path) -> None:
     read = made(reported(), finished_cases, tmp_path)
     assert len(read.pages) <= SHORT
@@ -95,6 +96,5 @@ def test_make_report_has_at_most_fifteen_pages(tmp_path: Path, finished_cases: P
     assert "gates: " in outline and "Twelve words" in outline and "Provenance" in outline
 
 
-@pytest.mark.long
 def test_everything_has_at_most_thirty_nine_pages(tmp_path: Path, finished_cases: Path) -> None:
     assert len(made(judged_studies(), finished_cases, tmp_path).pages) <= WHOLE

@@ -37,6 +37,7 @@ def results(study: sliding.Study, sweeps: dict[str, dict[str, object]], director
     return kept
 
 
+@pytest.mark.long
 def test_the_chapter_of_sliding_lays_runs_beside_closed_forms(tmp_path: Path, drawn: dict[str, Figure]) -> None:
     kept = results(sliding.STUDY, SLIDES, tmp_path / "kept")
     blocks = sliding_chapter.chapter(kept, kept.manifest("slopes"), tmp_path)

@@ -12,6 +12,8 @@ from validation.report.chapters.subblocks import chapter
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 
+pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests
+
 SMALL = {
     "subblocks-column": {"block.subdivide": [[1, 1], [1, 4]], "fem.elements": [1, 4]},
     "subblocks-axial": {
@@ -54,7 +56,7 @@ def test_the_chapter_tells_error_against_time_locking_glue_and_rocking(
     assert figures[:2] == ["subblocks-time-axial.svg", "subblocks-time-rocking.svg"]
     assert figures == [*drawn]
     said = " ".join(block.text for block in blocks if isinstance(block, Paragraph))
-    assert "grows as their number to the power" in said and "cut the block into triangles" in said
+    assert "cut the block into triangles" in said
     tables = {block.caption.partition(":")[0]: block for block in blocks if isinstance(block, Table) and block.caption}
     rocking = tables["First rocking mode on springs of equal total stiffness"].rows
     assert [row[0] for row in rocking] == ["1", "0.5"] and rocking[0][1] == "226.5"

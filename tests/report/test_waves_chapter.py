@@ -56,13 +56,13 @@ def test_the_whole_chapter(tmp_path: Path) -> None:
     ]  # fmt: skip
     assert {row[5] for row in joints.rows[:4]} == {"1.000000"}
     assert len(base.rows) == 6
-    assert "DDA is 14.5\u00a0% off at the surface" in texts[2]
+    assert "DDA is 14.5\u00a0% off at the surface" in texts[3]
 
 
 @pytest.mark.long
 def test_parts_of_the_study_make_parts_of_the_chapter(tmp_path: Path) -> None:
     blocks = told(part("waves-discount"), tmp_path)
-    assert [type(block) for block in blocks] == [Heading, Paragraph, Table]
+    assert [type(block) for block in blocks] == [Heading, Paragraph, Paragraph, Table]
     page = chapter_of("")(Results(tmp_path / "results"), Results(tmp_path / "results").whole("waves"), tmp_path)
     assert not [block for block in page if isinstance(block, Table)]  # a column has no first axial mode to tell
     assert told(part("waves-site-usual"), tmp_path / "site")[-1].file == "waves-site.svg"  # type: ignore[union-attr]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -207,17 +206,6 @@ def test_sub_blocks_are_told_by_rows_with_signed_errors_and_milliseconds() -> No
     assert shown.rows == (("squares", "3", "−3\u00a0%", "1.23\u00a0%", "36", "5"),)
     line = chapters_subblocks._line("squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2")
     assert (list(line.x), list(line.y), line.notes) == ([0.005], [0.0123], ("3",))
-
-
-def test_the_growth_of_a_step_is_fitted_on_its_seconds() -> None:
-    """Thrice the unknowns take nine times as long a step, over twice the steps: power two."""
-    cases = []
-    for n, steps, seconds in ((8, 40, 0.4), (24, 80, 7.2)):
-        case = cut(n, 8, {}, {}, time__steps=steps)
-        row = made_row("dda", {}, case.name, work={"unknowns": 48 * n}, seconds={"stepping": seconds})
-        cases.append(replace(case, rows={"dda": row}))
-    (said,) = chapters_subblocks._growth({"subblocks-rocking": made_group(*cases)})
-    assert "number to the power 2.00 (1152 unknowns)" in said.text
 
 
 def test_glue_is_told_for_the_axial_and_for_the_rocking_motion() -> None:

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from validation.report.blocks import Blocks, Head, Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.measures import MetricColumn, heads
 from validation.report.chapters.text import DASH, case_label, load_size, word_notes
 from validation.report.figures import histories
-from validation.report.figures.budget import BudgetPanel, budget_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import style_of
+from validation.report.figures.histories import Margins
+from validation.runs.history import Array
 from validation.runs.records import BudgetRecord
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
@@ -19,32 +26,78 @@ from validation.solvers.contract import EXACT_IN_TIME
 from validation.solvers.registry import is_solver, role
 
 OVER = ("time.step", "time.steps", "fem.elements")  # what a budget is drawn over or does not depend on
+IN_A_ROW = 4  # settings
+MARGINS = Margins(right=24.0, top=9.5, bottom=9.5)
+CONTACT_COLOR = "#5d3a9b"
+LEAST_RATIO = 1e-2  # %; damping ratios below are off the axis
+DASHES = {"algorithmic": (4.0, 2.0), "kinetic": (1.0, 1.5), "viscous": (6.0, 1.5)}
 NOISE = 1e-9  # of the load; a smaller least pressure is rounding
 
 
 def budget_blocks(group: CaseGroup, directory: Path) -> Blocks:
-    """Return the damping budget chart of a scene, or nothing where its results hold none."""
-    if not group.budgets:
-        return []
+    """Return the damping budget of a scene, a figure for each four settings; nothing where its results hold none."""
     scenes = {case.name: case.scene for case in group.cases}
     panels = []
     for budget in group.budgets:
         name = budget["scene"]
-        title = case_label(name, scenes[name], OVER) if name in scenes else ""
-        panels.append(BudgetPanel(title, budget))
-    if len(panels) == 1:
-        panels = [BudgetPanel("", group.budgets[0])]
-    file = f"{group.slug}-damping-budget.svg"
-    return [histories.saved(budget_figure(panels), directory, file, _caption(group.budgets), group.name)]
+        has_title = name in scenes and len(group.budgets) > 1
+        panels.append(budget_panel(case_label(name, scenes[name], OVER) if has_title else "", budget))
+    blocks: Blocks = []
+    for first in range(0, len(panels), IN_A_ROW):
+        figure = chart_figure(panels[first : first + IN_A_ROW], 40.0, MARGINS, shared=True)
+        file = f"{group.slug}-damping-budget{first // IN_A_ROW or ''}.svg"
+        blocks.append(histories.saved(figure, directory, file, _caption(group.budgets), group.name))
+    return blocks
+
+
+def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
+    """Return total damping ratio and its parts over dt, with the limits; dots at the bottom are the cases."""
+    dt = np.array(budget["dt"])
+    lines = []
+    for line in budget_lines(budget):
+        ends = np.flatnonzero(np.isfinite(line.y))[-1:]
+        lines.append(line)
+        if ends.size and ends[0] < dt.size - 1:
+            lines.append(ChartLine("", dt[ends], line.y[ends], line.color, width=0, dots=2.6, hollow=True))
+    steps = np.array(budget["steps"])
+    lines.append(ChartLine("", steps, np.full(steps.size, LEAST_RATIO), "black", width=0, dots=3.4))
+    return ChartPanel(
+        title,
+        "dt [s]",
+        "Damping ratio ξ [%]",
+        lines,
+        (dt[0], dt[-1]),
+        (LEAST_RATIO, 1e3),
+        (True, True),
+        {"a/c": budget["limits"]["wave transit"]},
+        {"overdamped": 100.0} if budget["limits"].get("overdamped below") else {},
+    )
+
+
+def budget_lines(budget: BudgetRecord) -> list[ChartLine]:
+    """Return the damping ratios [%] of both modes, parts of the first only where it has more than one."""
+    colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
+    lines = []
+    for name, curves in budget["modes"].items():
+        parts: dict[str, Array] = {}
+        for part, values in curves.items():
+            ratios = 100 * np.array(values, dtype=float)
+            parts[part] = np.where(ratios > LEAST_RATIO / 10, ratios, math.nan)
+        line = ChartLine(name, np.array(budget["dt"]), parts["total"], colors[name], width=1.3)
+        lines.append(line)
+        least = min(np.nanmax(parts[part], initial=0.0) for part in ("algorithmic", "kinetic"))
+        is_split = least > LEAST_RATIO
+        for part, dash in DASHES.items() if name == "first axial" else ():
+            if part in parts and (is_split or ("viscous" in parts and part != "kinetic")):
+                lines.append(replace(line, name=f"{part} part", y=parts[part], width=0.9, dash=dash))
+    return lines
 
 
 def _caption(budgets: Sequence[BudgetRecord]) -> str:
     sentences = [
-        "Damping budget of DDA's first axial and contact mode over the time step (triangles: the cases).",
+        "Damping budget of DDA's first axial and contact mode over the time step (dots at the bottom: the cases).",
         "Open circles: the roots of the step turn real and there is no damping ratio beyond; one root returns to −1.",
     ]
-    if any("overdamped below" in budget["limits"] for budget in budgets):
-        sentences.append("Grey: overdamped.")
     sentences.append("a/c: travel time of the wave from top to base; a larger dt does not resolve it.")
     ratios = sorted({budget["floor"] for budget in budgets if budget["floor"]})
     if ratios:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Paragraph
 from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults
 from validation.report.chapters.text import percent, span
 from validation.report.figures import histories
-from validation.report.figures.ledger import LedgerLine, ledger_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import HAIR
+from validation.report.figures.histories import Margins
 from validation.scenes import features
 
 PARTS = {
@@ -28,6 +33,15 @@ OPENING_PARTS = {  # contact that opens: no recursion is printed for it, and bot
 METRICS = ("displacement.l2", "pressure.l2")
 Values = tuple[float | None, float | None]  # relative L2 of displacement and contact pressure [1]
 NOTHING: Values = (None, None)
+LedgerLines = Sequence[tuple[str, Mapping[str, Values]]]  # label of a case, and its parts
+
+DOT_COLOR = "#0072b2"
+ROUNDING_COLOR = "#b0b0b0"
+RULE_COLOR = "#dddddd"
+ROUNDING = 1e-12  # smaller differences are rounding; they stand between the edge of the axis and this
+EDGE = 1e-13
+LINE = 3.1  # mm, height of a case
+MARGINS = Margins(left=50.0, right=4.0)
 
 
 def parts_of(case: CaseResults) -> Mapping[str, tuple[str, str]]:
@@ -64,7 +78,9 @@ def ledger_blocks(groups: CaseGroups, name: str, directory: Path) -> Blocks:
                 f"{pairs}. Grey: below 10⁻¹², which is rounding."
             )
             file = f"{name}-ledger{'-opening' * (parts is OPENING_PARTS)}.svg"
-            figure = histories.saved(ledger_figure(ledger_lines(compared, parts)), directory, file, caption)
+            lines = ledger_lines(compared, parts)
+            chart = chart_figure(ledger_panels(lines), max(12.0, LINE * len(lines)), MARGINS, shared=True)
+            figure = histories.saved(chart, directory, file, caption)
             blocks += [Heading("What the differences are made of", 2), Paragraph(headline(compared)), figure]
     return blocks
 
@@ -97,14 +113,58 @@ def _shares(groups: CaseGroups, model_form: float) -> str:
     return f"; of the displacement's difference {sentence}{remainder}"
 
 
-def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> list[LedgerLine]:
+def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> LedgerLines:
     """Return the ledger as lines of a figure."""
     lines = []
     for group in groups:
         for case in group.cases:
             label = f"{group.name}: {case.label}" if len(group.cases) > 1 else group.name
-            lines.append(LedgerLine(label, {part: entry(group, case, part) for part in parts}))
+            lines.append((label, {part: entry(group, case, part) for part in parts}))
     return lines
+
+
+def ledger_panels(lines: LedgerLines) -> list[ChartPanel]:
+    """Return a panel for each part that some case has: cases from above, displacement filled, contact pressure open.
+
+    What is below 1e-12 stands grey at the left edge, without a place of its own.
+    """
+    largest = 0.0
+    names: dict[str, None] = {}
+    for _, parts in lines:
+        for part, values in parts.items():
+            if values != NOTHING:
+                names[part] = None
+                largest = max(largest, *(value or 0.0 for value in values))
+    last = math.ceil(math.log10(min(max(largest, ROUNDING), 1e3)) + 0.05)
+    high = 10.0**last
+    heights = np.arange(len(lines), dtype=float)[::-1]
+    powers = range(-12, last, max(1, math.ceil((last + 12) / 3)))
+    panels = []
+    for part in names:
+        dots = [ChartLine("", np.array([EDGE, high]), np.full(2, y), RULE_COLOR, width=HAIR) for y in heights]
+        for column, shift in enumerate((0.17, -0.17)):
+            errors = np.array([parts.get(part, NOTHING)[column] for _, parts in lines], dtype=float)
+            is_rounding = errors <= ROUNDING
+            places = np.where(is_rounding, math.sqrt(EDGE * ROUNDING), np.minimum(errors, high))
+            for is_chosen, color in ((errors > ROUNDING, DOT_COLOR), (is_rounding, ROUNDING_COLOR)):
+                x = places[is_chosen]
+                y = heights[is_chosen] + shift
+                dots.append(ChartLine("", x, y, color, width=0, dots=2.6, hollow=column == 1))
+        panels.append(
+            ChartPanel(
+                part,
+                "relative L2",
+                "",
+                dots,
+                (EDGE, high),
+                (-0.6, len(lines) - 0.4),
+                (True, False),
+                x_ticks={10.0**power: f"$10^{{{power}}}$" for power in powers},
+                y_ticks={y: label for y, (label, _) in zip(heights, lines, strict=True)},
+                names="none",
+            )
+        )
+    return panels
 
 
 def part_values(groups: CaseGroups, part: str, column: int) -> list[float]:

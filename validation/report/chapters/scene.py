@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -27,10 +26,10 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
-from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.report.references import SOURCES
-from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -93,9 +92,6 @@ def scene_section(
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, apart, without))
-    drift = drift_values(group)
-    if len(drift) > 1:
-        blocks += _drift_blocks(group, drift, directory)
     scene = group.cases[0].scene
     if features.linear(scene) and scene.column is None:
         table = damping_table(group)
@@ -236,7 +232,7 @@ def history_block(
         sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(ends, default=0.0) > window * 1.001:
         sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
+    panels = [_panel(case, columns, window, without) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
     return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
@@ -291,33 +287,7 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list
     return sentences
 
 
-def _finer(case: CaseResults, cases: Sequence[CaseResults]) -> dict[str, History]:
-    """Return the exact solutions of a case at the most instants that a case of the same motion has.
-
-    They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
-    zigzag.
-    """
-    finer: dict[str, History] = {}
-    for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
-        if solver not in case.histories:
-            continue
-        same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
-        finest = min(same, key=lambda other: other.scene.time.step)
-        if finest.scene.time.step < case.scene.time.step:
-            finer[solver] = finest.histories[solver]
-    return finer
-
-
-def _motion_of(case: CaseResults) -> dict[str, Any]:
-    """Return the definition of a case without its steps."""
-    definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
-    time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
-    return definition | {"time": time}
-
-
-def _panel(
-    case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
-) -> HistoryPanel:
+def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str]) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
         if solver not in without and set(columns) & set(history.columns):
@@ -330,9 +300,8 @@ def _panel(
         numbers = [value for value in values if value is not None]
         if numbers:
             static[column] = numbers[0]
-    finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn)
+    return HistoryPanel(title, drawn, static, reference)
 
 
 def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
@@ -359,12 +328,3 @@ def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[C
         f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
         "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
     )
-
-
-def _drift_blocks(group: CaseGroup, drift: Sequence[tuple[int, float]], directory: Path) -> Blocks:
-    panel, sentence = drift_panel(group, drift)
-    caption = "Displacement at rest on corner point springs over the mesh."
-    return [
-        histories.saved(chart_figure([panel], 38.0), directory, f"{group.slug}-drift.svg", caption, group.name),
-        Callout(f'{sentence} The cure is foundation = "distributed" or "patch".', "warn"),
-    ]

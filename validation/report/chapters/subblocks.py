@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
-from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
+from validation.report.chapters.data import CaseGroup, CaseResults, Groups, groups_by_name
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
@@ -48,7 +48,6 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
         *_time_figures(groups, directory),
         Paragraph(LOCKED),
         *_tables(groups, _patterns, ("subblocks-axial", "subblocks-rocking")),
-        *_growth(groups),
         Heading("Glue", 2),
         Paragraph(GLUED),
         *_tables(groups, _glue, ("subblocks-best-glue",)),
@@ -141,21 +140,6 @@ def _patterns(group: CaseGroup) -> Table:
         rows,
         f"{group.title}, against quadratic elements",
     )
-
-
-def _growth(groups: Groups) -> Blocks:
-    """Return one sentence on how the seconds of a step grow with the number of squares."""
-    points = []
-    for case in _of_pattern(cases_of(groups, "subblocks-rocking", "subblocks-locking"), "squares"):
-        row = case.rows.get("dda")
-        if row is not None and row.work.get("unknowns", 0) > 300:
-            points.append((row.work["unknowns"], row.seconds["stepping"] / case.scene.time.steps))
-    if len(dict(points)) < 2:
-        return []
-    unknowns, seconds = np.array(points).T
-    slope = np.polyfit(np.log(unknowns), np.log(seconds), 1)[0]
-    text = "Beyond 300 unknowns the time of a step grows as their number to the power"
-    return [Paragraph(f"{text} {slope:.2f} ({unknowns.max():.0f} unknowns).")]
 
 
 def _glue(group: CaseGroup) -> Table:

@@ -4,25 +4,18 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
 from validation.runs.text import shown
-from validation.scenes.keys import described, keys_of, stated
+from validation.scenes.keys import keys_of
 from validation.scenes.scene import Scene
 
 DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
-# edges of a polygon, of which only the number of vertices is written, and what the words of a column's faces say
-IMPLIED = {"block.base", "block.top", "column.law", "column.stiffness"}
-_FACES = {
-    "bonded": "glued with",
-    "unilateral": "on contacts without tension of",
-    "frictional": "on contacts that slip, of",
-}  # how the faces of a column's blocks touch, by the law of its springs
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
@@ -32,46 +25,11 @@ _MEANINGS = (
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
 _UNITS = str.maketrans("23", "²³")
 
-PARAMETERS = {  # how the data of a block are written, in this order; those at their defaults are not
-    "block.vertices": "polygon of {} vertices",
-    "block.side": "a = {:g} m",
-    "block.width": "{:g} m wide",
-    "block.height": "{:g} m high",
-    "block.density": "ρ = {:g} kg/m³",
-    "block.young": "E = {:short2} Pa",
-    "block.poisson": "μ = {:g}",
-    "block.hypothesis": "{}",
-    "block.subdivide": "{0[0]:g} by {0[1]:g} sub-blocks",
-    "block.pattern": "{}",
-    "block.glue_ratio": "glue = {:short2}E",
-    "block.velocity": "{:g} m/s upwards at t = 0",
-    "block.tilt": "tilted by {:.4g}°",
-    "contact.stiffness": "p = {:short2} N/m",
-    "contact.shear_stiffness": "in shear {:short2} N/m",
-    "contact.law": "springs without tension",
-    "contact.friction": "friction φ = {:.4g}°",
-    "contact.rules": "{} friction",
-    "contact.cohesion": "cohesion {:short2} Pa",
-    "contact.rule": "{} contact",
-    "contact.gap": "gap {:short4} m",
-    "contact.band": "dead band −{0[0]:short4} to {0[1]:short4} m",
-    "load.pressure": "q = {:short2} Pa",
-    "load.eccentricity": "e = {:g} m",
-    "load.traction": "τ = {:short2} Pa",
-    "load.gravity": "g = {:g} m/s²",
-    "load.slope": "slope β = {:.4g}°",
-    "load.base_motion": "base moved by {}",
-    "run.geometry": "updated geometry",
-    "run.rotation": "{} rotation",
-}
-ALWAYS = {"block.poisson", "block.hypothesis", "load.pressure"}  # written at their defaults too
-WRITTEN_WITH = {  # data that say something beside another one only
-    "block.pattern": "block.subdivide",
-    "block.glue_ratio": "block.subdivide",
-    "contact.rules": "contact.friction",
-    "run.rotation": "run.geometry",
-}
-SPECIAL = {("contact.stiffness", math.inf): "rigid stops", ("contact.shear_stiffness", 0.0): "frictionless"}
+PLACES = ("block", "column", "contact", "load", "input", "damping", "time", "fem", "run")  # tables of data
+ALWAYS = {  # data that are written at their defaults too
+    "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
+}  # fmt: skip
+NO_DATA = {"block.base", "block.top", "run.solvers", "run.columns"}  # edges of a polygon, and what is run
 
 
 def raised(number: int) -> str:
@@ -156,8 +114,6 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
         if field == "contact.stiffness":
             unit = ""
             value = f"{scene.contact.stiffness / scene.block.young:.4g}E"
-        elif field == "block.glue_ratio":
-            unit = "E"
         elif unit == " Pa":
             value, unit = _pressure(value)
         parts.append((f"{symbol} = {value}{unit}" if symbol else value).replace("-", "−"))
@@ -171,6 +127,7 @@ def _symbol(scene: Scene, field: str) -> tuple[str, str]:
     for key_name, _, key in keys_of(type(table)) if table is not None else ():
         if key_name == name:
             unit = "°" if key.unit == "deg" else f" {key.unit.translate(_UNITS)}".rstrip()
+            unit = "E" if field == "block.glue_ratio" else unit
             return name.replace("_", " ") if key.symbol is None else key.symbol, unit
     return name.replace("_", " "), ""
 
@@ -189,108 +146,31 @@ def parameters(scene: Scene, varied: set[str]) -> str:
 
 
 def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
-    """Return the data of a scene, without the fields that vary between its cases."""
-    time = scene.time
-    items = [
-        *(_of_column(scene) if scene.column is not None else _of_block(scene)),
-        ("time.step", f"dt = {time.step:g} s"),
-        ("time.steps", f"{time.steps} steps"),
-        ("time.alpha", f"α = {time.alpha:g}"),
-        ("time.delta", f"δ = {time.delta:g}"),
-        ("time.gg", f"gg = {time.discount:.6g}"),
-        *_of_damping(scene),
-        ("time.start", f"{time.start} initial acceleration"),
-        ("fem.degree", f"elements of degree {scene.fem.degree}"),
-        *_of_mesh(scene),
-    ]
-    items += _of_others(scene, {field for field, _ in items})
-    return [text for field, text in items if field not in varied]
-
-
-def _of_block(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the data of a block, its contact, its load and its geometry, by their fields."""
-    for field, template in PARAMETERS.items():
-        if _is_written(scene, WRITTEN_WITH.get(field, field)):
-            value = _value(scene, field)
-            yield field, SPECIAL.get((field, value)) or template.format(_written(value))
-
-
-def _value(scene: Scene, field: str) -> Any:
-    table, key = field.split(".")
-    return getattr(getattr(scene, table), key)
-
-
-def _is_written(scene: Scene, field: str) -> bool:
-    """Whether a datum is not the default of its key, or is written all the same."""
-    table, key = field.split(".")
-    fields = type(getattr(scene, table)).model_fields
-    return field in ALWAYS or _value(scene, field) != fields[key].default
-
-
-class _Number(float):
-    """A number with a true minus sign; `short2` writes two digits without zeros at the end of its decimals."""
-
-    def __format__(self, spec: str) -> str:
-        if spec.startswith("short"):
-            return short(float(self), int(spec.removeprefix("short")))
-        return format(float(self), spec).replace("-", "−")
-
-
-def _written(value: Any) -> Any:
-    """Return a value for its template: numbers as they are written, of a file its name, of a polygon its vertices."""
-    if isinstance(value, tuple):
-        return len(value) if isinstance(value[0], tuple) else tuple(map(_Number, value))
-    return shown(Path(value).name) if isinstance(value, str) else _Number(value)
-
-
-def _of_damping(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield the viscous damping and the adaptive discount, where there are any."""
-    damping = scene.damping
-    if damping.present:
-        yield "damping.mass", f"a₀ = {damping.mass:g} 1/s"
-        yield "damping.stiffness", f"a₁ = {damping.stiffness:g} s"
-    if damping.kinetic == "adaptive":
-        yield "damping.kinetic", "adaptive gg"
-
-
-def _of_others(scene: Scene, written: set[str]) -> Iterator[tuple[str, str]]:
-    """Yield the data of a block that are not `written` yet, by their keys, where they are not the defaults."""
+    """Return the data of a scene by their symbols or keys, without the fields that vary between its cases."""
+    items = []
+    if scene.column is not None and "column.layer" not in varied:
+        blocks = sum(layer.blocks for layer in scene.column.layer)
+        items.append(f"{blocks} blocks, layers: {len(scene.column.layer)}, {scene.column.height:g} m high")
     for place, table in scene.tables().items():
-        if place in ("block", "contact", "load", "damping", "column"):
-            for name, value, key in stated(table):
-                if f"{place}.{name}" not in written | IMPLIED:
-                    yield f"{place}.{name}", described(name, value, key)
+        for name, field, _ in keys_of(type(table)) if place in PLACES else ():
+            path = f"{place}.{name}"
+            value = getattr(table, name)
+            is_default = value is None or (value == field.default and path not in ALWAYS)
+            if path in varied | NO_DATA or is_default:
+                continue
+            symbol, unit = _symbol(scene, path)
+            items.append(f"{symbol} = {_written(value)}{unit}" if symbol else f"{_written(value)}{unit}")
+    return items
 
 
-def _of_mesh(scene: Scene) -> list[tuple[str, str]]:
-    """Return the data of the elements, by their fields."""
-    if scene.column is not None:
-        return [("fem.elements", f"{scene.fem.per_side} a block")]
-    return [
-        ("fem.elements", f"{scene.fem.per_side} a side" if not scene.fem.mesh else "mesh from a file"),
-        ("fem.foundation", f"{scene.fem.foundation} foundation"),
-    ]
-
-
-def _of_column(scene: Scene) -> list[tuple[str, str]]:
-    """Return the data of a column and its drive, by their fields."""
-    column = scene.column
-    if column is None:
-        return []
-    drive = scene.stated_input
-    blocks = sum(layer.blocks for layer in column.layer)
-    joints = f"{len(column.joint)} joint{'s' * (len(column.joint) > 1)}" if column.joint else "no joints"
-    springs = column.glue if column.law == "bonded" else column.stiffness
-    glue = "welded" if springs is None else f"{_FACES[column.law]} {short(springs, 2)} Pa/m"
-    return [
-        ("column.layer", f"{len(column.layer)} layer{'s' * (len(column.layer) > 1)} of {blocks} blocks in all"),
-        ("column.height", f"{column.height:g} m high"),
-        ("column.motion", f"{column.motion} waves"),
-        ("column.glue", glue),
-        ("column.joint", joints),
-        ("column.base", f"{column.base} base"),
-        *([("input.shape", f"{drive.shape or 'record'} at the {drive.at}")] if drive is not None else []),
-    ]
+def _written(value: Any) -> str:
+    """Return a value in words: of a file its name, of a list of more than numbers its length."""
+    if isinstance(value, tuple):
+        is_plain = all(isinstance(part, int | float) for part in value)
+        return ", ".join(map(_written, value)) if is_plain else str(len(value))
+    if isinstance(value, str):
+        return shown(Path(value).name)
+    return str(value) if isinstance(value, bool) else short(value)
 
 
 def load_size(scene: Scene) -> float:

@@ -85,8 +85,9 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     caption = (
         f"Damping @doolin2004, @lin2015 grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % "
-        f"at ω₁ dt = {turn:.3g}, and falls beyond; where a line ends, at ω₁ dt = 4, the mode flips sign each step instead of oscillating. Dashed "
-        "vertical: the time a wave takes from top to base; a longer step cannot resolve it."
+        f"at ω₁ dt = {turn:.3g}, and falls beyond; where a line ends, at ω₁ dt = 4, the mode flips "
+        "sign each step instead of oscillating. Dashed vertical: the time a wave takes from top to base; a longer "
+        "step cannot resolve it."
     )
     step = closed.step_for(scenes[0], 0.05)
     example = f": for 5\u00a0% at p = 1E, dt = {1e3 * step:.3g}\u00a0ms" if step else ""
@@ -186,8 +187,8 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     caption = (
         "Left: the springs' share of v at rest over p/E; the stiffer they are, the more the first natural "
         "frequency exceeds the bar's. Right: |λ|, the share of its amplitude that the contact keeps per step; at 1 the "
-        "ringing is undamped. Of the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, whose roots tend to "
-        "(δ − 3/2)/(δ + 1/2)."
+        "ringing is undamped. Of the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, "
+        "whose roots tend to (δ − 3/2)/(δ + 1/2)."
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),

@@ -1,4 +1,4 @@
-"""The chapter of stiff and extreme data: maps of correct digits, outcomes by name, the one-factor extremes."""
+"""The chapter of stiff and extreme data: maps of correct digits, outcomes by name."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from validation.metrics.growth import Stability
-from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
+from validation.report.blocks import Blocks, Table, TableColumn, table
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, short
+from validation.report.chapters.text import DASH
 from validation.report.figures import histories
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array
@@ -26,9 +26,7 @@ from validation.runs.run import Outcome
 QUANTITIES = {"displacement": "Displacement", "pressure": "Contact pressure"}
 SOLVERS = ("dda", "dda-textbook")
 MATRIX = "extremes-"  # prefix of the scenes of the maps
-FACTOR = "extreme-"  # prefix of the scenes with one datum at its extremes
 SHADES = MapScale("cividis", 16.0, cell=4.6)
-MOST_ROWS = 16  # of the one-factor extremes
 
 
 @dataclass(frozen=True)
@@ -68,7 +66,7 @@ def stability_chapter(results: Results, manifest: Manifest, directory: Path) -> 
     matrix = [run for run in runs if run.scene.startswith(MATRIX)]
     for solver in SOLVERS:
         blocks += _maps(manifest["study"], [run for run in matrix if run.solver == solver], directory)
-    return [*blocks, *factor_tables([run for run in runs if run.scene.startswith(FACTOR)])]
+    return blocks
 
 
 def _errors(runs: Iterable[ExtremeRun]) -> list[float]:
@@ -157,59 +155,3 @@ def _worst(runs: Sequence[ExtremeRun], quantity: str, ratios: Sequence[float], s
 
 def _decade(value: float) -> str:
     return f"$10^{{{round(math.log10(value))}}}$"
-
-
-def factor_tables(runs: Sequence[ExtremeRun]) -> Blocks:
-    """Return one table of the one-factor extremes: radius, condition, residual and digits."""
-    by_key = {(run.scene, run.solver): run for run in runs}
-    scenes = dict.fromkeys(run.scene for run in runs)
-    rows = [_factor_row(scene, by_key) for scene in scenes]
-    if not rows:
-        return []
-    caption = ""
-    if len(rows) > MOST_ROWS:
-        fewest = sorted(rows, key=lambda row: _fewest(by_key.get((row[0], "dda"))))[:MOST_ROWS]
-        rows = [row for row in rows if row in fewest]
-        caption = f"The {len(rows)} of {len(scenes)} runs in which dda keeps the fewest digits."
-    return [
-        Heading("One datum at its extremes", 3),
-        table(
-            (
-                TableColumn("Scene", "id"),
-                ("dda", "|λ|", "condition", "residual"),
-                ("Digits of displacement / pressure", *SOLVERS),
-            ),
-            rows,
-            caption,
-            ruled=False,
-        ),
-    ]
-
-
-def _factor_row(scene: str, runs: Mapping[tuple[str, str], ExtremeRun]) -> tuple[str, ...]:
-    dda = runs.get((scene, "dda"))
-    metrics = dda.row.metrics if dda else {}
-    numbers = [_number_cell(metrics.get(f"stability.{name}")) for name in ("radius", "condition", "residual")]
-    return (scene, *numbers, *(_digits_cell(runs.get((scene, solver))) for solver in SOLVERS))
-
-
-def _fewest(run: ExtremeRun | None) -> float:
-    """Return the fewest digits that a run keeps in either quantity; infinity where it has no errors."""
-    errors = [] if run is None else _errors([run])
-    return digits(max(errors)) if errors else math.inf
-
-
-def _number_cell(value: Value) -> str:
-    if not isinstance(value, float):
-        return DASH
-    return short(value, 3) if abs(value) > 1e-300 else "0"
-
-
-def _digits_cell(run: ExtremeRun | None) -> str:
-    """Return the digits of both quantities, or the outcome where there are none."""
-    if run is None:
-        return DASH
-    errors = _errors([run])
-    if len(errors) < len(QUANTITIES):
-        return DASH if run.row.outcome is Outcome.COMPLETED else str(run.row.outcome)
-    return " / ".join(str(digits(error)) for error in errors)
