@@ -76,6 +76,11 @@ def on_files(files: Files, config: Any) -> None:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=text))
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    note = (
+        f"These pages are those of {built_from()}. Those of another version are built from its tag, beside these: "
+        "`git worktree add ../vX.Y.Z vX.Y.Z && make -C ../vX.Y.Z docs`.\n\n## "
+    )
+    changelog = changelog.replace("## ", note, 1)
     files.append(File.generated(config, "changelog.md", content=changelog))
 
 
