@@ -73,17 +73,18 @@ class Pages:
         self, results: Results, studies: Sequence[GalleryStudy], scenes: Sequence[GalleryScene], docs: str = ""
     ) -> None:
         self._environment = environment()
-        self._environment.globals["docs"] = docs
         self._results = results
         self._studies = studies
         self._scenes = scenes
         self._most = scene_data.most_lines(scenes)
         self._samples = LEAST
         self._provenance = _provenance(studies)
+        self._docs = docs
+        self._menu = (*MENU, (f"{docs}/index.html", "Documentation")) if docs else MENU
 
     def _page(self, template: str, file: str, **values: object) -> str:
         page = self._environment.get_template(template)
-        return page.render(menu=MENU, file=file, provenance=self._provenance, **values)
+        return page.render(menu=self._menu, docs=self._docs, file=file, provenance=self._provenance, **values)
 
     def index(self) -> str:
         """Return the first page: studies with their verdicts, what fails, scenes, calculators."""
