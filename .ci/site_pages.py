@@ -39,9 +39,22 @@ def built_from() -> str:
     return f"version {version}, commit {commit}"
 
 
+def written(entries: list[Any]) -> list[Any]:
+    """Return the entries of a navigation without pages that are not written; a test names those that may be absent."""
+    pages: list[Any] = []
+    for entry in entries:
+        ((title, place),) = entry.items()
+        if isinstance(place, list):
+            pages.append({title: written(place)})
+        elif place.startswith("notebooks/") or (ROOT / "docs" / place).is_file():
+            pages.append(entry)
+    return pages
+
+
 def on_config(config: Any) -> None:
     """Append to the navigation: pages that it does not name, and the reference; say in the footer what was built."""
     config.copyright = f'dda-validation {built_from()}; <a href="{{changelog}}">versions</a>'
+    config.nav = written(config.nav)
     named = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     if more := [path.name for path in sorted((ROOT / "docs").glob("*.md")) if f" {path.name}\n" not in named]:
         config.nav.append({"More": more})
@@ -63,6 +76,11 @@ def on_files(files: Files, config: Any) -> None:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=text))
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    note = (
+        f"These pages are those of {built_from()}. Those of another version are built from its tag, beside these: "
+        "`git worktree add ../vX.Y.Z vX.Y.Z && make -C ../vX.Y.Z docs`.\n\n## "
+    )
+    changelog = changelog.replace("## ", note, 1)
     files.append(File.generated(config, "changelog.md", content=changelog))
 
 

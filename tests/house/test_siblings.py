@@ -14,10 +14,11 @@ from validation.entry.siblings import HOME, PACKAGES, shadowed
 
 ENTRY = HOME / "validation/entry"
 PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.plugin"]
+# What starts first, its status, and the package that a folder has the name of; each package is tried below as well.
 STARTS = {
-    "command": (["-m", "dda_validation", "list"], 2),
-    "solve": (["-m", "dda_validation", "solve", "figures-3-4"], 2),
-    "plug-in": ([*PYTEST, "--dda-solver", "my:solve"], pytest.ExitCode.USAGE_ERROR),
+    "command": (["-m", "dda_validation", "list"], 2, "dda"),
+    "solve": (["-m", "dda_validation", "solve", "figures-3-4"], 2, "fem_reference"),
+    "plug-in": ([*PYTEST, "--dda-solver", "my:solve"], pytest.ExitCode.USAGE_ERROR, "validation"),
 }
 SOLVE = ["solve", "figures-3-4", "--set", "time.step=0.002"]
 SOLVER = "def solve(scene):\n    return [0.0] * scene.time.steps, [0.0] * scene.time.steps\n"
@@ -82,11 +83,10 @@ def start(words: list[str], place: Path, *path: Path) -> subprocess.CompletedPro
     )
 
 
-@pytest.mark.parametrize("package", PACKAGES)
 @pytest.mark.parametrize("name", STARTS)
-def test_the_folder_is_named_and_nothing_runs(name: str, package: str, place: Path, installed: Path) -> None:
+def test_the_folder_is_named_and_nothing_runs(name: str, place: Path, installed: Path) -> None:
+    words, status, package = STARTS[name]
     folder = add_package(place, package)
-    words, status = STARTS[name]
     done = start(words, place, place, installed)
     output = done.stdout + done.stderr
     assert done.returncode == status, output
@@ -94,23 +94,21 @@ def test_the_folder_is_named_and_nothing_runs(name: str, package: str, place: Pa
     assert "Traceback" not in output
 
 
-@pytest.mark.parametrize("package", ["dda", "fem_reference"])
-def test_python_itself_starting_our_package_names_the_folder(package: str, place: Path) -> None:
-    folder = add_package(place, package)
+def test_python_itself_starting_our_package_names_the_folder(place: Path) -> None:
+    folder = add_package(place, "dda")
     done = start(["-m", "validation", "list"], place, place)
     assert done.returncode == 2 and done.stderr.startswith(f"error: {folder} is in the way of")
 
 
-@pytest.mark.parametrize("package", ["dda", "fem_reference"])
-def test_the_first_name_from_python_finds_out(package: str, place: Path) -> None:
-    folder = add_package(place, package)
+def test_the_first_name_from_python_finds_out(place: Path) -> None:
+    folder = add_package(place, "fem_reference")
     done = start(["-c", "import validation\nfrom validation import solve"], place, place)
     assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_a_folder_without_code_is_in_nobodys_way(package: str, place: Path, installed: Path) -> None:
-    (place / package).mkdir()
+def test_folders_without_code_are_in_nobodys_way(place: Path, installed: Path) -> None:
+    for package in PACKAGES:
+        (place / package).mkdir()
     assert start(["-m", "dda_validation", "list", "studies"], place, place, installed).returncode == 0
 
 

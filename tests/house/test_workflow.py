@@ -1,119 +1,132 @@
-"""The workflow, the hooks and CONTRIBUTING.md name files, targets and things that exist; versions agree."""
+"""Workflows, hooks, pages and CONTRIBUTING.md name targets, files, commands and things that exist; versions agree."""
 
+import functools
 import os
 import re
+import shlex
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
+from fnmatch import fnmatch
 from typing import Any
 
 import pytest
+import typer
+import yaml
+from oracles.pages import BLOCK, ROOT
 
-ROOT = Path(__file__).parents[2]
-WORKFLOW, HOOKS = ROOT / ".github/workflows/ci.yml", ROOT / ".pre-commit-config.yaml"
-GUIDE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+from validation.cli.entry import app
+from validation.solvers.registry import BUILT_IN
+from validation.studies.catalogue import STUDIES
+
+WORKFLOWS = ROOT / ".github/workflows"
 PAGES = ["README.md", "CONTRIBUTING.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-# Blocks of ``key: value`` and ``- item`` by indentation, and lists in brackets: the part of YAML that our files use.
-LINE = re.compile(r"(?P<indent> *)(?P<item>- )?(?:(?P<key>[\w-]+):(?: (?P<value>\S.*))?|(?P<scalar>\S.*))")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+GUIDE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+WRITTEN = {  # by commands
+    "reports/results",
+    "reports/gallery",
+    "reports/report.pdf",
+    "reports/field.pdf",
+    "before/verdicts.json",
+}
 
 
-def lines_of(text: str) -> Iterator[tuple[int, str | None, str | None]]:
-    """Yield indentation, key (``-`` for an item) and value of each line; an item's first key is a line of its own."""
-    for line in filter(lambda line: line.strip() and not line.lstrip().startswith("#"), text.splitlines()):
-        found = LINE.fullmatch(line)
-        assert found, f"not in the part of YAML that is used here: {line!r}"
-        indent = len(found["indent"])
-        if found["item"]:
-            yield indent, "-", found["scalar"]
-            indent += 2
-        assert found["item"] or found["key"], f"neither a key nor an item: {line!r}"
-        if found["key"]:
-            yield indent, found["key"], found["value"]
+@functools.cache
+def commands() -> dict[str, Any]:
+    """Return the commands of `dda-validate` by name."""
+    return typer.main.get_command(app).commands  # type: ignore[attr-defined]
 
 
-def parsed(text: str) -> Any:
-    """Return mappings, lists and strings; a list in brackets is a list of strings."""
-    lines = list(lines_of(text))
-
-    def block(start: int, end: int) -> Any:
-        indent = lines[start][0]
-        heads = [i for i in range(start, end) if lines[i][0] == indent]
-        assert min(line[0] for line in lines[start:end]) == indent, "a line stands to the left of its block"
-        found = []
-        for head, after in zip(heads, [*heads[1:], end], strict=True):
-            key, value = lines[head][1:]
-            assert value is None or after == head + 1, f"{key}: has a value and a block"
-            found.append((key, scalar(value) if value is not None else block(head + 1, after)))
-        keys = [key for key, _ in found]
-        if keys[0] == "-":
-            assert set(keys) == {"-"}
-            return [value for _, value in found]
-        assert len(set(keys)) == len(keys), f"a key twice: {keys}"
-        return dict(found)
-
-    return block(0, len(lines))
+def steps_of(workflow: str, job: str) -> list[dict[str, Any]]:
+    """Return the steps of a job."""
+    return yaml.safe_load((WORKFLOWS / workflow).read_text(encoding="utf-8"))["jobs"][job]["steps"]
 
 
-def scalar(text: str) -> Any:
-    if text.startswith("["):
-        assert text.endswith("]")
-        return [part.strip().strip('"') for part in text[1:-1].split(",")]
-    return text.strip('"')
-
-
-def targets() -> set[str]:
-    return set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
+# ---- workflows and hooks --------------------------------------------------------------------------------------------
 
 
 def test_the_workflow_calls_the_script_of_continuous_integration_on_every_python() -> None:
-    job = parsed(WORKFLOW.read_text(encoding="utf-8"))["jobs"]["suite"]
-    used = [step["uses"].partition("@")[0] for step in job["steps"] if "uses" in step]
+    steps = steps_of("ci.yml", "suite")
+    used = [step["uses"].partition("@")[0] for step in steps if "uses" in step]
     assert used == ["actions/checkout", "actions/setup-python"]
-    commands = [step["run"] for step in job["steps"] if "run" in step]
-    assert commands[-1] == ".ci/run" and os.access(ROOT / commands[-1], os.X_OK)
-    assert job["steps"][1]["with"]["python-version"] == "${{ matrix.python }}"
-    assert f">={job['strategy']['matrix']['python'][0]}" == PROJECT["requires-python"]
+    script = next(step["run"] for step in reversed(steps) if "run" in step)
+    assert script == ".ci/run" and os.access(ROOT / script, os.X_OK)
+    job = yaml.safe_load((WORKFLOWS / "ci.yml").read_text(encoding="utf-8"))["jobs"]["suite"]
+    assert steps[1]["with"]["python-version"] == "${{ matrix.python }}"
+    assert f">={job['strategy']['matrix']['python'][0]}" == PROJECT["project"]["requires-python"]
+
+
+def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before() -> None:
+    runs = [step["run"] for step in steps_of("release.yml", "release") if "run" in step]
+    order = [next(i for i, run in enumerate(runs) if word in run) for word in ("--release", ".ci/run", "gh release")]
+    assert order == sorted(order)
+    triggers = yaml.safe_load((WORKFLOWS / "release.yml").read_text(encoding="utf-8"))[True]  # `on` is a truth in YAML
+    assert triggers == {"push": {"tags": ["v*"]}}
 
 
 def test_hooks_are_local_and_run_the_tools_of_the_environment() -> None:
-    (repository,) = parsed(HOOKS.read_text(encoding="utf-8"))["repos"]
+    (repository,) = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))["repos"]
     assert repository["repo"] == "local"
-    assert [hook["entry"] for hook in repository["hooks"]] == [
-        f".venv/bin/{tool}" for tool in ("ruff check", "ruff format", "lint-imports", "mypy")
-    ]
+    tools = ("ruff check", "ruff format", "lint-imports", "mypy")
+    assert [hook["entry"] for hook in repository["hooks"]] == [f".venv/bin/{tool}" for tool in tools]
     assert {hook["language"] for hook in repository["hooks"]} == {"system"}
 
 
-@pytest.mark.parametrize("text", ["a: 1\n b: 2", "a:\n  b: 1\n c: 2", "a: 1\na: 2", "- a\nb: 1", "a:b", "a: [1"])
-def test_what_is_not_indented_as_yaml_is_refused(text: str) -> None:
-    with pytest.raises(AssertionError):
-        parsed(text)
+# ---- what pages name ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("page", [*PAGES, ".ci/run", ".github/workflows/ci.yml", ".pre-commit-config.yaml"])
+@pytest.mark.parametrize("page", [*PAGES, ".ci/run", *(f".github/workflows/{p.name}" for p in WORKFLOWS.iterdir())])
 def test_every_make_target_that_is_named_exists(page: str) -> None:
-    named = re.findall(r"(?:^|`)make ([a-z-]+)", (ROOT / page).read_text(encoding="utf-8"), re.M)
-    assert set(named) <= targets()
+    named = re.findall(r"(?:^|`|run: )make ([a-z-]+)", (ROOT / page).read_text(encoding="utf-8"), re.M)
+    assert set(named) <= set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
     if page == "CONTRIBUTING.md":
-        assert {"test", "lint", "portable", "docs", "api", "bench", "gates"} <= set(named)
+        assert {"test", "lint", "portable", "docs", "api", "bench", "gates", "dist"} <= set(named)
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_path_that_a_page_names_exists(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
-    made = {
-        "reports/results",
-        "reports/gallery",
-        "reports/report.pdf",
-        "reports/field.pdf",
-        "before/verdicts.json",
-    }  # by commands
     rooms = r"(?:dda|fem_reference|validation|tests|docs|reports|\.ci|\.github)"
     paths = set(re.findall(rf"`({rooms}/[\w./-]*)`", text)) | set(re.findall(r"\b(?:tests|reports)/[\w/]+\.py", text))
-    assert not [path for path in paths - made if not (ROOT / path).exists()]
+    assert not [path for path in paths - WRITTEN if not (ROOT / path).exists()]
     links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", text)
     assert not [link for link in links if not (ROOT / page).parent.joinpath(link).exists()]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_and_options_of_a_page_exist(page: str) -> None:
+    blocks = BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))
+    lines = [line for language, _, text in blocks if language in ("sh", "text", "yaml") for line in text.splitlines()]
+    for line in lines:
+        for part in line.removeprefix("      - run: ").partition(" #")[0].split("&&"):
+            if "dda-validate" not in part:
+                continue
+            words = shlex.split(part)
+            if words[0].endswith("dda-validate"):
+                known = {option for parameter in commands()[words[1]].params for option in parameter.opts}
+                assert {word for word in words if word.startswith("--")} <= known, line
+
+
+def test_the_page_on_ci_names_an_option_of_the_plug_in() -> None:
+    for path in ("docs/ci.md", "validation/entry/plugin.py"):
+        assert "--dda-solver" in (ROOT / path).read_text(encoding="utf-8")
+
+
+def first_cells(head: str) -> list[str]:
+    """Return the names in the first column of the table of README.md under a head."""
+    table = README.partition(f"| {head} |")[2].partition("\n\n")[0]
+    return [name for row in re.findall(r"^\| (`.*?) \|", table, re.M) for name in re.findall(r"`([\w-]+)`", row)]
+
+
+def test_the_tables_of_readme_are_those_of_the_code() -> None:
+    assert first_cells("solver") == list(BUILT_IN)
+    assert sorted(first_cells("study")) == sorted(STUDIES)
+    shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
+    listed = set(re.findall(r"dda-validate ([a-z-]+)", shell[2]))
+    assert set(commands()) - {"report"} <= listed and "dda-validate report" in README
+
+
+# ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------
 
 
 def test_every_row_of_where_a_change_goes_names_a_thing_in_its_file() -> None:
@@ -124,18 +137,15 @@ def test_every_row_of_where_a_change_goes_names_a_thing_in_its_file() -> None:
 
 
 def test_the_map_has_every_room_in_the_order_of_its_contract() -> None:
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
+    contracts = PROJECT["tool"]["importlinter"]["contracts"]
     layers = {contract["name"]: contract["layers"] for contract in contracts if contract["type"] == "layers"}
     rooms = [layer.removeprefix("validation.") for layer in layers["Rooms of validation, from the top floor down"][1:]]
-    assert [
-        name for name in re.findall(r"^\| `(\w+)` \|", GUIDE, re.M) if name not in ("dda", "fem_reference")
-    ] == rooms
+    mapped = [name for name in re.findall(r"^\| `(\w+)` \|", GUIDE, re.M) if name not in ("dda", "fem_reference")]
+    assert mapped == rooms
     for package in ("dda", "fem_reference"):
         row = next(line for line in GUIDE.splitlines() if line.startswith(f"| `{package}` |"))
-        wanted = [name for layer in layers[f"Rooms of {package}"] for name in layer.split(" | ")]
-        assert [f"{package}.{name}" for name in re.findall(r"`(\w+)`", row)[1:]] == wanted
+        floors = [name for layer in layers[f"Rooms of {package}"] for name in layer.split(" | ")]
+        assert [f"{package}.{name}" for name in re.findall(r"`(\w+)`", row)[1:]] == floors
 
 
 def test_versions_of_projects_citation_and_changelog_agree() -> None:
@@ -143,7 +153,21 @@ def test_versions_of_projects_citation_and_changelog_agree() -> None:
     releases = re.findall(r"^## (?!Unreleased$)(.+)$", changelog, re.M)
     assert all(re.fullmatch(r"\d+\.\d+\.\d+ - \d{4}-\d{2}-\d{2}", heading) for heading in releases)
     number, _, date = releases[0].partition(" - ")
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     peers = tomllib.loads((ROOT / "examples/peers/pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert PROJECT["version"] == peers["version"] == number
-    assert re.findall(r"^(?:version|date-released): (.+)$", citation, re.M) == [number, date]
+    assert PROJECT["project"]["version"] == peers["version"] == citation["version"] == number
+    assert str(citation["date-released"]) == date
+
+
+def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> None:
+    declared = PROJECT["tool"]["setuptools"]["package-data"]
+    count = 0
+    for name in ("dda", "fem_reference", "validation"):
+        for file in (path.relative_to(ROOT) for path in (ROOT / name).rglob("*") if path.is_file()):
+            if file.suffix == ".py" or "__pycache__" in file.parts:
+                continue
+            package = next(folder for folder in file.parents if (ROOT / folder / "__init__.py").is_file())
+            patterns = declared.get(".".join(package.parts), [])
+            assert any(fnmatch(str(file.relative_to(package)), pattern) for pattern in patterns), file
+            count += 1
+    assert count > 100

@@ -8,6 +8,7 @@ import numpy as np
 
 from validation.gallery.cases import GalleryScene, PlainData
 from validation.report.figures.curves import style_of, thin
+from validation.runs.history import Array
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 
@@ -16,13 +17,14 @@ HEIGHT = 48.0
 MARGIN = 3.0
 SAMPLES = 48  # of a line
 MOST_LINES = 3  # lines that can be told apart at this size
+Curve = tuple[str, Array, Array]  # colour, instants, values
 
 
 def thumbnail(results: Results, scene: GalleryScene) -> PlainData | None:
     """Return name and lines of the picture of a scene, None where no history of it is complete."""
     for case in scene.cases:
         column = case.scene.run.columns[0]
-        curves = []
+        curves: list[Curve] = []
         for solver, row in case.rows.items():
             history = results.history(row.key) if row.outcome is Outcome.COMPLETED else None
             if history is None or len(history.time) < 2 or len(curves) == MOST_LINES:
@@ -35,7 +37,7 @@ def thumbnail(results: Results, scene: GalleryScene) -> PlainData | None:
     return None
 
 
-def _placed(curves: list[tuple[str, np.ndarray, np.ndarray]]) -> list[PlainData]:
+def _placed(curves: list[Curve]) -> list[PlainData]:
     """Return colour and points of each curve, scaled to the picture."""
     start = min(float(time[0]) for _, time, _ in curves)
     end = max(float(time[-1]) for _, time, _ in curves)

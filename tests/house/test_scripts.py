@@ -1,0 +1,161 @@
+"""The scripts of `.ci`: rounds on other machines, mutants, the archives of a release."""
+
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from conftest import script
+
+CODE = """
+def more(x: int | None) -> int | None:
+    y: int | None = x
+    return y + 1
+"""
+ASSERTION = "from dda.code import more\n\n\ndef test_more() -> None:\n    assert more(3) == 4\n"
+
+
+# ---- portable -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def portable(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    return script("portable", monkeypatch)
+
+
+def test_the_lowest_versions_are_those_that_are_declared(portable: ModuleType) -> None:
+    lowest, newest = portable.requirements(lowest=True), portable.requirements(lowest=False)
+    assert len(lowest) == len(newest) > 12
+    assert all("==" in text and ">=" not in text for text in lowest), "a bound that the lowest round cannot read"
+    assert any(text.startswith("numpy>=") for text in newest)
+
+
+@pytest.mark.long
+def test_the_rounds_reach_every_kernel_version_and_the_wheel(portable: ModuleType, tmp_path: Path) -> None:
+    names = [one.name for one in (*portable.versions(False, tmp_path), *portable.wheel(False, tmp_path))]
+    assert names[0].startswith("lowest versions") and names[1].startswith("newest versions") and "wheel" in names[-1]
+    assert sys.version_info[:2] in portable.pythons()
+
+
+def test_a_red_round_is_named_logged_and_a_status(
+    portable: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = portable.Round("good", [[sys.executable, "-c", "print('fine')"]])
+    bad = portable.Round("bad", [[sys.executable, "-c", "print('ERROR why'); raise SystemExit(3)"], ["never"]])
+    monkeypatch.setattr(portable, "kernels", lambda short: [good, portable.Round("same", [])])
+    monkeypatch.setattr(portable, "versions", lambda short, work: [bad])
+    monkeypatch.setattr(portable, "wheel", lambda short, work: [])
+    statuses = {}
+    for only in ("", "good", "same", "nothing"):  # no round at all is no success
+        monkeypatch.setattr(sys, "argv", ["portable", "--work", str(tmp_path), "--only", only])
+        with pytest.raises(SystemExit) as stopped:
+            portable.main()
+        statuses[only] = stopped.value.code
+    assert statuses == {"": 1, "good": 0, "same": 1, "nothing": 1}
+    printed = capsys.readouterr().out
+    assert "2 rounds, 1 red: bad" in printed and "ERROR why" in printed and str(tmp_path / "bad.log") in printed
+    assert "ERROR why" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
+
+
+# ---- mutants --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def mutants(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
+    """Load the script for a repository of one function."""
+    pytest.importorskip("cosmic_ray", reason="mutants are NOT RUN: needs cosmic-ray: pip install -e '.[mutants]'")
+    module = script("mutants", monkeypatch)
+    for name in ("dda", "fem_reference", "validation", "tests/dda"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "dda/code.py").write_text(CODE)
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    return module
+
+
+def commit(repository: Path) -> None:
+    git = ["git", "-c", "user.name=x", "-c", "user.email=x@example.org"]
+    for words in (["init", "--quiet"], ["add", "--all"], ["commit", "--quiet", "--message", "x"]):
+        subprocess.run([*git, *words], cwd=repository, check=True)
+
+
+def test_annotations_are_not_changed_and_a_sample_is_its_seed_s(mutants: ModuleType) -> None:
+    places = mutants.mutants_of(Path("dda/code.py"))
+    assert {line for line, _ in places} == {4}
+    assert any("NumberReplacer" in mutant.operator_name for listed in places.values() for mutant in listed)
+    drawn = [[mutant for _, mutant in mutants.sample(mutants.all_rooms(), 5, seed)] for seed in (3, 3, 4)]
+    assert drawn[0] == drawn[1] != drawn[2]
+    assert len({(mutant.operator_name, mutant.occurrence) for mutant in drawn[0]}) == 5
+
+
+@pytest.mark.parametrize(("assertion", "status"), [(ASSERTION, 0), ("def test_none() -> None:\n    pass\n", 1)])
+def test_a_survivor_is_shown_and_a_status(
+    mutants: ModuleType,
+    assertion: str,
+    status: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "tests/dda/test_code.py").write_text(assertion)
+    commit(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["mutants", "--rooms", "dda", "--count", "2", "--seed", "2"])
+    with pytest.raises(SystemExit) as stopped:
+        mutants.main()
+    printed = capsys.readouterr().out
+    assert stopped.value.code == status
+    assert f"2 mutants, {2 * status} alive" in printed
+    assert ("+    return y" in printed) is bool(status)
+    assert (tmp_path / "dda/code.py").read_text() == CODE
+
+
+# ---- archives of a release ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def dist(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    return script("dist", monkeypatch)
+
+
+def test_links_of_a_page_become_addresses_of_a_version(dist: ModuleType) -> None:
+    page = "![a](docs/a.png) [b](docs/b.md#part) [c](https://example.org/) [d](#here)"
+    assert dist.absolute(page, "https://example.org/r/", "1.2.3") == (
+        "![a](https://example.org/r/raw/v1.2.3/docs/a.png) [b](https://example.org/r/blob/v1.2.3/docs/b.md#part) "
+        "[c](https://example.org/) [d](#here)"
+    )
+
+
+def test_a_release_with_placeholders_or_without_its_tag_is_refused(
+    dist: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert dist.is_placeholder("https://x.invalid/docs") and not dist.is_placeholder("https://example.org/invalid")
+    urls = '[project.urls]\nRepository = "https://x.invalid"\nIssues = "https://example.org"\n'
+    (tmp_path / "pyproject.toml").write_text(f'[project]\nname = "x"\nversion = "3.2.1"\n{urls}')
+    commit(tmp_path)
+    monkeypatch.setattr(dist, "ROOT", tmp_path)
+    monkeypatch.setattr(sys, "argv", ["dist", "--release"])
+    with pytest.raises(SystemExit) as stopped:
+        dist.main()
+    complained = capsys.readouterr().err
+    assert stopped.value.code == 2 and not (tmp_path / "dist").exists()
+    assert "Repository is a placeholder" in complained and "no tag v3.2.1" in complained and "Issues" not in complained
+    tag = ["git", "-c", "user.name=x", "-c", "user.email=x@example.org", "tag", "-a", "v3.2.1", "-m", "x"]
+    subprocess.run(tag, cwd=tmp_path, check=True)
+    assert dist.release_problems("3.2.1", []) == []
+
+
+def test_archives_that_lack_something_are_told(dist: ModuleType, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with tarfile.open(tmp_path / "x.tar.gz", "w:gz") as archive:
+        for name in dist.REQUIRED[1:]:
+            archive.add(tmp_path / "file", f"x-1/{name}")
+    with zipfile.ZipFile(tmp_path / "x.whl", "w") as wheel:
+        for folder in ("dda", "fem_reference", "dda_validation", "tests", "x-1.dist-info"):
+            wheel.writestr(f"{folder}/file", "x")
+    assert dist.missing_files(tmp_path / "x.tar.gz", tmp_path / "x.whl") == [
+        f"x.tar.gz lacks {dist.REQUIRED[0]}",
+        "x.whl holds tests",
+        "x.whl lacks validation",
+    ]
