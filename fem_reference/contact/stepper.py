@@ -113,7 +113,7 @@ class ContactStepper:
         if self.rule not in RULES:
             raise ValueError(f"rule: must be one of {RULES}, got {self.rule!r}")
         if self.friction is not None and self.shear != "glued":
-            raise ValueError(f"friction: goes with shear = 'glued' only, got shear = {self.shear!r}")
+            raise ValueError(f"friction: goes with shear = 'glued' only, got it with {self.shear!r}")
         if self.limit < 1:
             raise ValueError(f"limit: must be at least 1, got {self.limit!r}")
         implicit = self.rule == "implicit"
