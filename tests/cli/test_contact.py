@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import threading
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact_page
-from validation.cli import app
 from validation.cli import contact as command
 from validation.engine import measure
 from validation.engine.case import Case
@@ -193,11 +191,3 @@ def test_every_run_is_announced_before_it_starts() -> None:
     assert [(done, label.split(", ")) for done, _, label in calls] == [
         (done, [f"at most; {name}", "8 steps"]) for done, name in enumerate(scenes)
     ]
-
-
-def test_the_bar_does_not_wait_for_the_end_of_a_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    started = threading.Event()
-    monkeypatch.setattr(app, "PROGRESS_DELAY", 0.0)
-    monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
-    with app._progress("contact", between_calls=True):
-        assert started.wait(60)
