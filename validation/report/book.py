@@ -92,7 +92,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
         verdicts = results.verdicts()
         provenances = [results.manifest(study).get("provenance", {}) for study in readable]
         front = front_pages(groups, verdicts, readable, figures, provenances)
-        return [*front, *chapters, PageBreak(), *appendix(results, groups, verdicts, readable)]
+        return [*front, *chapters, *appendix(results, groups, verdicts, readable)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> Blocks:
