@@ -39,25 +39,9 @@ def built_from() -> str:
     return f"version {version}, commit {commit}"
 
 
-def written(entries: list[Any]) -> list[Any]:
-    """Return the entries of a navigation without pages that are not written; a test names those that may be absent."""
-    pages: list[Any] = []
-    for entry in entries:
-        ((title, place),) = entry.items()
-        if isinstance(place, list):
-            pages.append({title: written(place)})
-        elif place.startswith("notebooks/") or (ROOT / "docs" / place).is_file():
-            pages.append(entry)
-    return pages
-
-
 def on_config(config: Any) -> None:
-    """Append to the navigation: pages that it does not name, and the reference; say in the footer what was built."""
+    """Append versions and the reference to the navigation; say in the footer what was built."""
     config.copyright = f'dda-validation {built_from()}; <a href="{{changelog}}">versions</a>'
-    config.nav = written(config.nav)
-    named = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
-    if more := [path.name for path in sorted((ROOT / "docs").glob("*.md")) if f" {path.name}\n" not in named]:
-        config.nav.append({"More": more})
     config.nav.append({"Versions": "changelog.md"})
     pages: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
