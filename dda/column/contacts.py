@@ -190,7 +190,8 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
     if column.law == "bonded":
         raise ValueError("law: must be unilateral or frictional, got 'bonded', which solve_column steps")
     if scheme.damped:
-        raise ValueError("mass_damping, stiffness_damping: must be 0 where a column has contacts, got viscous damping")
+        values = f"{scheme.mass_damping:g}, {scheme.stiffness_damping:g}"
+        raise ValueError(f"mass_damping, stiffness_damping: must be 0 where a column has contacts, got {values}")
     lowest = int(not column.rests_on_base or column.contacts[0] is None)
     if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")

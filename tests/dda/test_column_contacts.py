@@ -774,7 +774,7 @@ def stepped(column: Column, scheme: Scheme = Scheme(0.5, 1.0, 1.0, 1e-3), **more
         ("repeats", lambda: ColumnOptions(repeats=0)),
         ("law", lambda: stepped(Column([BLOCK]))),
         ("stiffness", lambda: stepped(Column([BLOCK] * 2, law="unilateral"), Scheme(0.0, 0.5, 1.0, 1e-5))),
-        ("mass_damping", lambda: stepped(STANDING, Scheme(0.5, 1.0, 1.0, 1e-3, mass_damping=1.0))),
+        ("mass_damping, stiffness_damping", lambda: stepped(STANDING, Scheme(0.5, 1.0, 1.0, 1e-3, mass_damping=1.0))),
         ("settled", lambda: stepped(replace(STANDING, unsupported=True), options=ColumnOptions(settled=True))),
         ("columns", lambda: stepped(STANDING, columns=["gap_1"])),
         ("heights", lambda: stepped(STANDING, columns=["gap_1"], heights=[0.5])),

@@ -96,6 +96,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
+    _refuse_what_is_not_known(scene)
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
     answer = _judged(scene, foreign, tolerance)
@@ -114,14 +115,27 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
 
 
-def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
+def _refuse_what_is_not_known(scene: Scene) -> None:
+    """Refuse a scene that compare does not step, before anything of it is run."""
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if scene.column is None:
+        is_frictional = features.FRICTION in features.of(scene)
+        is_rectangle = rectangle_of(scene) is not None
+        if is_frictional or not is_rectangle:
+            features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
+        if not (is_frictional or is_rectangle or features.linear(scene)):
+            raise InputError(
+                "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
+                source=scene.name,
+                value=", ".join(_beyond(scene)),
+            )
+    features.refuse_sweep(scene)
+
+
+def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if scene.column is not None:
-        features.refuse_sweep(scene)
         return compare_column(scene, foreign, tolerance)
-    if features.FRICTION in features.of(scene) or rectangle_of(scene) is None:
-        features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
         is_scene = of_friction.is_scene
@@ -129,13 +143,6 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
             return _of_swapped(scene, foreign, pair, tolerance)
         return of_friction.answer_of(scene, foreign)
     column = rectangle_of(scene)
-    if not features.linear(scene) and column is None:
-        raise InputError(
-            "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
-            source=scene.name,
-            value=", ".join(_beyond(scene)),
-        )
-    features.refuse_sweep(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
         raise InputError("must not be zero throughout", source=scene.name, field="displacement", value="zeros only")
