@@ -46,8 +46,9 @@ def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     return blocks
 
 
-def _rule(text: str) -> Callout:
-    return Callout(f"Rule. {text}", "rule")
+def _rule(text: str, options: str) -> Callout:
+    """Return a rule with the command that answers the question for a scene of the reader's own."""
+    return Callout(f"Rule. {text} For your own block: dda-validate {options}", "rule")
 
 
 def _damping_chart(
@@ -97,9 +98,10 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
             f"Choose the damping ratio ξ of the first axial mode, then dt ≈ 4 ξ / ω₁, ω₁ its circular "
             f"frequency (up to ξ = 10\u00a0% within 3\u00a0%){example}. "
             "Small damping and the wave both need a short step, and no step repairs the model: what is left "
-            "when the damping is gone is one strain in place of a wave."
+            "when the damping is gone is one strain in place of a wave.",
+            "advise my-block.toml --damping 0.05 --solve-for dt",
         ),
-        histories.saved(chart_figure([chart], 40.0), directory, "decision-step.svg", caption),
+        histories.saved(chart_figure([chart], 37.0), directory, "decision-step.svg", caption),
         step_table(scenes),
         *_as_run(groups),
     ]
@@ -192,8 +194,8 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),
-        _rule(spring_rule(groups, base)),
-        histories.saved(chart_figure([deflection, ringing], 37.0), directory, "decision-springs.svg", caption),
+        _rule(spring_rule(groups, base), "damping my-block.toml --set contact.stiffness=1e10"),
+        histories.saved(chart_figure([deflection, ringing], 34.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
         Paragraph(
             "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
@@ -288,9 +290,10 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
             f"Leave gg at 1, or hold it as a rate: gg = exp(−c dt) with c = 2 ω₁ ξ, for 5\u00a0% c = {rate:.3g} 1/s, "
             "at steps with ω₁ dt below 1. "
             f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
-            "step never converges."
+            "step never converges.",
+            "advise my-block.toml --damping 0.05 --solve-for gg",
         ),
-        histories.saved(chart_figure([chart], 38.0), directory, "decision-discount.svg", caption),
+        histories.saved(chart_figure([chart], 34.0), directory, "decision-discount.svg", caption),
         discount_table(base),
         Paragraph(
             "The discount does not damp a stiff contact: with average acceleration its roots tend to −1 and −gg. It "
