@@ -12,7 +12,7 @@ from validation.scenes.keys import Section, keys_of
 # What other programs, and the symbols of the text, call a key; compared in lower case without separators.
 OTHER_NAMES = {
     "title": ("name", "description"),
-    "time.step": ("timestep", "deltat", "g1"),
+    "time.step": ("timestep", "stepsize", "deltat", "g1"),
     "time.steps": ("nsteps", "numberofsteps", "nstep", "n"),
     "time.gg": ("dynamic", "discount", "kineticdamping"),
     "time.alpha": ("beta", "newmarkbeta"),
