@@ -143,7 +143,8 @@ def attempt(
         narrowed_scene, absent = _narrowed(solver, scene)
         notes = (f"not reported: {', '.join(absent)}",) if absent else ()
         prepared = solver.prepare(narrowed_scene, full)
-        prepared.keeps_contact_record = contact_record
+        if contact_record:  # a user's own class may be frozen
+            prepared.keeps_contact_record = True
         run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
