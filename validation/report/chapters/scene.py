@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.report.references import SOURCES
-from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -232,7 +233,7 @@ def history_block(
         sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(ends, default=0.0) > window * 1.001:
         sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    panels = [_panel(case, columns, window, without) for case in cases]
+    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
     return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
@@ -287,7 +288,33 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list
     return sentences
 
 
-def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str]) -> HistoryPanel:
+def _finer(case: CaseResults, cases: Sequence[CaseResults]) -> dict[str, History]:
+    """Return the exact solutions of a case at the most instants that a case of the same motion has.
+
+    They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
+    zigzag.
+    """
+    finer: dict[str, History] = {}
+    for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
+        if solver not in case.histories:
+            continue
+        same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
+        finest = min(same, key=lambda other: other.scene.time.step)
+        if finest.scene.time.step < case.scene.time.step:
+            finer[solver] = finest.histories[solver]
+    return finer
+
+
+def _motion_of(case: CaseResults) -> dict[str, Any]:
+    """Return the definition of a case without its steps."""
+    definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
+    time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
+    return definition | {"time": time}
+
+
+def _panel(
+    case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
+) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
         if solver not in without and set(columns) & set(history.columns):
@@ -300,8 +327,9 @@ def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Se
         numbers = [value for value in values if value is not None]
         if numbers:
             static[column] = numbers[0]
+    finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference)
+    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn)
 
 
 def drift_values(group: CaseGroup) -> list[tuple[int, float]]:

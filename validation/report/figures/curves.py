@@ -9,7 +9,7 @@ import itertools
 import math
 import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,6 +110,7 @@ class HistoryPanel:
     reference: str | None  # the solver that differences are taken from
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
+    finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
 
     def sparse(self, columns: Sequence[str]) -> list[str]:
         """Return the solvers that are drawn as dots in one of some columns."""
@@ -120,7 +121,8 @@ class HistoryPanel:
 
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
-        return {name: history for name, history in self.histories.items() if column in history.columns}
+        finest = {name: self.finer.get(name, history) for name, history in self.histories.items()}
+        return {name: history for name, history in finest.items() if column in history.columns}
 
 
 HistoryPanels = Sequence[HistoryPanel]

@@ -154,7 +154,7 @@ def start_of(panels: HistoryPanels, column: str) -> float | None:
 
 def _until(panel: HistoryPanel, span: float) -> HistoryPanel:
     cut = {name: history.until(span) for name, history in panel.histories.items()}
-    return replace(panel, histories=cut)
+    return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
 
 def band(x: Array, y: Array) -> tuple[Array, Array, Array]:
