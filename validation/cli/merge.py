@@ -36,7 +36,7 @@ def merge(
 
     No case is run. The studies and scene files are those that the shards were called with, found from here.
 
-    Example: [bold]dda-validate merge part-1 part-2 part-3 --out reports/results[/bold]
+    Example: [bold]dda-validate merge part-1 part-2 part-3 --out merged[/bold]
     """
     import time
 
