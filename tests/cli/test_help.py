@@ -84,6 +84,8 @@ def test_every_command_stands_in_one_group_of_the_help() -> None:
 def test_a_long_run_says_its_length_by_a_table_that_has_every_study() -> None:
     assert list(costs.COSTS) == list(STUDIES)
     assert costs.announcement(["core"]) is None and costs.announcement(["my-scene"]) is None
+    alone = costs.announcement(["stability"])
+    assert alone is not None and alone.startswith("stability: ") and "% of it" not in alone
     sentence = costs.announcement(list(STUDIES))
     minutes = sum(costs.COSTS.values()) * costs.SECONDS / 60
     assert sentence is not None and f"about {minutes:.0f} min where core takes 20 s" in sentence

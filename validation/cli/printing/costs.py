@@ -55,8 +55,9 @@ def announcement(studies: Sequence[str]) -> str | None:
     if total < LONG:
         return None
     longest = max(timed, key=lambda name: COSTS[name])
+    name = timed[0] if len(timed) == 1 else f"{len(timed)} studies"
+    share = f"; {longest} is {100 * COSTS[longest] / total:.0f} % of it" if len(timed) > 1 else ""
     return (
-        f"{len(timed)} studies, {total:.0f} times the work of core: about {total * SECONDS / 60:.0f} min where core "
-        f"takes {SECONDS:.0f} s; {longest} is {100 * COSTS[longest] / total:.0f} % of it. Finished cases are kept and "
-        "not run again"
+        f"{name}: {total:.0f} times the work of core, about {total * SECONDS / 60:.0f} min where core takes "
+        f"{SECONDS:.0f} s{share}. Finished cases are kept and not run again"
     )
