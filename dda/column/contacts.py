@@ -158,7 +158,8 @@ def solve_contact_column(
     states = np.zeros((instants if options.states else 0, n), dtype=np.int8)
     solves, switches = zeros(instants, instants, dtype=np.int64)
     record = np.zeros((instants if options.energies else 0, RECORDED))
-    forcing = DriveSteps(*(np.array(part, dtype=float) for part in vars(drive).values()))
+    parts = (drive.displacement, drive.velocity, drive.acceleration, drive.pressure)
+    forcing = DriveSteps(*(np.array(part, dtype=float) for part in parts))
     ready = perf_counter()
     (reached, ended), _, how = run_loop(
         make_column_steps,

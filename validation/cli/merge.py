@@ -7,15 +7,8 @@ from typing import Annotated
 
 import typer
 
-from validation.cli.app import BaselineOption, SummaryOption, app
-from validation.cli.run import (
-    JsonOption,
-    Judging,
-    QuietOption,
-    RequireOption,
-    VerboseOption,
-    answer_and_exit,
-)
+from validation.cli.app import BaselineOption, JsonOption, SummaryOption, app
+from validation.cli.run import Judging, QuietOption, RequireOption, VerboseOption, answer_and_exit
 from validation.cli.signals import promise_rows
 
 

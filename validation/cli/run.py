@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import time
 from collections import Counter
@@ -36,6 +35,7 @@ from validation.cli.app import (
     RESULTS,
     BaselineOption,
     FullOption,
+    JsonOption,
     RanksOption,
     ResultsOption,
     SceneArgument,
@@ -47,7 +47,7 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
-from validation.cli.printing.output import echo
+from validation.cli.printing.output import echo, echo_json
 from validation.cli.signals import promise_rows
 
 RequireOption = Annotated[
@@ -55,7 +55,6 @@ RequireOption = Annotated[
     typer.Option("--require", help="Fail if gates of this solver were NOT RUN, or if there are none.", metavar="NAME"),
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")]
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
@@ -230,7 +229,7 @@ def answer_and_exit(
     answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(STUDIES), status)
     with tolerate_closed_pipe():
         if judging.as_json:
-            echo(json.dumps(as_data(answer), indent=1, allow_nan=False))
+            echo_json(as_data(answer))
         elif not judging.quiet:
             _print_answer(answer, judging.verbose)
     raise typer.Exit(status)
@@ -312,13 +311,13 @@ def _run_shard(
                 for case in run.failed:
                     echo(how_it_ended(*case, rows[case]))
     shards.write(shards.record_of(shard, options, groups), results)
-    counted = len(set(shards.all_keys(part)))
-    total = len(set(shards.all_keys(groups)))
+    counted = len(shards.all_keys(part))
+    total = len(shards.all_keys(groups))
     status = _status([], [], any(run.refused for run in runs), None, [str(run.failed) for run in runs if run.failed])
     if judging.as_json:
         outcomes = Counter(str(outcome) for run in runs for outcome in run.outcomes.values())
         data = {"status": status, "results": str(results.directory), "shard": str(shard), "cases": counted}
-        echo(json.dumps(data | {"of_cases": total, "outcomes": dict(outcomes)}, indent=1))
+        echo_json(data | {"of_cases": total, "outcomes": dict(outcomes)})
     elif not judging.quiet:
         echo(f"shard {shard}: {counted} of {total} cases, results: {results.directory}")
         echo("next: dda-validate merge with the directories of all shards judges them")

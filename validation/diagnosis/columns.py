@@ -324,7 +324,7 @@ class ColumnSearch:
     ----------
     history
         Beside its scene.
-    own
+    scene_run
         Columns of the scene's own run at all rows.
     allowed
         What may remain of each row, (columns, rows that can be judged).
@@ -395,10 +395,10 @@ class ColumnSearch:
         candidates = [Fitted(change, 0.0, math.inf) for change in changes]
         groups = self._groups_of_rows()
         for number, rows in enumerate(groups):
-            scene_run = norm(self.over(self.scene_run[:, :rows], rows))
+            scene_remainder = norm(self.over(self.scene_run[:, :rows], rows))
             candidates = [self._fitted(candidate, rows, number) for candidate in candidates]
             if number + 1 >= PATIENCE:
-                bar = max(NEAR * scene_run, self._near(rows))
+                bar = max(NEAR * scene_remainder, self._near(rows))
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]

@@ -130,6 +130,8 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
                 source=scene.name,
                 value=", ".join(_beyond(scene)),
             )
+        if is_frictional:
+            of_friction.refuse_other_scenes(scene)
     features.refuse_sweep(scene)
 
 
@@ -138,10 +140,12 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         return compare_column(scene, foreign, tolerance)
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
-        is_scene = of_friction.is_scene
-        if not is_scene(scene, foreign) and is_scene(scene, exchanged(foreign, *pair)):
-            return _of_swapped(scene, foreign, pair, tolerance)
-        return of_friction.answer_of(scene, foreign)
+        reading = of_friction.read(scene, foreign)
+        if not of_friction.is_scene(scene, reading):
+            swapped = of_friction.read(scene, exchanged(foreign, *pair))
+            if of_friction.is_scene(scene, swapped):
+                return _of_swapped(scene, foreign, pair, tolerance)
+        return of_friction.answer_of(scene, foreign, reading)
     column = rectangle_of(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):

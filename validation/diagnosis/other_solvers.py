@@ -262,6 +262,6 @@ def row_of(
         "alpha": alpha,
         "delta": delta,
         "gg": gg,
-        "misfit": significant(min(misfit, 1000000.0), 6),
+        "misfit": significant(min(misfit, 1e6), 6),
         "compliance": None if soft is None else significant(soft, 4),
     }

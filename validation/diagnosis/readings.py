@@ -27,10 +27,9 @@ FIELDS = {  # of a column and its rounding in `Foreign`
     PRESSURE: ("pressure", "pressure_rounding"),
     SIDEWAYS: ("sideways", "sideways_rounding"),
 }
-NEAR, FAR = (
-    3.5,
-    4.5,
-)  # powers of ten: of swapped columns from the size of the other one, units allowed for, and of its own
+# powers of ten: swapped columns are nearer than NEAR to each other's size, units allowed for, and FAR from their own
+NEAR = 3.5
+FAR = 4.5
 
 
 @dataclass(frozen=True)

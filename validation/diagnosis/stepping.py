@@ -195,8 +195,8 @@ class Stepper:
         model = self.rectangle.model
         spring = self.rectangle.normal / 2
         whole = self.without_gap + spring * np.outer(self.corner, self.corner)
-        one = (model.mass, whole, self.without_gap, np.array(spring), np.zeros(()), self.corner, model.force)
-        return Equations(*(np.repeat(array[None], n, axis=0) for array in one))
+        of_variant = (model.mass, whole, self.without_gap, np.array(spring), np.zeros(()), self.corner, model.force)
+        return Equations(*(np.repeat(array[None], n, axis=0) for array in of_variant))
 
     # ---- one step ---------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,6 @@ do the shards. What a gate compares a case with may be in another shard; gates a
 from __future__ import annotations
 
 import hashlib
-import itertools
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -55,14 +54,13 @@ class Shard:
 
     def part(self, groups: Sequence[StudyCases]) -> list[StudyCases]:
         """Return the cases of this shard, study by study; a case that two studies share is in one shard."""
-        keys = set(itertools.islice(all_keys(groups), self.number - 1, None, self.count))
+        keys = set(all_keys(groups)[self.number - 1 :: self.count])
         return [replace(group, keyed=[item for item in group.keyed if item[1] in keys], rows={}) for group in groups]
 
 
-def all_keys(groups: Iterable[StudyCases]) -> Iterator[str]:
-    """Yield the key of every case of some studies once, in their order."""
-    keyed = itertools.chain.from_iterable(group.keyed for group in groups)
-    yield from dict.fromkeys(key for _, key in keyed)
+def all_keys(groups: Iterable[StudyCases]) -> list[str]:
+    """Return the key of every case of some studies once, in their order."""
+    return list(dict.fromkeys(key for group in groups for _, key in group.keyed))
 
 
 class RunOptions(TypedDict):
@@ -142,8 +140,8 @@ def read_shards(directories: Sequence[Path]) -> list[FinishedShard]:
     """
     shards = [shard for directory in directories for shard in _read(directory)]
     first = shards[0]
-    for other in shards[1:]:
-        check_same(first.record, other.record, str(first), str(other))
+    for shard in shards[1:]:
+        check_same(first.record, shard.record, str(first), str(shard))
     by_number: dict[int, FinishedShard] = {}
     for shard in shards:
         twin = by_number.setdefault(shard.shard.number, shard)
@@ -172,14 +170,14 @@ def _read(directory: Path) -> Iterator[FinishedShard]:
         yield FinishedShard(strict.read(path, ShardRecord, ADVICE), directory)
 
 
-def check_same(one: ShardRecord, other: ShardRecord, one_name: str, other_name: str) -> None:
+def check_same(expected: ShardRecord, found: ShardRecord, expected_name: str, found_name: str) -> None:
     """Refuse to put two parts together that are not of one run.
 
     Parameters
     ----------
-    one, other
+    expected, found
         The records; their numbers are not compared.
-    one_name, other_name
+    expected_name, found_name
         What the message calls them.
 
     Raises
@@ -187,20 +185,20 @@ def check_same(one: ShardRecord, other: ShardRecord, one_name: str, other_name: 
     InputError
         With the first thing that differs.
     """
-    if one["count"] != other["count"]:
+    if expected["count"] != found["count"]:
         raise InputError(
-            f"must be of as many parts as {one_name}", source=other_name, field="count", value=other["count"]
+            f"must be of as many parts as {expected_name}", source=found_name, field="count", value=found["count"]
         )
     for part, name in (("versions", "version of "), ("options", ""), ("studies", "cases of ")):
-        first: Mapping[str, object] = one[part]  # type: ignore[literal-required]
-        second: Mapping[str, object] = other[part]  # type: ignore[literal-required]
-        for key in dict.fromkeys((*first, *second)):
-            if first.get(key) != second.get(key):
+        expected_values: Mapping[str, object] = expected[part]  # type: ignore[literal-required]
+        found_values: Mapping[str, object] = found[part]  # type: ignore[literal-required]
+        for key in dict.fromkeys((*expected_values, *found_values)):
+            if expected_values.get(key) != found_values.get(key):
                 raise InputError(
-                    f"must be that of {one_name}, {first.get(key)}",
-                    source=other_name,
+                    f"must be that of {expected_name}, {expected_values.get(key)}",
+                    source=found_name,
                     field=f"{name}{key}",
-                    value=second.get(key),
+                    value=found_values.get(key),
                     advice="run all parts with one version of everything on the same scenes",
                 )
 

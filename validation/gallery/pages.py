@@ -26,7 +26,7 @@ from validation.runs.results import Results
 from validation.runs.text import visible
 
 MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULATORS))
-SOURCES = references()
+BIBLIOGRAPHY = references()
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
 SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
 
@@ -159,7 +159,7 @@ class Pages:
 
     def references(self) -> str:
         """Return the page of the paper and the sources of the methods."""
-        return self._page("references.html.j2", "references.html", sources=SOURCES, scripts=())
+        return self._page("references.html.j2", "references.html", sources=BIBLIOGRAPHY, scripts=())
 
     def calculator(self, calculator: Calculator) -> str:
         """Return the page of a calculator."""
@@ -169,7 +169,7 @@ class Pages:
 
 def _citation(match: re.Match[str]) -> str:
     """Return a link to a source as author and year; a text that is no key stays."""
-    source = SOURCES.get(match[1])
+    source = BIBLIOGRAPHY.get(match[1])
     if source is None:
         return match[0]
     return f'<a href="references.html#{match[1]}">{escape(source["author"].partition(",")[0])} {source["year"]}</a>'

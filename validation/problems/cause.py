@@ -386,36 +386,36 @@ def _with(name: str, words: str, values: dict[str, float], remainder: float, bas
 
 def _named(causes: Sequence[Cause]) -> Cause:
     """Return the usual one of the causes that leave hardly more than the least; nothing where these are too many."""
-    near = alike(causes, lambda each: each.left, CLEAR, BAR / CLEAR**2)
-    fewest = min(len(each.ids) for each in near)
+    near = alike(causes, lambda cause: cause.left, CLEAR, BAR / CLEAR**2)
+    fewest = min(len(cause.ids) for cause in near)
     distinct: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
-    for each in sorted((each for each in near if len(each.ids) == fewest), key=_rank):
-        distinct.setdefault((each.ids, *(significant(value, 2) for value in each.values.values())), each)
+    for cause in sorted((cause for cause in near if len(cause.ids) == fewest), key=_rank):
+        distinct.setdefault((cause.ids, *(significant(value, 2) for value in cause.values.values())), cause)
     best, *others = distinct.values()
     if not others:
         return best
     if len(others) >= MOST_ALIKE:
-        names = ", ".join(_short(each) for each in distinct.values())
+        names = ", ".join(_short(cause) for cause in distinct.values())
         return Cause(
             f"{NOT_EXPLAINED}: the rows do not tell apart {names}", alike=tuple(map(_short, distinct.values()))
         )
     first, joint, _ = best.sentence.partition("; and ")
-    same_rows = tuple(each.sentence.removeprefix(first + joint) if joint else each.sentence for each in others)
+    same_rows = tuple(cause.sentence.removeprefix(first + joint) if joint else cause.sentence for cause in others)
     sentence = f"{best.sentence} (the same rows: {'; or '.join(same_rows)})"
     return Cause(sentence, best.ids, best.values, same_rows, best.left)
 
 
-def _short(each: Cause) -> str:
+def _short(cause: Cause) -> str:
     """Return a cause by its ids and the number of the last, ``friction-factor 1.1``."""
-    value = each.values.get(each.ids[-1])
-    return " and ".join(each.ids) + ("" if value is None else f" {value:.4g}")
+    value = cause.values.get(cause.ids[-1])
+    return " and ".join(cause.ids) + ("" if value is None else f" {value:.4g}")
 
 
-def _rank(each: Cause) -> tuple[int, float]:
+def _rank(cause: Cause) -> tuple[int, float]:
     """Order causes by how usual they are, then by what they leave; one without a fitted number comes first."""
-    if not each.values:
-        return -1, each.left
-    return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in each.ids), each.left
+    if not cause.values:
+        return -1, cause.left
+    return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in cause.ids), cause.left
 
 
 # ---- compare --------------------------------------------------------------------------------------------------------

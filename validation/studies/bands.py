@@ -110,8 +110,8 @@ def gate(
         Kind of the reference, its uncertainty, and further fields of the gate, such as `until`.
     """
     name = case if isinstance(case, str) else case.name
-    pair = (solvers,) if isinstance(solvers, str) else solvers
-    return Gate(name, pair, metric, *band, reason, kind, uncertainty, **window)
+    names = (solvers,) if isinstance(solvers, str) else solvers
+    return Gate(name, names, metric, *band, reason, kind, uncertainty, **window)
 
 
 def printed(

@@ -11,7 +11,7 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import gate, order_row
+from validation.studies.bands import about, gate, order_row
 from validation.studies.declaration import Study
 
 NAME = "opening"
@@ -105,7 +105,7 @@ def order_gates() -> Iterator[Gate]:
     for name, (_, key, value) in REFINED.items():
         kind = "of the scheme in smooth motion" if key == "time.step" else "of quadratic elements, as errors over n"
         reason = f"order {value:g} {kind}, kept through switches; {NEXT:g} for the next order"
-        yield gate(name, "order", "displacement", (value - NEXT, value + NEXT), reason)
+        yield gate(name, "order", "displacement", about(value, NEXT), reason)
 
 
 def form_gates() -> Iterator[Gate]:
@@ -114,14 +114,14 @@ def form_gates() -> Iterator[Gate]:
     for case in load_scene(LEDGER).expand():
         printed = MODEL_FORM[case.contact.stiffness / case.block.young]
         for quantity, value in zip(("displacement", "pressure"), printed, strict=True):
-            edges = value - 5e-4, value + 5e-4
+            edges = about(value, 5e-4)
             yield gate(case, ("block-events", "bar-events"), f"{quantity}.l2", edges, why, "other code", 5e-4)
 
 
 def _near(case: Scene, kind: str, metric: str, value: float, least: float) -> Gate:
     half = half_unit(value) + 1e-12 * abs(value) + least
     reason = PRINTED + (", and the ulp of the instant at a front" if least else "")
-    return gate(case, f"{kind} samples", metric, (value - half, value + half), reason, "other code", half_unit(value))
+    return gate(case, f"{kind} samples", metric, about(value, half), reason, "other code", half_unit(value))
 
 
 def half_unit(value: float) -> float:
@@ -149,7 +149,7 @@ def switch_gates() -> Iterator[Gate]:
             for part, value in zip(("first_opening", "first_closing"), times, strict=True):
                 if value is not None and value < case.time.duration:
                     half = half_unit(value) + 1e-12 * value
-                    edges = value - half, value + half
+                    edges = about(value, half)
                     yield gate(case, f"{kind}-events", f"switches.{part}", edges, PRINTED, "other code")
 
 

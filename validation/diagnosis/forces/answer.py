@@ -62,9 +62,8 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
     Raises
     ------
     InputError
-        The scene is not a rectangle at rest on its springs, or the history lacks a column or a step.
+        The history lacks a column or a step, or its steps are not equal.
     """
-    _check(scene)
     if foreign.sideways is None:
         raise InputError(
             "a history with friction must have it",
@@ -113,14 +112,13 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
     return SlopeReading(place * signs / factor, np.column_stack(units) / factor, step, tuple(corrected), notes)
 
 
-def is_scene(scene: Scene, foreign: Foreign) -> bool:
+def is_scene(scene: Scene, reading: SlopeReading) -> bool:
     """Whether a history is the scene's own as it is read, no sign or unit corrected."""
-    reading = read(scene, foreign)
     exact = at_step(scene, reading.step, len(reading.place))
     return not reading.corrected and agreement(exact, reading.place, reading.rounding).same
 
 
-def _check(scene: Scene) -> None:
+def refuse_other_scenes(scene: Scene) -> None:
     """Refuse what is not a rectangle that lies at rest on its springs."""
     more = sorted(set(features.of(scene)) - KNOWN)
     at_rest = scene.contact.gap == scene.block.velocity == 0
@@ -129,12 +127,10 @@ def _check(scene: Scene) -> None:
         raise InputError(
             "with friction compare takes an upright rectangle at rest on its springs", source=scene.name, value=refused
         )
-    features.refuse_sweep(scene)
 
 
-def answer_of(scene: Scene, foreign: Foreign) -> Answer:
+def answer_of(scene: Scene, foreign: Foreign, reading: SlopeReading) -> Answer:
     """Return the answer for a block with friction: its laws are held against the forces that the motion shows."""
-    reading = read(scene, foreign)
     result = judge(scene, reading.place, reading.step, reading.rounding)
     ids = [*reading.slips, *result.causes] if result.explained else [UNEXPLAINED]
     departure = None

@@ -6,11 +6,10 @@ import functools
 import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, Finished, from_history
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
@@ -67,12 +66,7 @@ class Wave:
 
     def row(self, compute: Callable[[Wave, History], Mapping[str, Value]]) -> Derived:
         """Return the derived row that a function of the wave and its history computes."""
-        return Derived(self.scene.name, self.name, ((self.scene.name, self.solver),), partial(self._computed, compute))
-
-    def _computed(
-        self, compute: Callable[[Wave, History], Mapping[str, Value]], finished: Finished
-    ) -> Mapping[str, Value]:
-        return compute(self, finished.needed_history(self.scene.name, self.solver))
+        return from_history(self.scene, self.solver, self.name, lambda _, history: compute(self, history))
 
 
 @functools.cache
