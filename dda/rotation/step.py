@@ -682,7 +682,7 @@ def account(
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
     gg = body.gg**part.ratio
     h = body.step * part.ratio
-    if gg != 1:
+    if gg != 1 and not (body.lag != 0 and part.begun == 0):
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     if body.stages == 2:
         between = body.between.contacts
@@ -728,7 +728,8 @@ def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) 
         rows[number, i] = state.q[i]
         rows[number, 6 + i] = state.V[i]
         if body.lag != 0:
-            rows[number, 6 + i] += body.lag * body.step * state.A[i]
+            discount = body.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, 6 + i] = discount * state.V[i] + body.lag * body.step * state.A[i]
         total += state.V[i]
     for i in range(2):
         for j in range(2):
