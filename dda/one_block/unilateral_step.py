@@ -172,6 +172,7 @@ def block_equations(
     vectors: list[Any] = zeros(n, n, n, n, n, q)
     vectors.append(Free(*zeros(c, c, c)))
     vectors += zeros(c, (n, n), n, 2, n)
+    between: list[Any] = zeros(n, n, n, n)
     stages = [plain_stage(stage) for stage in scheme.stages]
     rooms = [stage_room(stage, n, c, q) for stage in stages]
     rooms[-1] = rooms[-1]._replace(begin=float(stages[0].end) if len(stages) == 2 else 0.0)
@@ -195,7 +196,7 @@ def block_equations(
         inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
         first=rooms[0],
         last=rooms[-1],
-        between=BlockState(*zeros(n, n, n, n), at_rest(np.zeros(c))),
+        between=BlockState(*between, contacts=at_rest(np.zeros(c))),
         made=np.zeros(1),
         room=Room(*vectors),
         work=work_for(c),
