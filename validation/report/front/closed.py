@@ -24,12 +24,12 @@ def timed(scene: Scene, **values: Any) -> Scene:
 
 def constant(scene: Scene, **values: Any) -> Scene:
     """Return a scene under constant acceleration without a discount."""
-    return timed(scene, alpha=0.5, delta=1.0, gg=1.0, **values)
+    return timed(scene, scheme="newmark", stated_alpha=0.5, stated_delta=1.0, gg=1.0, **values)
 
 
 def average(scene: Scene, gg: float = 1.0) -> Scene:
     """Return a scene under average acceleration and a discount per step."""
-    return timed(scene, alpha=0.25, delta=0.5, gg=gg)
+    return timed(scene, scheme="newmark", stated_alpha=0.25, stated_delta=0.5, gg=gg)
 
 
 def stiffer(scene: Scene, ratio: float) -> Scene:
