@@ -18,18 +18,22 @@ NOISE = 1e-9  # of the load; a smaller tension is rounding
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
-    """Return a scene with other values in its table of time, which are known to be allowed."""
+    """Return a scene with other values in its table of time, which are known to be allowed; weights are Newmark's."""
+    weights = {name: values.pop(name) for name in ("alpha", "delta") if name in values}
+    if weights:
+        values |= {"scheme": "newmark", "rho_inf": None, "split": None}
+        values |= {f"stated_{name}": value for name, value in weights.items()}
     return scene.model_copy(update={"time": scene.time.model_copy(update=values)})
 
 
 def constant(scene: Scene, **values: Any) -> Scene:
     """Return a scene under constant acceleration without a discount."""
-    return timed(scene, scheme="newmark", stated_alpha=0.5, stated_delta=1.0, gg=1.0, **values)
+    return timed(scene, alpha=0.5, delta=1.0, gg=1.0, **values)
 
 
 def average(scene: Scene, gg: float = 1.0) -> Scene:
     """Return a scene under average acceleration and a discount per step."""
-    return timed(scene, scheme="newmark", stated_alpha=0.25, stated_delta=0.5, gg=gg)
+    return timed(scene, alpha=0.25, delta=0.5, gg=gg)
 
 
 def stiffer(scene: Scene, ratio: float) -> Scene:
