@@ -67,7 +67,8 @@ def default_jobs() -> int:
 @app.command("list")
 def list_command(
     what: Annotated[
-        str | None, typer.Argument(help="keys, metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
+        str | None,
+        typer.Argument(help="keys, metrics, schemes, scenes, solvers or studies: that list in full.", metavar="LIST"),
     ] = None,
 ) -> None:
     """List studies, built-in scenes, solvers and metrics; or one of these, or all keys of a scene, in full.

@@ -30,6 +30,7 @@ Frequencies may be arrays; everything is in SI units.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -326,23 +327,28 @@ class Stepping:
         return bool(abs(self.roots(omega_dt)[0].imag) > 0)
 
     def damping_ratio(self, omega_dt: float) -> float:
-        """Return xi = -Re ln z / |ln z| of the principal pair, not a number where no pair oscillates."""
-        logarithm = self._logarithm(omega_dt)
-        return math.nan if logarithm is None else -logarithm.real / abs(logarithm)
+        """Return xi = -(l1 + l2) / (2 sqrt(l1 l2)), l = ln z of the principal pair; NaN where a root is not positive.
+
+        Of a complex pair that is -Re ln z / |ln z|, of two positive roots at least 1.
+        """
+        first, second = self._logarithms(omega_dt)
+        return -(first + second).real / (2 * math.sqrt(abs(first * second)))
 
     def period_error(self, omega_dt: float) -> float:
-        """Return W / |ln z| - 1 of the principal pair, not a number where no pair oscillates."""
-        logarithm = self._logarithm(omega_dt)
-        return math.nan if logarithm is None else omega_dt / abs(logarithm) - 1
+        """Return W / sqrt(l1 l2) - 1, of a complex pair W / |ln z| - 1; NaN where a root is not positive."""
+        first, second = self._logarithms(omega_dt)
+        return omega_dt / math.sqrt(abs(first * second)) - 1
 
     def complex_frequency(self, omega: float) -> complex:
-        """Return w' [rad/s] of a mode of frequency w, whose free motion is e^{i w' t} at the steps."""
-        logarithm = self._logarithm(omega * self.step)
-        return complex(math.nan, math.nan) if logarithm is None else logarithm / (1j * self.step)
+        """Return w' [rad/s] of a mode of frequency w, whose free motion is e^{i w' t} at the steps; else NaN."""
+        return self._logarithms(omega * self.step)[0] / (1j * self.step)
 
-    def _logarithm(self, omega_dt: float) -> complex | None:
-        principal = complex(self.roots(omega_dt)[0])
-        return None if principal.imag == 0 else complex(np.log(principal))
+    def _logarithms(self, omega_dt: float) -> tuple[complex, complex]:
+        """Return ln z of the principal pair, not numbers where one is real and not positive."""
+        first, second = (complex(z) for z in self.roots(omega_dt)[:2])
+        if first.imag == 0 and min(first.real, second.real) <= 0:
+            return complex(math.nan, math.nan), complex(math.nan, math.nan)
+        return cmath.log(first), cmath.log(second)
 
     def spectral_radius(self, omega_dt: float) -> float:
         """Return the largest |z| of a step."""
