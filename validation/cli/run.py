@@ -310,7 +310,7 @@ def _run_shard(
             runs.append(run)
             if not judging.quiet and not judging.as_json:
                 for case in run.failed:
-                    echo(how_it_ended(*case, rows[case]))
+                    echo(how_it_ended(*case, rows[case].outcome, rows[case].notes))
     shards.write(shards.record_of(shard, options, groups), results)
     counted = len(shards.all_keys(part))
     total = len(shards.all_keys(groups))
