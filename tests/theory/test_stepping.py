@@ -76,6 +76,12 @@ DISCOUNTED = {  # xi at gg = 0.98 and W = 0.1, 0.3 and 1
 }
 
 
+def weights(stepping: Stepping) -> tuple[float, float, float, float]:
+    """Return am, af, beta and gamma of a scheme of one stage."""
+    stage = stepping.one_stage
+    return stage.am, stage.af, stage.beta, stage.gamma
+
+
 def step_matrix(stepping: Stepping, omega: float) -> np.ndarray:
     """Return the matrix of one step of (x, v, a) of x'' = -omega^2 x with dt = 1, line by line of the definition."""
     gg = stepping.gg
@@ -98,7 +104,7 @@ def step_matrix(stepping: Stepping, omega: float) -> np.ndarray:
             x1 = known / (1 + q2**2 * square)
             columns.append((x1, u + q0 * a + q1 * ag - q2 * square * x1, 0.0))
             continue
-        am, af, beta, gamma = stepping.one_stage
+        am, af, beta, gamma = weights(stepping)
         known = x + u + (0.5 - beta) * a
         a1 = -(am * a + square * ((1 - af) * known + af * x)) / (1 - am + square * (1 - af) * beta)
         columns.append((known + beta * a1, u + (1 - gamma) * a + gamma * a1, a1))
@@ -206,7 +212,7 @@ def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str
     if stepping.scheme == "leapfrog":
         squared = -turn * (z - stepping.gg) / (stepping.step**2 * z)
     else:
-        am, af, beta, gamma = stepping.one_stage
+        am, af, beta, gamma = weights(stepping)
         below = stepping.gg * (1 - gamma + gamma * z) + (0.5 - beta + beta * z) * (z - stepping.gg)
         mean = ((1 - am) * z + am) / ((1 - af) * z + af)
         squared = -turn * (z - stepping.gg) * mean / (stepping.step**2 * below)
@@ -246,7 +252,7 @@ def driven_step(stepping: Stepping, natural: float, driven: float, n: int, state
         known = x + (q0 + q2) * u + q1 * vg + q2 * (q0 * a + q1 * ag)
         a1 = (load(n + 1) - square * known) / (1 + q2**2 * square)
         return np.array([known + q2**2 * a1, u + q0 * a + q1 * ag + q2 * a1, a1])
-    am, af, beta, gamma = stepping.one_stage
+    am, af, beta, gamma = weights(stepping)
     known = x + u + (0.5 - beta) * a
     force = (1 - af) * (load(n + 1) - square * known) + af * (load(n) - square * x)
     a1 = (force - am * a) / (1 - am + (1 - af) * beta * square)

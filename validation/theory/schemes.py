@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from validation.theory.stepping import Stepping, default_split
+from validation.theory.stages import equal_split
+from validation.theory.stepping import Stepping
 
 SAME = 1e-9  # relative difference of two parameters that are meant to be equal
 
@@ -142,7 +143,7 @@ def _of_newmark(alpha: float, delta: float) -> list[str]:
 
 
 def _of_composite(rho_inf: float, split: float | None) -> list[str]:
-    share = default_split(rho_inf) if split is None else split
+    share = equal_split(rho_inf) if split is None else split
     if rho_inf == 0 and _equal(share, 2 - math.sqrt(2)):
         return ["this is TR-BDF2 and Bathe's scheme: split = 2 - sqrt 2, two solves a step"]
     if rho_inf == 0 and share == 0.5:
