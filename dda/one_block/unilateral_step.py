@@ -50,12 +50,12 @@ from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
-    StepScheme,
     acceleration_corrector,
     initial_acceleration,
     momentum_balance,
     velocity_corrector,
 )
+from dda.scheme.stages import Stage
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
@@ -251,7 +251,11 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
     ) -> tuple[int, int]:
         """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
         length = length_of(block, shear_law, part.ratio)
-        scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
+        alpha = block.alpha
+        delta = block.delta
+        early = (1 - 2 * alpha) / 2
+        gg = length.numbers[1]
+        scheme = Stage(alpha, delta, early, 1 - delta, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, gg, length.numbers[2])
         free_step(block, shear_law, length, scheme, state, base, part)
         outcome, solves = solve(block, shear_law, state.contacts, length, after.contacts)
         if outcome == FOUND:
@@ -267,7 +271,7 @@ def free_step(
     block: BlockEquations,
     shear_law: Shear,
     length: StepLength,
-    scheme: StepScheme,
+    scheme: Stage,
     state: BlockState,
     base: BaseRecord | None,
     part: Part,
@@ -312,7 +316,7 @@ def accept(
     block: BlockEquations,
     shear_law: Shear,
     length: StepLength,
-    scheme: StepScheme,
+    scheme: Stage,
     state: BlockState,
     after: BlockState,
 ) -> None:
