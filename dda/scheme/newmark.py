@@ -142,22 +142,23 @@ def effective_matrix(scheme: Scheme | Stage, M: Real, k: Real) -> Real:
     return M + implicit_weight(scheme) * k
 
 
-def dashpot_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
-    """Return the matrix of the accelerations under any damping, M + delta dt C + alpha dt^2 K."""
-    return M + scheme.delta * scheme.step * C + scheme.alpha * scheme.step**2 * K
+def dashpot_matrix(scheme: Scheme | Stage, M: Array, C: Array, K: Array) -> Array:
+    """Return the matrix of the accelerations of a stage under any damping, M + delta dt C + alpha dt^2 K."""
+    share = (1 - scheme.af) / (1 - scheme.am)
+    return M + share * scheme.delta * scheme.step * C + share * scheme.alpha * scheme.step**2 * K
 
 
-def predictors(scheme: Scheme, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
+def predictors(scheme: Scheme | Stage, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
     """Return D* and V* of eq. (6) and (7), what is known of the end of a step before its acceleration.
 
     Of a scheme with the step 1, V and A stand for dt V and dt^2 A.
     """
     dt = scheme.step
-    displaced = D + scheme.gg * dt * V + dt**2 * (0.5 - scheme.alpha) * A
-    return displaced, scheme.gg * V + dt * (1 - scheme.delta) * A
+    displaced = D + scheme.d_u * scheme.gg * dt * V + dt**2 * scheme.e_0 * A
+    return displaced, scheme.gg * V + dt * scheme.g_0 * A
 
 
-def correctors(scheme: Scheme, D: Array, V: Array, A1: Array) -> tuple[Array, Array]:
+def correctors(scheme: Scheme | Stage, D: Array, V: Array, A1: Array) -> tuple[Array, Array]:
     """Return D1 and V1 from the predicted ones and the acceleration at the end of the step."""
     return D + scheme.alpha * scheme.step**2 * A1, V + scheme.delta * scheme.step * A1
 
