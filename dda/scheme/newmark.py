@@ -25,7 +25,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice, repeat
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import ClassVar, Literal, TypeVar
 
 import numpy as np
 
@@ -123,11 +123,6 @@ class Scheme:
         """The same in the velocity."""
         return 1 - self.delta
 
-    @property
-    def weight(self) -> float:
-        """Weight of dt^2 K beside M in the matrix of Newmark's step."""
-        return self.alpha
-
     def instants(self, steps: int) -> Array:
         """Return t = 0 and the ends of all stages of so many steps [s]."""
         ends = np.array([float(stage.end) for stage in self.stages])
@@ -135,12 +130,22 @@ class Scheme:
         return np.concatenate([[0.0], self.step * number.ravel()])
 
 
+def plain_stage(stage: Scheme | Stage) -> Stage:
+    """Return the numbers of a stage alone, for a momentum that is discounted already and a step of length one."""
+    return Stage(*(float(getattr(stage, name)) for name in Stage._fields))._replace(gg=1.0, step=1.0)
+
+
+def implicit_weight(stage: Scheme | Stage) -> float:
+    """Return the weight of dt^2 K beside M in the matrix of a stage, alpha of Newmark's."""
+    return stage.alpha * (1 - stage.af) / (1 - stage.am)
+
+
 def effective_matrix(scheme: Scheme | Stage, M: Real, k: Real) -> Real:
     """Return S = M + delta dt C + alpha dt^2 K, at C = 0 alpha dt^2 times the matrix of eq. (9)."""
     if isinstance(scheme, Scheme) and scheme.damped:
         mass_factor = 1 + scheme.delta * scheme.mass_damping * scheme.step
         return mass_factor * M + (scheme.alpha + scheme.delta * scheme.stiffness_damping / scheme.step) * k
-    return M + scheme.weight * k
+    return M + implicit_weight(scheme) * k
 
 
 def dashpot_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:

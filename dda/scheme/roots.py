@@ -116,9 +116,7 @@ def _logarithms(scheme: Scheme, omega: float) -> tuple[complex, complex] | None:
     pair = principal_pair(scheme, omega)
     if pair[0].imag == 0 and not (pair[0].real > -1 and pair[1].real > -1):
         return None
-    first, second = (
-        complex(0.5 * math.log1p(2 * y.real + abs(y) ** 2), math.atan2(y.imag, 1 + y.real)) for y in pair
-    )
+    first, second = (complex(0.5 * math.log1p(2 * y.real + abs(y) ** 2), math.atan2(y.imag, 1 + y.real)) for y in pair)
     return first, second
 
 

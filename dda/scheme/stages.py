@@ -1,7 +1,7 @@
 r"""What a scheme is made of: one stage or more, each a row of numbers.
 
-With the start (x, v, a) of a step of length dt, u = gg v and the end (xg, vg, ag) of the stage before, a stage that ends
-at a share of the step brings a mass M with forces R(x) = F - K x + contact to
+With the start (x, v, a) of a step of length dt, u = gg v and the end (xg, vg, ag) of the stage before, a stage that
+ends at a share of the step brings a mass M with forces R(x) = F - K x + contact to
 
     x1 = xg + dt (d_u u + d_g vg) + dt^2 (e_0 a + e_g ag + alpha a1)
     v1 = u + dt (g_0 a + g_g ag + delta a1)
@@ -33,16 +33,6 @@ class Stage(NamedTuple):
     end: float = 1.0  # where it ends, over the step
     gg: float = 1.0  # share of the velocity that the step starts with
     step: float = 1.0  # dt [s]
-
-    @property
-    def weight(self) -> float:
-        """Of dt^2 K beside M in the matrix of the stage."""
-        return self.alpha * (1 - self.af) / (1 - self.am)
-
-    @property
-    def damped(self) -> bool:
-        """Whether there is viscous damping: it goes with Newmark's scheme only."""
-        return False
 
 
 class Table(NamedTuple):

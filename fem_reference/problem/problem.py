@@ -19,6 +19,8 @@ HYPOTHESES = ("plane stress", "plane strain")
 FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
 CELLS = ("quadrilaterals", "triangles")
 STARTS = ("zero", "consistent")
+SAME_MATRIX = 1e-15
+"""Relative difference of two stages' weights, by rounding, below which they share a matrix."""
 
 
 def _require(condition: bool, field: str, rule: str, value: object) -> None:
@@ -300,6 +302,13 @@ class Scheme:
     def stages(self) -> tuple[Stage, ...]:
         """Stages of a step, in their order."""
         return (newmark_stage(self.alpha, self.delta),) if self.table is None else self.table.stages
+
+    @cached_property
+    def stage_matrices(self) -> tuple[int, ...]:
+        """Number of the first stage that has the matrix of each stage: each is factorised once."""
+        weights = np.array([(stage.stiffness_weight, stage.damping_weight) for stage in self.stages])
+        first = [int(np.argmax(np.all(np.isclose(weights, row, rtol=SAME_MATRIX, atol=0), axis=1))) for row in weights]
+        return tuple(first)
 
     @property
     def staggered(self) -> bool:

@@ -38,8 +38,13 @@ class Stage:
 
     @property
     def stiffness_weight(self) -> float:
-        """Beta' = beta (1 - af) / (1 - am) of the stage's matrix S = M + beta' dt^2 K."""
+        """beta' = beta (1 - af) / (1 - am) of the stage's matrix S = M + gamma' dt C + beta' dt^2 K."""  # noqa: D403
         return self.compliance * (1 - self.af)
+
+    @property
+    def damping_weight(self) -> float:
+        """gamma' = gamma (1 - af) / (1 - am) of the stage's matrix."""  # noqa: D403
+        return self.gamma / (1 - self.am) * (1 - self.af)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ has d_u = 1, e_0 = 1/2 - alpha, beta = alpha, g_0 = 1 - delta, gamma = delta, am
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -24,9 +23,6 @@ from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from fem_reference.problem.problem import Array, Scheme
-
-SAME_MATRIX = 1e-15
-"""Relative difference of two stages' stiffness weights below which they share a matrix."""
 
 
 @dataclass
@@ -114,6 +110,31 @@ def velocity(state: State, A: Array, scheme: Scheme, stage: int = 0, before: Sta
     return discount(state, scheme) * state.V + scheme.step * impulse
 
 
+def velocity_predictor(state: State, scheme: Scheme, stage: int = 0, before: State | None = None) -> Array:
+    """V* = u + dt (g_0 A + g_g Ag), the part of V1 that is known before the stage [m/s]."""
+    numbers = scheme.stages[stage]
+    known = discount(state, scheme) * state.V + scheme.step * numbers.g_0 * state.A
+    if before is not None:
+        known = known + scheme.step * numbers.g_g * before.A
+    return known
+
+
+def stage_load(loads: Sequence[Array], scheme: Scheme, stage: int) -> Array:
+    """F* = (1 - af) F1 + af F0 of a stage, the loads being those at the start and at the end of each stage."""
+    af = scheme.stages[stage].af
+    return (1 - af) * loads[stage + 1] + af * loads[0] if af else loads[stage + 1]
+
+
+def start_velocity(V: Array, A: Array, scheme: Scheme) -> Array:
+    """Velocity that a history begins with, of a staggered scheme half a step before t = 0 [m/s]."""
+    return V - scheme.step / 2 * A if scheme.staggered else V
+
+
+def end_velocity(state: State, scheme: Scheme) -> Array:
+    """Velocity at the end of a step, of a staggered scheme half a step after its own [m/s]."""
+    return state.V + scheme.step / 2 * state.A if scheme.staggered else state.V
+
+
 def initial_acceleration(F: Array, solve_mass: Callable[[Array], Array] | None) -> Array:
     """A0 = 0 without a factorised mass, else M^-1 F (the block is unstrained at t = 0) [m/s2]."""
     return np.zeros_like(F) if solve_mass is None else solve_mass(F)
@@ -148,9 +169,7 @@ def _advance_stage(
 ) -> State:
     numbers = scheme.stages[stage]
     predicted = predictor(state, scheme, stage, before)
-    F = loads[stage + 1]
-    if numbers.af:
-        F = (1 - numbers.af) * F + numbers.af * loads[0]
+    F = stage_load(loads, scheme, stage)
     if numbers.beta > 0:
         D = state.D + solve(corrector(state, predicted, M, F - K(state.D), scheme, stage))
         A = acceleration(D, predicted, scheme, stage)
@@ -200,16 +219,12 @@ class Stepper:
     def __post_init__(self) -> None:
         self.S = effective_matrix(self.M, self.K, self.scheme)
         self.solve = self.work.factor(self.S)
-        weights = [stage.stiffness_weight for stage in self.scheme.stages]
-        solves = {weights[0]: self.solve}
-        for stage, weight in enumerate(weights):
-            # rounding does not ask for a second factorisation
-            equal = next((known for known in solves if math.isclose(known, weight, rel_tol=SAME_MATRIX)), None)
-            if equal is None:
-                solves[weight] = self.work.factor(effective_matrix(self.M, self.K, self.scheme, stage))
-            else:
-                solves.setdefault(weight, solves[equal])
-        self.solves = tuple(solves[weight] for weight in weights)
+        solves: list[Operator] = [self.solve]
+        for stage, first in list(enumerate(self.scheme.stage_matrices))[1:]:
+            same = first < stage
+            S = self.S if same else effective_matrix(self.M, self.K, self.scheme, stage)
+            solves.append(solves[first] if same else self.work.factor(S))
+        self.solves = tuple(solves)
 
     def start(self, F: Array | None = None) -> State:
         """State at t = 0: at rest, unstrained, with the initial acceleration that the scheme asks for.
@@ -221,9 +236,7 @@ class Stepper:
             mass = self.solve if self.scheme.stages[0].stiffness_weight == 0 else self.work.factor(self.M)
         zero = np.zeros_like(self.F)
         A = initial_acceleration(self.F if F is None else F, mass)
-        if self.scheme.staggered:
-            return State(zero, -self.scheme.step / 2 * A, A, undiscounted=True)
-        return State(zero, zero, A)
+        return State(zero, start_velocity(zero, A, self.scheme), A, undiscounted=self.scheme.staggered)
 
     def advance(self, state: State, loads: Sequence[Array] | None = None) -> State:
         """One step, under the loads at its start and at the end of each stage where they are not the constant one."""

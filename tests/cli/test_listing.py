@@ -93,7 +93,7 @@ def test_the_plain_list_names_all_four_with_their_titles() -> None:
 
 def test_another_word_is_bad_input() -> None:
     assert (
-        refused("list", "gates") == "error: list: must be one of keys, metrics, scenes, solvers, studies, got 'gates'\n"
+        refused("list", "gates") == "error: list: must be one of keys, metrics, scenes, schemes, solvers, studies, got 'gates'\n"
     )
 
 

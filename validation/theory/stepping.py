@@ -30,6 +30,7 @@ Frequencies may be arrays; everything is in SI units.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -40,50 +41,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
+from validation.theory import stages
+from validation.theory.stages import Stage, Stages
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 EPS = 2.0**-52
+GENERALISED_ALPHA: dict[str, Callable[[float], Stages]] = {
+    "chung-hulbert": stages.chung_hulbert,
+    "hht": stages.hht,
+    "wbz": stages.wbz,
+}
 POLISHING = 3  # of Newton's steps on the roots of a polynomial, which are good to eight digits before
-
-
-class OneStage(NamedTuple):
-    """Numbers of a scheme of one balance of forces a step."""
-
-    am: float  # weight of the old acceleration in the balance
-    af: float  # weight of the old displacement and load in it
-    beta: float  # weight of the new acceleration in the displacement
-    gamma: float  # weight of the new acceleration in the velocity
-
-
-def generalised_alpha(am: float, af: float) -> OneStage:
-    """Return the numbers of a generalised-alpha scheme that is of second order and damps w dt = infinity the most."""
-    return OneStage(am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af)
-
-
-def chung_hulbert(rho_inf: float) -> OneStage:
-    """Return the numbers of Chung and Hulbert's scheme: am = (2r - 1)/(r + 1), af = r/(r + 1)."""
-    return generalised_alpha((2 * rho_inf - 1) / (rho_inf + 1), rho_inf / (rho_inf + 1))
-
-
-def hht(rho_inf: float) -> OneStage:
-    """Return the numbers of Hilber, Hughes and Taylor's scheme: af = (1 - r)/(1 + r), which is -alpha of the paper."""
-    return generalised_alpha(0.0, (1 - rho_inf) / (1 + rho_inf))
-
-
-def wbz(rho_inf: float) -> OneStage:
-    """Return the numbers of Wood, Bossak and Zienkiewicz' scheme: am = (r - 1)/(r + 1)."""
-    return generalised_alpha((rho_inf - 1) / (rho_inf + 1), 0.0)
-
-
-GENERALISED_ALPHA: dict[str, Callable[[float], OneStage]] = {"chung-hulbert": chung_hulbert, "hht": hht, "wbz": wbz}
-
-
-def default_split(rho_inf: float) -> float:
-    """Return the share of the step after which both solves of a composite scheme have one matrix."""
-    if rho_inf == 1:
-        return 0.5
-    return (2 - math.sqrt(2 + 2 * rho_inf)) / (1 - rho_inf)
 
 
 class Composite(NamedTuple):
@@ -95,10 +64,9 @@ class Composite(NamedTuple):
     q2: float
 
     @classmethod
-    def of(cls, rho_inf: float, split: float) -> Composite:
-        """Return the numbers of a spectral radius at infinity and a share."""
-        q1 = (rho_inf + 1) / (2 * split * (rho_inf - 1) + 4)
-        return cls(split, (split - 1) * q1 + 0.5, q1, 0.5 - split * q1)
+    def of(cls, first: Stage, second: Stage) -> Composite:
+        """Return the numbers of two stages."""
+        return cls(first.d_u, second.g_0, second.d_g, second.gamma)
 
     def growth(self, s: Complex) -> Complex:
         """Return R(s) of y' = y s / dt over a step."""
@@ -151,7 +119,7 @@ class Stepping:
         """Return the stepping of a scheme by its name, other than Newmark's."""
         if scheme == "composite":
             rho_inf = 0.0 if rho_inf is None else rho_inf
-            split = default_split(rho_inf) if split is None else split
+            split = stages.equal_split(rho_inf) if split is None else split
         return cls(step, math.nan, math.nan, gg, rate, scheme=scheme, rho_inf=rho_inf, split=split)
 
     def at(self, step: float) -> Stepping:
@@ -160,24 +128,35 @@ class Stepping:
         return replace(self, step=step, gg=gg)
 
     @property
-    def one_stage(self) -> OneStage | None:
-        """Numbers of a scheme of one balance of forces a step; None of leapfrog and composite schemes."""
+    def stages(self) -> Stages:
+        """The scheme as a table of numbers."""
         if self.scheme == "newmark":
-            return OneStage(0.0, 0.0, self.alpha, self.delta)
-        numbers = GENERALISED_ALPHA.get(self.scheme)
-        return None if numbers is None else numbers(self._rho_inf)
+            return stages.newmark(self.alpha, self.delta)
+        if self.scheme == "leapfrog":
+            return stages.LEAPFROG
+        if self.scheme == "composite":
+            return stages.composite(self._rho_inf, self.split)
+        return GENERALISED_ALPHA[self.scheme](self._rho_inf)
+
+    @property
+    def one_stage(self) -> Stage | None:
+        """Numbers of a scheme of one balance of forces a step; None of leapfrog and composite schemes."""
+        if self.scheme in ("leapfrog", "composite"):
+            return None
+        (stage,) = self.stages
+        return stage
+
+    @property
+    def composite(self) -> Composite:
+        """Numbers of a composite scheme."""
+        first, second = self.stages
+        return Composite.of(first, second)
 
     @property
     def _rho_inf(self) -> float:
         if self.rho_inf is None:
             raise InputError(f"is required of {self.scheme}", field="rho_inf", value="nothing")
         return self.rho_inf
-
-    @property
-    def composite(self) -> Composite:
-        """Numbers of a composite scheme."""
-        split = default_split(self._rho_inf) if self.split is None else self.split
-        return Composite.of(self._rho_inf, split)
 
     @property
     def solves(self) -> int:
@@ -241,12 +220,12 @@ class Stepping:
         numbers = self._numbers("velocity over displacement")
         return np.asarray(turn * (1 + numbers.gamma * turn) / (self.step * self._kinematics(numbers, turn)), complex)
 
-    def _kinematics(self, numbers: OneStage, turn: Complex) -> Complex:
+    def _kinematics(self, numbers: Stage, turn: Complex) -> Complex:
         """Return gg ((1 - gamma) + gamma z) + (1/2 - beta + beta z)(z - gg) of z - 1."""
         ahead = (1 - self.gg) + turn
         return np.asarray(self.gg * (1 + numbers.gamma * turn) + (0.5 + numbers.beta * turn) * ahead)
 
-    def _numbers(self, quantity: str) -> OneStage:
+    def _numbers(self, quantity: str) -> Stage:
         numbers = self.one_stage
         if numbers is None:
             raise InputError(
@@ -302,12 +281,12 @@ class Stepping:
             square = omega_dt**2
             polynomial = np.array([1.0, 1 - gg + square, square])
         else:
-            am, af, beta, gamma = self._numbers("polynomial")
-            inertia = np.polymul([1.0, 1 - gg, 0.0], [1 - am, 1.0])
-            kinematics = np.polyadd(np.polymul([beta, 0.5], [1.0, 1 - gg]), [gg * gamma, gg])
-            stiffness = omega_dt**2 * np.polymul([1 - af, 1.0], kinematics)
+            numbers = self._numbers("polynomial")
+            inertia = np.polymul([1.0, 1 - gg, 0.0], [1 - numbers.am, 1.0])
+            kinematics = np.polyadd(np.polymul([numbers.beta, 0.5], [1.0, 1 - gg]), [gg * numbers.gamma, gg])
+            stiffness = omega_dt**2 * np.polymul([1 - numbers.af, 1.0], kinematics)
             polynomial = np.polyadd(inertia, stiffness)
-            if am == 0 and af == 0:  # Newmark's: the third root is 0, of the factor z of both parts
+            if numbers.am == 0 and numbers.af == 0:  # Newmark's: the third root is 0, of the factor z of both parts
                 polynomial, _ = np.polydiv(polynomial, [1.0, 1.0])
         turns = np.roots(polynomial).astype(complex)
         slope = np.polyder(polynomial)
@@ -326,23 +305,28 @@ class Stepping:
         return bool(abs(self.roots(omega_dt)[0].imag) > 0)
 
     def damping_ratio(self, omega_dt: float) -> float:
-        """Return xi = -Re ln z / |ln z| of the principal pair, not a number where no pair oscillates."""
-        logarithm = self._logarithm(omega_dt)
-        return math.nan if logarithm is None else -logarithm.real / abs(logarithm)
+        """Return xi = -(l1 + l2) / (2 sqrt(l1 l2)), l = ln z of the principal pair; NaN where a root is not positive.
+
+        Of a complex pair that is -Re ln z / |ln z|, of two positive roots at least 1.
+        """
+        first, second = self._logarithms(omega_dt)
+        return -(first + second).real / (2 * math.sqrt(abs(first * second)))
 
     def period_error(self, omega_dt: float) -> float:
-        """Return W / |ln z| - 1 of the principal pair, not a number where no pair oscillates."""
-        logarithm = self._logarithm(omega_dt)
-        return math.nan if logarithm is None else omega_dt / abs(logarithm) - 1
+        """Return W / sqrt(l1 l2) - 1, of a complex pair W / |ln z| - 1; NaN where a root is not positive."""
+        first, second = self._logarithms(omega_dt)
+        return omega_dt / math.sqrt(abs(first * second)) - 1
 
     def complex_frequency(self, omega: float) -> complex:
-        """Return w' [rad/s] of a mode of frequency w, whose free motion is e^{i w' t} at the steps."""
-        logarithm = self._logarithm(omega * self.step)
-        return complex(math.nan, math.nan) if logarithm is None else logarithm / (1j * self.step)
+        """Return w' [rad/s] of a mode of frequency w, whose free motion is e^{i w' t} at the steps; else NaN."""
+        return self._logarithms(omega * self.step)[0] / (1j * self.step)
 
-    def _logarithm(self, omega_dt: float) -> complex | None:
-        principal = complex(self.roots(omega_dt)[0])
-        return None if principal.imag == 0 else complex(np.log(principal))
+    def _logarithms(self, omega_dt: float) -> tuple[complex, complex]:
+        """Return ln z of the principal pair, not numbers where one is real and not positive."""
+        first, second = (complex(z) for z in self.roots(omega_dt)[:2])
+        if first.imag == 0 and min(first.real, second.real) <= 0:
+            return complex(math.nan, math.nan), complex(math.nan, math.nan)
+        return cmath.log(first), cmath.log(second)
 
     def spectral_radius(self, omega_dt: float) -> float:
         """Return the largest |z| of a step."""

@@ -26,6 +26,7 @@ from validation.solvers.blocks.closed import (
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
+from validation.theory.restitution import damping_ratio
 
 if TYPE_CHECKING:
     import dda
@@ -117,8 +118,6 @@ def law_of(scene: Scene) -> dda.Unilateral:
 
 def dashpot_of(scene: Scene) -> float:
     """Return the dashpot of a corner [N s/m]: half of c = 2 zeta sqrt(2 p m) of the rigid block on both."""
-    from validation.theory.restitution import damping_ratio
-
     c = scene.contact
     ratio = c.damping_ratio
     if c.restitution is not None:

@@ -80,8 +80,8 @@ class LineColumn(Prepared):
         return StepLimit(critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
 
     def drive(self) -> Excitation:
-        """Return what drives the column at t = 0 and at every step."""
-        return excitation(self.scene, self.scheme.step * np.arange(self.scene.time.steps + 1.0))
+        """Return what drives the column at t = 0 and at the end of every stage of every step."""
+        return excitation(self.scene, self.scheme.stage_times(self.scene.time.steps))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
