@@ -21,8 +21,8 @@ from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.studies.paper import friction, open_close
 from validation.studies.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.paper import friction, open_close
 from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
 ROOT = Path(__file__).parents[2]

@@ -25,6 +25,9 @@ from validation.scenes.scene import load_scene
 from validation.studies.claims import REGISTER, Band, Claim, Evidence, Finding, entries, page
 from validation.studies.literature import closed, register
 from validation.studies.literature.study import CLAIMS, CLAIMS_OF_THE_LITERATURE, STUDY
+from validation.theory import stepping
+from validation.theory.rebound import mode_damping
+from validation.theory.stages import LEAPFROG, Stages
 from validation.theory.stepping import Stepping
 
 ROOT = Path(__file__).parents[2]
@@ -68,13 +71,24 @@ def test_every_band_names_a_number_that_is_measured(numbers: dict[str, dict[str,
 def test_every_claim_says_where_it_stands_and_how_much_was_read() -> None:
     for claim in CLAIMS:
         assert set(claim.sources) <= set(references()) and claim.sources
-        assert ("abstract" in claim.read) == (claim.id not in ("L7", "L8", "L9")), claim.id
-        assert claim.tested and claim.condition or claim.expected is Finding.REFUTED
+        assert ("abstract" in claim.read) == (claim.id not in ("L8", "L9")), claim.id
+        assert claim.tested
+        assert claim.condition or claim.expected is Finding.REFUTED
 
 
 # ---- faults ---------------------------------------------------------------------------------------------------------
 
 UNIT = np.eye(1)
+
+
+def exchanged(scheme: Callable[[float], Stages]) -> Callable[[float], Stages]:
+    """Return a scheme whose weights of the old forces and the old acceleration are taken for each other."""
+
+    def faulty(rho_inf: float) -> Stages:
+        (stage,) = scheme(rho_inf)
+        return (stage._replace(am=stage.af, af=stage.am),)
+
+    return faulty
 
 
 def scaled(function: Callable[..., Any], factor: float) -> Callable[..., Any]:
@@ -84,15 +98,22 @@ def scaled(function: Callable[..., Any], factor: float) -> Callable[..., Any]:
 
 FAULTS: dict[str, tuple[Any, str, Callable[[Any], Any], str]] = {
     "normal ringing 2 % large": (closed, "normal_ringing_error", lambda f: scaled(f, 1.02), "L1"),
-    "forward Euler with the new velocity": (
-        closed,
-        "explicit_rebounds",
-        lambda f: lambda omega, symplectic: f(omega, True),
-        "L2",
-    ),
+    "forward Euler with the new velocity": (register, "EXPLICIT_EULER", lambda stages: LEAPFROG, "L2"),
     "composite split at 0.6": (closed, "composite_on_sine", lambda f: lambda split: f(0.8), "L3"),
     "a dashpot of the whole mass": (register.soft_contact, "QUARTER", lambda quarter: 1.0, "L4"),
-    "rebounds 1 % large": (register, "rebounds", lambda f: scaled(f, 1.01), "L6"),
+    "a landing above the contact": (
+        register,
+        "rebound_statistics",
+        lambda f: lambda advance, count: f(advance, 0.9, count),
+        "L6",
+    ),
+    "half of the error's norm": (register, "error", lambda f: scaled(f, 0.5), "L7"),
+    "am and af of a scheme exchanged": (
+        stepping,
+        "GENERALISED_ALPHA",
+        lambda schemes: schemes | {"chung-hulbert": exchanged(schemes["chung-hulbert"])},
+        "L8",
+    ),
     "gg twice a step": (closed, "shaken_way", lambda f: lambda step, gg: f(step, gg**2), "L9"),
     "a base with half the dashpot": (
         register,
@@ -118,23 +139,28 @@ def test_a_fault_is_bitten(fault: str, sound: Finished, monkeypatch: pytest.Monk
     assert any(gate.startswith(f"{REGISTER}:{claim}:") for gate in failing), failing
 
 
-# ---- the closed forms, computed in another way ---------------------------------------------------------------------------
+# ---- the closed forms, computed in another way ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("zeta", "omega"), [(0.05, 0.3), (0.2, 1.1), (0.4, 0.05)])
 def test_a_damped_step_without_a_step_is_exact(zeta: float, omega: float) -> None:
     fine = closed.damped_roots(Stepping(1e-4 * omega, 0.25, 0.5), UNIT, 2 * zeta * UNIT, UNIT)
-    assert fine[0] == pytest.approx(zeta, rel=1e-6)
+    assert fine[0] == pytest.approx(zeta, rel=1e-5)
     assert closed.exact_damped_roots(UNIT, 2 * zeta * UNIT, UNIT)[0] == pytest.approx(zeta, rel=1e-12)
     # the trapezoidal rule: ln((2 + s W) / (2 - s W)) of the exact root s
     s = complex(-zeta, math.sqrt(1 - zeta**2))
     log = np.log((2 + s * omega) / (2 - s * omega))
     stepped = closed.damped_roots(Stepping(omega, 0.25, 0.5), UNIT, 2 * zeta * UNIT, UNIT)
     assert stepped[0] == pytest.approx(-log.real / abs(log), rel=1e-10)
+    for alpha, delta in ((0.25, 0.5), (0.5, 1.0), (0.4, 0.8)):
+        found = closed.damped_roots(Stepping(omega, alpha, delta), UNIT, 2 * zeta * UNIT, UNIT)[0]
+        assert found == pytest.approx(mode_damping(Stepping(1.0, alpha, delta).stages, omega, zeta), rel=1e-9)
 
 
 def test_the_locked_block_is_that_of_an_integrator() -> None:
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "contact.stiffness": 3e9, "block.height": 1.3})
+    scene = load_scene("figures-3-4").with_values(
+        {"time.step": 0.01, "contact.stiffness": 3e9, "block.width": 2.0, "block.height": 1.3}
+    )
     mass, stiffness, _ = closed.two_unknowns(scene)
     pressure = scene.load.pressure * scene.block.base_length
     load = pressure * np.array([-1.0, -1.3 / 2])
@@ -174,7 +200,7 @@ def test_a_shaken_block_with_a_rate_of_drag_is_that_of_an_integrator() -> None:
         middle = state + step / 2 * np.array(slide(t, state))
         state = state + step * np.array(slide(t + step / 2, middle))
         state[1] = max(state[1], 0.0)
-    assert closed.shaken_way(1e-4, math.exp(-rate * 1e-4), duration=1.0) == pytest.approx(state[0], rel=2e-3)
+    assert closed.shaken_way(1e-4, math.exp(-rate * 1e-4), duration=1.0) == pytest.approx(state[0], rel=5e-3)
 
 
 # ---- page and command -----------------------------------------------------------------------------------------------

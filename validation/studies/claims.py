@@ -84,7 +84,8 @@ class Evidence:
 
 
 Measure = Callable[[Evidence], dict[str, float]]
-Tests = dict[str, tuple[Iterable[str], Measure]]  # by a claim's id: the cases that DDA runs for it, what it measures
+Tests = dict[str, tuple[Iterable[str | tuple[str, str]], Measure]]
+"""By a claim's id: the cases that it needs, of DDA where no solver is named, and what it measures."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,7 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
     for entry in tomllib.loads(path.read_text(encoding="utf-8"))["claim"]:
         names, measure = tests[entry["id"]]
         claim = entry | {
-            "needs": tuple((name, "dda") for name in names),
+            "needs": tuple((need, "dda") if isinstance(need, str) else need for need in names),
             "measure": measure,
             "expected": findings[entry["expected"]],
             "printed": tuple(Band(*band) for band in entry["printed"]),

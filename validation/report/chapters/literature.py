@@ -34,6 +34,6 @@ def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
     parts = [f"{count[word]} {both[count[word] > 1]}" for word, both in verbs.items() if count[word]]
     return (
-        f"Of {len(rows)} claims of publications on schemes, contacts and boundaries that were tested, {', '.join(parts)}. "
+        f"Of {len(rows)} claims on schemes, contacts and boundaries that were tested, {', '.join(parts)}. "
         "Most were read as abstracts: the papers may carry the conditions that are missing there."
     )

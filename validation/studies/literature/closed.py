@@ -94,27 +94,7 @@ def exact_locked(scene: Scene, time: Array) -> Array:
     return np.asarray(swings @ shapes.T[:, 0], dtype=np.float64)
 
 
-# ---- rebounds -------------------------------------------------------------------------------------------------------
-
-
-def explicit_rebounds(omega: float, symplectic: bool, phases: int = 200) -> Array:
-    """Return the restitutions of a mass on a spring by Euler's explicit step, over the phase of its landing.
-
-    v1 = v + dt a(x) and x1 = x + dt v (forward) or x1 = x + dt v1 (symplectic).
-    """
-    x = (np.arange(phases) + 0.5) / phases  # in V dt, above the contact
-    v = np.full(phases, -1.0)
-    has_touched = np.zeros(phases, dtype=bool)
-    while not np.all(has_touched & (x >= 0)):
-        has_touched |= x < 0
-        new = v - omega**2 * np.minimum(x, 0.0)
-        flies = has_touched & (x >= 0)
-        x = x + np.where(flies, 0.0, new if symplectic else v)
-        v = np.where(flies, v, new)
-    return v
-
-
-# ---- a free mass under a sine -----------------------------------------------------------------------------------------
+# ---- a free mass under a sine ---------------------------------------------------------------------------------------
 
 
 def forced_mass_error(step: Callable[[Array, float, float], Array], dt: float, frequency: float = 1.0) -> float:
@@ -174,7 +154,7 @@ def composite_on_sine(split: float, frequency: float = 1.0) -> Callable[[Array, 
     return step
 
 
-# ---- sliding ----------------------------------------------------------------------------------------------------------
+# ---- sliding --------------------------------------------------------------------------------------------------------
 
 
 def normal_ringing_error(scene: Scene, stiffness: float, step: float, start: float = 0.05, end: float = 0.2) -> float:
@@ -198,7 +178,7 @@ def normal_ringing_error(scene: Scene, stiffness: float, step: float, start: flo
 
 
 def lagging_friction_error(scene: Scene, step: float, time: float) -> float:
-    """Return the relative error of a sliding block whose friction is that of the step before, which is none at first."""
+    """Return the relative error of a sliding block whose friction is that of the step before, none at first."""
     without_friction = friction.coefficient(scene) * friction.across(scene) * step
     return without_friction * time / (friction.sliding_acceleration(scene) * time**2 / 2)
 
@@ -221,7 +201,7 @@ def shaken_way(step: float, gg: float, slope: float = 20.0, angle: float = 30.0,
     return way
 
 
-# ---- a viscous boundary under an oblique wave ---------------------------------------------------------------------------
+# ---- a viscous boundary under an oblique wave -----------------------------------------------------------------------
 
 
 def returned_energy(angle: float, wave: str, poisson: float = 0.25) -> float:

@@ -9,21 +9,28 @@ import numpy as np
 from validation.studies.claims import Evidence, Tests, named, whole
 from validation.studies.literature import closed
 from validation.theory import friction, soft_contact, spectra, statics
-from validation.theory.one_mode import named as stages_of
-from validation.theory.one_mode import newmark, rebounds
+from validation.theory.rebound import ReboundStatistics, rebound_statistics, spring_steps
+from validation.theory.stages import EXPLICIT_EULER, LEAPFROG, Stages
 from validation.theory.stepping import Stepping
 from validation.theory.waves import Column, base_reflection
 
-SCENES = ("literature-sliding", "literature-rigid", "literature-locked", "literature-composite")
+SCENES = tuple(
+    f"literature-{part}" for part in ("sliding", "rigid", "locked", "composite", "unlocked", "explicit", "alpha")
+)
 SLIDING = named("literature-sliding")
 RIGID = named("literature-rigid")
 LOCKED = named("literature-locked")
 LOCKED_COMPOSITE = named("literature-composite")
+UNLOCKED = named("literature-unlocked")
+EXPLICIT = named("literature-explicit")
+ALPHA = named("literature-alpha")
 CONSTANT = (0.5, 1.0)
 AVERAGE = (0.25, 0.5)
 SCHEMES = {"(1/2, 1)": CONSTANT, "(1/4, 1/2)": AVERAGE}
 STEPS = (1e-4, 1e-3, 5e-3, 1e-2)  # s
 STATIC_WORK = 5.0e4  # J: of the pressure on the paper's block over its own shortening, W0
+STIFF = 1e5  # W that stands for infinity: rebounds are those of its limit to five digits
+STIFFNESSES = {1e9: "1E", 1e10: "10E", 1e11: "100E"}  # N/m
 ZETA = 0.05
 MILLISECOND = 1e-3
 
@@ -66,18 +73,23 @@ def sliding(e: Evidence) -> dict[str, float]:
     }
 
 
+def rebound(stages: Stages, omega: float, phases: int = 200) -> ReboundStatistics:
+    """Return the statistics of the rebound of a rigid mass; infinite W is a rigid stop."""
+    return rebound_statistics(spring_steps(stages, omega), count=phases)
+
+
 def impacts(e: Evidence) -> dict[str, float]:
     """Return mean rebounds over W, and the greatest and the energy of average acceleration in the stiff limit."""
+    stages = {"forward Euler": EXPLICIT_EULER, "symplectic Euler": LEAPFROG}
+    stages |= {name: Stepping(1.0, *scheme).stages for name, scheme in SCHEMES.items()}
     numbers: dict[str, float] = {}
-    for omega in (0.1, 0.3, 1.0):
-        numbers[f"forward Euler at W = {omega:g}"] = float(closed.explicit_rebounds(omega, symplectic=False).mean())
-        numbers[f"symplectic Euler at W = {omega:g}"] = float(closed.explicit_rebounds(omega, symplectic=True).mean())
-        for name, scheme in SCHEMES.items():
-            numbers[f"{name} at W = {omega:g}"] = float(rebounds(newmark(*scheme), omega).mean())
-    stiff = rebounds(newmark(*AVERAGE), 1e5, phases=2000)
+    for name, scheme in stages.items():
+        for omega in (0.1, 0.3, 1.0):
+            numbers[f"{name} at W = {omega:g}"] = rebound(scheme, omega).mean
+    stiff = rebound(stages["(1/4, 1/2)"], STIFF, phases=2000)
     return numbers | {
-        "(1/4, 1/2), greatest at any W": float(stiff.max()),
-        "(1/4, 1/2), energy of a stiff contact": float(np.mean(stiff**2)),
+        "(1/4, 1/2), greatest at any W": stiff.most,
+        "(1/4, 1/2), energy of a stiff contact": stiff.mean_square,
     }
 
 
@@ -101,11 +113,10 @@ def composite(e: Evidence) -> dict[str, float]:
     bathe = Stepping.named("composite", 1e-2, rho_inf=0.0, split=0.5)
     numbers["contact mode at p = 100E, dt = 10 ms, xi of the composite"] = bathe.damping_ratio(omega)
     numbers["contact mode at p = 100E, dt = 10 ms, |lambda| of (1/2, 1)"] = Stepping(1e-2).spectral_radius(omega)
-    impact = rebounds(stages_of("composite", 0.0, 0.5), 1e5, phases=2000)
     return numbers | {
         "error at equal solves over that of (1/4, 1/2)": numbers["locked block, dt = 1 ms, composite"]
         / numbers["locked block, dt = 0.5 ms, delta = 0.5"],
-        "greatest rebound of a stiff contact": float(impact.max()),
+        "greatest rebound of a stiff contact": rebound(bathe.stages, STIFF, phases=2000).most,
     }
 
 
@@ -154,22 +165,83 @@ def augmented(e: Evidence) -> dict[str, float]:
     return numbers | rigid_stop(e)
 
 
+def gained(e: Evidence, case: str) -> float:
+    """Return the energy at the end over W0; at the start it is 0."""
+    return sum(e.number(case, f"energy.{part}") for part in ("kinetic", "strain", "springs", "load")) / STATIC_WORK
+
+
 def rigid_stop(e: Evidence) -> dict[str, float]:
     """Return peak pressure and energy gained on a rigid stop in displacements, and its rebounds at every step."""
     numbers: dict[str, float] = {}
     for name, case in RIGID.items():
         scheme = f"delta = {case.time.delta:g}, dt = {1e3 * case.time.step:g} ms"
-        energy = sum(e.number(name, f"energy.{part}") for part in ("kinetic", "strain", "springs", "load"))
-        numbers[f"energy gained at 0.1 s over W0, {scheme}"] = energy / STATIC_WORK
+        numbers[f"energy gained at 0.1 s over W0, {scheme}"] = gained(e, name)
         pressure = e.finished.needed_history(name, "dda").contact_pressure
         numbers[f"peak pressure, {scheme}, MPa"] = float(pressure.max()) / 1e6
     numbers["most solves of a step"] = whole(max(e.number(name, "contact.most_solves") for name in RIGID))
     numbers["greatest penetration, m"] = max(e.number(name, "contact.penetration") for name in RIGID)
     for word, scheme in SCHEMES.items():
-        values = rebounds(newmark(*scheme), 1e6, phases=2000)
-        numbers[f"mean rebound at every step, {word}"] = float(values.mean())
-        numbers[f"least rebound, {word}"] = float(values.min())
-        numbers[f"greatest rebound, {word}"] = float(values.max())
+        stop = rebound(Stepping(1.0, *scheme).stages, math.inf, phases=2000)
+        numbers[f"mean rebound at every step, {word}"] = stop.mean
+        numbers[f"least rebound, {word}"] = stop.least
+        numbers[f"greatest rebound, {word}"] = stop.most
+    return numbers
+
+
+def explicit(e: Evidence) -> dict[str, float]:
+    """Return limits and solves of the leapfrog, and its error beside Newmark's schemes where contact opens."""
+    numbers: dict[str, float] = {"solves of a step": whole(Stepping.named("leapfrog").solves)}
+    block = next(iter(UNLOCKED.values()))
+    for stiffness, word in STIFFNESSES.items():
+        omega = spectra.contact_frequency(block.with_values({"contact.stiffness": stiffness}))
+        numbers[f"limit of the step at p = {word}, ms"] = 1e3 * Stepping.named("leapfrog").critical_omega / omega
+    for cases in (EXPLICIT, UNLOCKED):
+        for name, case in cases.items():
+            if case.time.step == 2e-4:
+                scheme = "leapfrog" if case.time.scheme == "leapfrog" else f"delta = {case.time.delta:g}"
+                p = STIFFNESSES[case.contact.stiffness]
+                numbers[f"error, p = {p}, dt = 0.2 ms, {scheme}"] = error(e, name)
+                if scheme == "leapfrog":
+                    numbers[f"energy gained at 0.1 s over W0, p = {STIFFNESSES[case.contact.stiffness]}"] = gained(
+                        e, name
+                    )
+    return numbers | {
+        f"error over that of (1/4, 1/2), p = {word}": numbers[f"error, p = {word}, dt = 0.2 ms, leapfrog"]
+        / numbers[f"error, p = {word}, dt = 0.2 ms, delta = 0.5"]
+        for word in ("1E", "100E")
+    }
+
+
+def error(e: Evidence, case: str) -> float:
+    """Return the relative L2 error of the displacement of the centroid over 0.05 s, against the exact motion."""
+    history, exact = (e.finished.needed_history(case, solver) for solver in ("dda", "block-events"))
+    within = history.time <= 0.05 + closed.TOLERANCE
+    difference = (history.displacement - exact.displacement)[within]
+    return float(np.linalg.norm(difference) / np.linalg.norm(exact.displacement[within]))
+
+
+def generalised_alpha(e: Evidence) -> dict[str, float]:
+    """Return damping of the locked block's modes at p = 100E and 1 ms, and the energy gained where contact opens."""
+    stiff = next(iter(ALPHA.values()))
+    modes = {"first mode": spectra.dda_frequency(stiff), "contact mode": spectra.contact_frequency(stiff)}
+    schemes = {"(1/2, 1)": Stepping(MILLISECOND)}
+    for radius in (0.8, 0.5, 0.0):
+        schemes[f"CH {radius:g}"] = Stepping.named("chung-hulbert", MILLISECOND, rho_inf=radius)
+    numbers: dict[str, float] = {}
+    for name, stepping in schemes.items():
+        for mode, omega in modes.items():
+            W = omega * MILLISECOND
+            if stepping.oscillates(W):
+                numbers[f"xi of the {mode}, {name}"] = stepping.damping_ratio(W)
+            numbers[f"|lambda| of the {mode}, {name}"] = stepping.spectral_radius(W)
+    for case, scene in ALPHA.items():
+        numbers[f"energy gained at 0.1 s over W0, CH {scene.time.rho_inf or 0.0:g}"] = gained(e, case)
+    for case, scene in UNLOCKED.items():
+        if scene.time.step == MILLISECOND:
+            numbers[f"energy gained at 0.1 s over W0, delta = {scene.time.delta:g}"] = gained(e, case)
+    for radius in (0.8, 0.5, 0.2, 0.0):
+        stages = Stepping.named("chung-hulbert", rho_inf=radius).stages
+        numbers[f"greatest rebound of a stiff contact, CH {radius:g}"] = rebound(stages, STIFF, phases=2000).most
     return numbers
 
 
@@ -192,7 +264,7 @@ def kinetic_damping(e: Evidence) -> dict[str, float]:
 
 
 def viscous_base(e: Evidence) -> dict[str, float]:
-    """Return |R| of a discrete base over blocks a wavelength and Courant number, and energy back at oblique incidence."""
+    """Return |R| of a base over blocks a wavelength and Courant number, and energy back at oblique incidence."""
     numbers: dict[str, float] = {}
     block = Column(height=1.0, density=1.0, modulus=1.0)  # so that c = 1
     for blocks in (10, 20):
@@ -214,6 +286,8 @@ TESTS: Tests = {
     "L4": ((), dashpots),
     "L5": (RIGID, augmented),
     "L6": (RIGID, rigid_stop),
+    "L7": ([(name, solver) for name in (*EXPLICIT, *UNLOCKED) for solver in ("dda", "block-events")], explicit),
+    "L8": ((*ALPHA, *UNLOCKED), generalised_alpha),
     "L9": ((), kinetic_damping),
     "L10": ((), viscous_base),
 }

@@ -21,10 +21,10 @@ CLAIMS_OF_THE_LITERATURE = Register(
     page="docs/literature.md",
     speaker="Claim",
     introduction="What publications say of time schemes, contacts and boundaries as cures for DDA, in our words, and "
-    "what comes out of a test of ours. A claim is taken as it stands in what was read, most often an abstract: the paper "
-    "itself may carry the condition that is missing here. The verdict follows from the measured numbers and is a gate of "
-    "the study `literature`; this page is written by `dda-validate claims --of literature --out docs/literature.md`, and "
-    "a test compares it with a fresh run. Numbers below 1e-12 are written as 0.",
+    "what comes out of a test of ours. A claim is taken as it stands in what was read, most often an abstract: the "
+    "paper itself may carry the condition that is missing here. The verdict follows from the measured numbers and is "
+    "a gate of the study `literature`; this page is written by `dda-validate claims --of literature --out "
+    "docs/literature.md`, and a test compares it with a fresh run. Numbers below 1e-12 are written as 0.",
     claims=CLAIMS,
 )
 
