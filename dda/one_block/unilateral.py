@@ -214,6 +214,8 @@ def energies(model: UnilateralModel, form: UnilateralForm, scheme: Scheme, histo
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
     """Raise ValueError where rule, scheme and contact exclude each other."""
+    if options.rule != NEWMARK and scheme.table is not None:
+        raise ValueError(f"rule: {options.rule} contact goes with scheme newmark only, got {scheme.name!r}")
     if options.rule != NEWMARK and (scheme.alpha, scheme.delta) != (0.25, 0.5):
         weights = (scheme.alpha, scheme.delta)
         raise ValueError(

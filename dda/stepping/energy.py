@@ -10,7 +10,8 @@ c = alpha - delta/2 and V the velocity after gg,
 algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Of what a contact loses that slips,
 friction takes -T1 (r1 - r0), never negative. Where the base moves by y the loads work on x = D + R y, and its own work
 -lambda' B R y is counted as theirs. Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the
-first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too.
+first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the
+others leave of the balance.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ def add_contact_losses(
     shear_law: Shear,
     before: Contacts,
     after: Contacts,
+    slipped: Vector,
     slide: Vector,
     base: Vector,
     late: float,
@@ -45,6 +47,8 @@ def add_contact_losses(
 
     Parameters
     ----------
+    slipped
+        Change of each contact's reference by slip [m].
     slide, base
         Displacement of each contact along the base, less that of the base, and of the base along and away from itself.
     late
@@ -55,7 +59,7 @@ def add_contact_losses(
     for i in range(len(after.gap)):
         N = (1 - late) * before.normal[i] + late * after.normal[i]
         T = (1 - late) * before.shear[i] + late * after.shear[i]
-        friction = 0.0 - after.shear[i] * after.slipped[i]
+        friction = 0.0 - after.shear[i] * slipped[i]
         work = N * (after.gap[i] - before.gap[i]) + T * slide[i]
         released = spring_energy(law, shear_law, before, i) - spring_energy(law, shear_law, after, i)
         lost = released - work - friction

@@ -258,7 +258,17 @@ def account(
     moved = after.D - state.D
     slide = opening.tangents @ moved - carried[0]
     add_contact_losses(
-        body.law, shear_law, state.contacts, after.contacts, slide, carried, scheme.delta, scheme.step, 1.0, sums
+        body.law,
+        shear_law,
+        state.contacts,
+        after.contacts,
+        after.contacts.slipped,
+        slide,
+        carried,
+        scheme.delta,
+        scheme.step,
+        1.0,
+        sums,
     )
     sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
     R0 = state.f / dt2

@@ -75,6 +75,17 @@ def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
     assert capsys.readouterr().out == f"{scene.name} bar: overflow: {Outcome.OVERFLOW.sentence} at 3\n"
 
 
+def test_a_program_that_is_not_installed_says_so_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    results = Results(tmp_path)
+    cases = load_scene("figures-3-4").expand()[:3]
+    absent = {"outcome": Outcome.NOT_APPLICABLE, "notes": ("Siconos is not installed: RECIPE",)}
+    kept_study(results, [(case, made_row("siconos", {}, case.name, **absent), None) for case in cases])
+    tables.print_ends(results, ["made"])
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.startswith("3 cases siconos: not applicable: ")
+    assert line.endswith("Siconos is not installed: RECIPE")
+
+
 @pytest.mark.parametrize(
     ("words", "required", "refused", "worse", "status"),
     [
