@@ -133,7 +133,29 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
             )
         if is_frictional:
             of_friction.refuse_other_scenes(scene)
+    if scene.time.scheme != "newmark":
+        _refuse_other_schemes(scene)
     features.refuse_sweep(scene)
+
+
+def _refuse_other_schemes(scene: Scene) -> None:
+    """Refuse a scene that is stepped here, or by the solvers beside it, by Newmark's scheme only."""
+    if scene.column is not None:
+        return
+    what = ""
+    if features.FRICTION in features.of(scene):
+        what = "blocks with friction"
+    elif rectangle_of(scene) is None:
+        what = "blocks that are no upright rectangle under a centred load"
+    elif scene.contact.law == "unilateral" and scene.block.poisson:
+        what = "contact that opens under a block with Poisson's ratio"
+    if what:
+        raise InputError(
+            f"compare takes {what} with Newmark's scheme only",
+            source=scene.name,
+            field="time.scheme",
+            value=f'"{scene.time.scheme}"',
+        )
 
 
 def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
@@ -166,15 +188,17 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     theirs: RivalVerdict | None = None
-    if not verdict.explains and scene.contact.law == "locked":
+    has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark"
+    if not verdict.explains and has_rivals:
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
+    if not verdict.explains and scene.contact.law == "locked":
         verdict = paired(case.target, scene_variant, verdict)
     elif not verdict.explains:
         verdict = beside(case.target, scene_variant, verdict)
     others: list[Rival] = []
-    if scene.contact.law == "locked" and np.ptp(case.target.steps) == 0:
+    if has_rivals and np.ptp(case.target.steps) == 0:
         v = verdict.best.fit.variant
         at_hand = theirs.ranked if theirs else ()
         others = rivals(case.reading.scene_of(scene), case.rivals, case.reading, [(v.alpha, v.delta)], at_hand)
@@ -258,7 +282,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         further["form"] = _contact_form(target, v)
     words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
-        sentences.scheme_of(v) + schemes.other_names(v),
+        sentences.scheme_of(v) + (schemes.other_names(v) if any(CAUSES[name].integrator for name in ids) else ""),
         words | words_of_slips(corrected),
         first_departure,
         sentences.remaining(best_fit.misfit),

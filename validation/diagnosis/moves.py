@@ -157,19 +157,19 @@ def other_families(scene: Variant, starts: Sequence[str]) -> Iterator[Move]:
                 yield fitted(cause, "spectral", numbers, **changes)
                 for number in SHARED[family]:
                     yield fixed(cause, spectral=number, **changes)
+        composite = {"family": "composite", "start": start}
+        yield fitted("composite", "spectral", RHO_INF, split=0.0, **composite)
+        yield fitted("composite", "split", SPLITS, spectral=0.0, **composite)
+        for split in SPLITS:
+            yield Move("composite", {"split": split, **composite}, ("spectral", "split"), RHO_INF)
+        for split in (0.0, 0.5):
+            yield fixed("composite", split=split, spectral=0.0, **composite)
     consistent = {"start": "consistent"}
     yield fitted("theta", "spectral", THETA, family="theta", **consistent)
     for number in SHARED["theta"]:
         yield fixed("theta", family="theta", spectral=number, **consistent)
     for family in EXPLICIT:
         yield fixed(family, family=family, **consistent)
-    composite = {"family": "composite", **consistent}
-    yield fitted("composite", "spectral", RHO_INF, split=0.0, **composite)
-    yield fitted("composite", "split", SPLITS, spectral=0.0, **composite)
-    for split in SPLITS:
-        yield Move("composite", {"split": split, **composite}, ("spectral", "split"), RHO_INF)
-    for split in (0.0, 0.5):
-        yield fixed("composite", split=split, spectral=0.0, **composite)
 
 
 def _model(target: Target, scene: Variant) -> list[Move]:

@@ -19,7 +19,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 ContactForm = Literal["springs", "mean gap", "dashpot", "implicit", "energy-conserving", "rigid", "impact"]
 GRAVITY = 9.81  # m/s2
-OPENING = frozenset({features.UNILATERAL, features.DEAD_BAND, features.WEIGHT})  # that opening contact may come with
+OPENING = features.SCHEMES | {features.UNILATERAL, features.DEAD_BAND, features.WEIGHT}  # of opening contact known here
+AVERAGE_ACCELERATION = (0.25, 0.5)  # alpha and delta that a variant of another scheme has, without effect
 POISSON = 0.499  # a fit may try more
 
 
@@ -183,5 +184,20 @@ def own_variant(scene: Scene) -> Variant:
     t, (closing, opening) = scene.time, scene.contact.band
     opens = scene.contact.law == "unilateral"
     ratio = opening / closing if closing else 0.0
-    ramp = scene.load.ramp
-    return Variant(t.alpha, t.delta, t.discount, t.start, opens=opens, band=closing, reopening=ratio, ramp=ramp)
+    alpha, delta = (t.alpha, t.delta) if t.scheme == "newmark" else AVERAGE_ACCELERATION
+    spectral = t.rho_inf or 0.0
+    if t.scheme == "hht":
+        spectral = (1 - spectral) / (1 + spectral)
+    return Variant(
+        alpha,
+        delta,
+        t.discount,
+        t.start,
+        opens=opens,
+        band=closing,
+        reopening=ratio,
+        ramp=scene.load.ramp,
+        family=t.scheme,
+        spectral=spectral,
+        split=t.split or 0.0,
+    )
