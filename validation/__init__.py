@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from validation.advice.advice import advise as advise
+    from validation.advice.engines import translate as translate
     from validation.advice.response import response as response
     from validation.advice.spectra import damping as damping
     from validation.errors import InputError as InputError
@@ -47,6 +48,7 @@ _NAMES = {
     "load_scene": "scenes.scene",
     "response": "advice.response",
     "solve": "solution",
+    "translate": "advice.engines",
 }
 _OF_A_SCENE = ("advise", "damping", "response", "solve")  # they warn of values that were probably not meant
 __all__ = sorted(_NAMES)

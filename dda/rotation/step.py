@@ -584,7 +584,17 @@ def account(
     if gg != 1:
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
     add_contact_losses(
-        body.law, shear_law, state.contacts, after.contacts, room.slide, room.moved, body.delta, h, 1.0, sums
+        body.law,
+        shear_law,
+        state.contacts,
+        after.contacts,
+        after.contacts.slipped,
+        room.slide,
+        room.moved,
+        body.delta,
+        h,
+        1.0,
+        sums,
     )
 
 

@@ -50,7 +50,10 @@ def scheme_of(scene: Scene) -> dda.Scheme:
 
     t = scene.time
     d = scene.damping
-    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    if t.scheme == "newmark":
+        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    with naming(scene):
+        return dda.named_scheme(t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split)
 
 
 class OneBlock(Prepared):
@@ -169,6 +172,10 @@ class SubBlocks(OneBlock):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
+# Dashpots, impact law and augmented Lagrangian are written for Newmark's steps of one block on a base at rest.
+NOT_WITH_METHODS = features.SCHEMES | {features.SUB_BLOCKS, features.DEAD_BAND, features.BASE_MOTION, features.RAMP}
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
@@ -180,9 +187,12 @@ class DDA(Solver):
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.RULES
+        | features.SCHEMES
+        | features.CONTACT_METHODS
     )
     apart: features.Apart = (
         (features.ROTATION, handles - COMPATIBLE),
+        *((method, NOT_WITH_METHODS) for method in sorted(features.CONTACT_METHODS)),
         (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
         (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
         (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),

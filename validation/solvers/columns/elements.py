@@ -164,7 +164,7 @@ class ContactLineColumn(LineColumn):
         return ContactRecord(
             time=result.time,
             force=force,
-            impulse=opened.impulse_of_force(force, self.scheme.step, self.scheme.delta),
+            impulse=opened.impulse_of_force(force, self.scheme.step, opened.end_weight_of_column(self.scene)),
             penetration=np.maximum(0.0, -openings).max(axis=0),
             gap=np.maximum(0.0, openings).max(axis=0),
             open_share=np.asarray((result.states < 0).mean(axis=0) if opens else np.zeros(len(result.time))),
