@@ -467,7 +467,7 @@ def free_stage(
         force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
         if stage.averages:
             force = inertia_force(numbers, force, room.force_0[i], room.f[i])
-        balance = predictor(numbers, room.P[i], room.f[i])
+        balance = predictor(numbers, numbers.d_u * room.P[i], room.f[i])
         if stage.begin > 0:
             balance += numbers.d_g * (ratio * before.P[i]) + numbers.e_g * (ratio * ratio * before.f[i])
         room.balance[i] = balance + numbers.alpha * force

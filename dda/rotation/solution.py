@@ -145,7 +145,7 @@ class RollingOptions:
         check_iteration(self.solve_limit, self.cut)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RollingResult(ContactResult):
     """Histories of a block that turns; the contacts are all corners of its outline, `base_contacts` M and N."""
 
