@@ -174,11 +174,7 @@ def solve_contact_column(
         (),
         (equations[0], equations[-1], state, _room_for_state(n), _room(n), forcing, observed),
         (values, states, solves, switches, record),
-        stages
-        * instants
-        * (PLAIN_STEP + n * PLAIN_BLOCK)
-        * (PLAIN_ENERGIES if options.energies else 1.0)
-        * options.repeats,
+        seconds * (PLAIN_ENERGIES if options.energies else 1.0) * options.repeats,
     )
     rows = slice(1, reached + 1)
     early = () if ended == FOUND else (f"{COLUMN_OUTCOMES[ended]} at step {reached + 1}",)

@@ -1,17 +1,14 @@
-"""The commands ``damping``, ``advise`` and ``claims``: damping, settings for a target, the paper's claims."""
+"""The commands ``damping`` and ``advise``: damping, and settings for a target."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.cli.app import (
-    RESULTS,
     JsonOption,
-    ResultsOption,
     SceneArgument,
     SetOption,
     _progress,
@@ -157,34 +154,6 @@ def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) 
         echo_json(data)
     else:
         _print_advice(advice, errors)
-
-
-@app.command()
-def claims(
-    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
-    results: ResultsOption = RESULTS,
-) -> None:
-    """List the paper's statements and slips with their verdicts, from the results of the study `paper`.
-
-    Example: [bold]dda-validate run paper && dda-validate claims[/bold]
-    """
-    from validation.errors import InputError
-    from validation.runs.files import write_atomically
-    from validation.runs.results import Results
-    from validation.studies.paper.claims import Finding, page
-    from validation.studies.paper.study import CLAIMS
-
-    rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
-    if not rows:
-        raise InputError("no results of the study paper", source=results, advice="run it first: dda-validate run paper")
-    measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
-    for claim in CLAIMS:
-        verdict = measured.get(claim.id)
-        words = "not run" if verdict is None else Finding(int(verdict)).words
-        echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
-    if out is not None:
-        text = page(CLAIMS, rows)
-        write_atomically(out, lambda stream: stream.write(text.encode()))
 
 
 def _print_damping(analysis: Damping) -> None:

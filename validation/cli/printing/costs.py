@@ -14,6 +14,7 @@ COSTS = {
     "core": 1.0,
     "two-codes": 1.5,
     "paper": 0.9,
+    "literature": 0.4,
     "limits": 0.3,
     "stiff-contact": 0.3,
     "stability-small": 0.6,
