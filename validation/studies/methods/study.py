@@ -72,6 +72,16 @@ def known() -> Mapping[str, Any]:
     return tomllib.loads((Path(__file__).parent / "known.toml").read_text())
 
 
+_EXPANDED: dict[str, tuple[Scene, ...]] = {}  # a scene has no hash
+
+
+def expanded(scene: Scene) -> tuple[Scene, ...]:
+    """Return the cases of a scene of the study, which are made once."""
+    if scene.name not in _EXPANDED:
+        _EXPANDED[scene.name] = scene.expand()
+    return _EXPANDED[scene.name]
+
+
 def half_unit(text: str) -> float:
     """Return half a unit of the last digit of a printed decimal number."""
     return 0.5 * 10.0 ** -len(text.partition(".")[2])
@@ -258,7 +268,7 @@ def errors_of(one: Method, finished: Finished) -> dict[int, float]:
     """Return the relative L2 error of the displacement's rate by the number of steps, at the coarsest instants."""
     exact = _velocity(finished, truth(), "block-events")
     errors = {}
-    for case in refined(one).expand():
+    for case in expanded(refined(one)):
         velocity = _velocity(finished, case, "dda")
         errors[case.time.steps] = float(np.linalg.norm(velocity - exact) / np.linalg.norm(exact))
     return errors
@@ -296,7 +306,7 @@ def approach(stop: str, finished: Finished) -> Mapping[str, Value]:
     steps = []
     errors = []
     peaks = []
-    for case in rigid(stop).expand():
+    for case in expanded(rigid(stop)):
         history = finished.needed_history(case.name, "dda")
         instants = [round(time / case.time.step) - 1 for time in PLASTIC]
         steps.append(case.time.step)
@@ -327,7 +337,7 @@ def slid_distance(case: Scene, finished: Finished) -> Mapping[str, Value]:
 
 def restitutions(one: Method, finished: Finished) -> Iterator[tuple[Scene, float, float]]:
     """Yield the cases of a rigid block that lands, with the restitution of DDA and of the map."""
-    for case in impacts(one).expand():
+    for case in expanded(impacts(one)):
         history = finished.needed_history(case.name, "dda").displacement
         after = float(history[-1] - history[-2]) / case.time.step
         omega = math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step
@@ -371,45 +381,46 @@ def equal_cost(finished: Finished) -> Mapping[str, Value]:
 
 def case_of(scene: Scene, ratio: float, step: float) -> Scene:
     """Return the case of a stiffness p/E and a step [s]."""
-    for case in scene.expand():
+    for case in expanded(scene):
         if math.isclose(case.contact.stiffness, ratio * case.block.young) and math.isclose(case.time.step, step):
             return case
     raise LookupError(f"{scene.name}: no case of p = {ratio:g}E and dt = {step:g} s")
 
 
+@functools.cache
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
     rows = []
     for one in SCHEMES:
-        for case in locked(one).expand():
+        for case in expanded(locked(one)):
             rows.append(Derived(case.name, ERROR, ((case.name, "dda"),), functools.partial(locked_error, case)))
     composites = [locked(one) for one in SCHEMES if one.group == "composite"]
     cost_cases = [case_of(scene, 1.0, 2 * HALVED) for scene in composites]
     cost_cases.append(case_of(locked(method("average")), 1.0, HALVED))
     rows.append(Derived(COST, ERROR, tuple((case.name, "dda") for case in cost_cases), equal_cost))
-    compared_levels = [(case.name, "dda") for name in ("constant", "ch-0") for case in refined(method(name)).expand()]
+    compared_levels = [(case.name, "dda") for name in ("constant", "ch-0") for case in expanded(refined(method(name)))]
     rows.append(Derived(COST, ORDER, (*compared_levels, (truth().name, "block-events")), slow_and_fast))
     for one in METHODS:
-        for case in unlocked(one).expand():
+        for case in expanded(unlocked(one)):
             needs = ((case.name, "dda"),)
             rows.append(Derived(case.name, FINAL, needs, functools.partial(final_energy, case), ENERGIES))
-        levels = [(case.name, "dda") for case in refined(one).expand()]
+        levels = [(case.name, "dda") for case in expanded(refined(one))]
         needs_truth = (*levels, (truth().name, "block-events"))
         rows.append(Derived(refined(one).name, ORDER, needs_truth, functools.partial(order, one)))
     for one in IMPLICIT:
-        landings = tuple((case.name, "dda") for case in impacts(one).expand())
+        landings = tuple((case.name, "dda") for case in expanded(impacts(one)))
         rows.append(Derived(impacts(one).name, MAP, landings, functools.partial(compared_map, one)))
         if one.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
             rows.append(Derived(impacts(one).name, RIGID_MAP, (), functools.partial(rigid_map, one)))
     for stop in STOPS:
-        levels = [(case.name, "dda") for case in rigid(stop).expand()]
+        levels = [(case.name, "dda") for case in expanded(rigid(stop))]
         rows.append(Derived(rigid(stop).name, STOP, tuple(levels), functools.partial(approach, stop)))
     for one in SCHEMES:
-        for case in column(one).expand():
+        for case in expanded(column(one)):
             needs_column = ((case.name, "dda"), (column_truth().name, "column-events"))
             rows.append(Derived(case.name, COLUMN, needs_column, functools.partial(column_error, case)))
     for one in FRICTIONAL:
-        for case in sliding(one).expand():
+        for case in expanded(sliding(one)):
             rows.append(Derived(case.name, SLIDING, ((case.name, "dda"),), functools.partial(slid_distance, case)))
     return tuple(rows)
 
@@ -441,6 +452,7 @@ def printed(case: Scene | str, name: str, metric: str, text: str, scale: float =
     return gate(case, name, metric, about(float(text) * scale, half * 1.001), why, OTHER, half)
 
 
+@functools.cache
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
     return (
@@ -461,7 +473,7 @@ def locked_gates() -> Iterator[Gate]:
     why = "roots of one step of the scheme at the closed-form frequency, written apart from the solver; band: rounding"
     errors = f"{PRINTED}; phase errors saturate near 0.5 (damped to rest) and 1 (out of phase)"
     for one in SCHEMES:
-        cases = locked(one).expand()
+        cases = expanded(locked(one))
         texts = known()["locked"][one.id]
         if one.id == "leapfrog":
             texts = [text for text in texts if text != UNSTABLE]
@@ -498,7 +510,7 @@ def unlocked_gates() -> Iterator[Gate]:
     why = f"{PRINTED}; with the leapfrog beyond its limit the block is thrown, and all numbers stay finite"
     for one in METHODS:
         rows = known()["unlocked"].get(one.id, ())
-        for n, (case, row) in enumerate(zip(unlocked(one).expand(), rows, strict=False)):
+        for n, (case, row) in enumerate(zip(expanded(unlocked(one)), rows, strict=False)):
             if (one.id, n) in CHAOTIC:
                 continue
             peak, energy = row
@@ -584,16 +596,16 @@ def column_gates() -> Iterator[Gate]:
     solves = "solves of the stages, and one more where a contact opens or closes, which few steps do"
     errors = "error against the exact motion, this suite's own last value; band: where the landings fall in their steps"
     for one in SCHEMES:
-        for case in column(one).expand():
+        for case in expanded(column(one)):
             yield gate(case, "dda", "contact.mean_solves", (float(one.solves), one.solves + 0.25), solves)
-        *_, fine = column(one).expand()
+        *_, fine = expanded(column(one))
         yield gate(fine, COLUMN, "l2", near(COLUMN_ERRORS[one.id], 0.05), errors, OWN)
 
 
 def sliding_gates() -> Iterator[Gate]:
     """Yield the gates on the distance slid."""
     for one in FRICTIONAL:
-        (case,) = sliding(one).expand()
+        (case,) = expanded(sliding(one))
         distance = friction.sliding_acceleration(case) * case.time.duration**2 / 2
         settled = 2 * math.tan(math.radians(case.contact.friction or 0.0)) * friction.settlement(case) / distance
         late = case.time.step / case.time.duration if one.id == "implicit-euler" else 0.0
