@@ -68,6 +68,8 @@ class ContactResult(Result):
     softness: float  # 1/p_s, 0 without springs in shear [m/N]
     parts: Mapping[str, Callable[[], Any]]  # makes the displacement along the base and the velocities
     balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
+    impulses: Array | None = None  # P of each contact in each step, of the rule "impact" [N s]
+    step_passes: NDArray[np.int_] | None = None  # of the augmented Lagrangian in each step
 
     normal = of_contacts("normal", "N, away from the base, (contacts, steps) [N].")
     shear = of_contacts("shear", "T, along the base from M to N, (contacts, steps) [N].", -1.0)

@@ -28,6 +28,7 @@ STUDIES = {
     "opening": "validation.studies.opening:OPENING",
     "rebound": "validation.studies.contact.rebound:STUDY",
     "impacts": "validation.studies.contact.impacts:STUDY",
+    "methods": "validation.studies.methods.study:study",
     "slopes": "validation.studies.slopes.sliding:STUDY",
     "creep": "validation.studies.slopes.creep:STUDY",
     "rocking": "validation.studies.rocking.rocking:STUDY",

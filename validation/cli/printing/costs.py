@@ -23,6 +23,7 @@ COSTS = {
     "opening": 4.3,
     "rebound": 1.1,
     "impacts": 0.8,
+    "methods": 2.0,
     "slopes": 1.2,
     "creep": 3.9,
     "rocking": 0.2,
