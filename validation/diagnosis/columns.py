@@ -611,9 +611,7 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         slipped = list(verdict.slipped.history.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
     subject = sentences.Subject(
-        cause.words
-        if cause and cause.id == "scheme"
-        else sentences.scheme_of(replace(scene_variant, gg=scheme["gg"])),
+        cause.words if cause and cause.id == "scheme" else sentences.scheme_of(replace(scene_variant, gg=scheme["gg"])),
         words,
         departure,
         sentences.remaining(misfit),

@@ -1,4 +1,4 @@
-"""What to type for the suite to step a scene as a history was: the keys of the schemes and contact methods of scenes."""
+"""What to type for the suite to step a scene as a history was: the keys of schemes and contact methods."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Variant
 
 OF_STEP = frozenset({"scheme", "start", "gg"})  # causes that keys of `time` state, besides the schemes of other names
-OF_CONTACT = frozenset({"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"})
+OF_CONTACT = frozenset(
+    {"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"}
+)
 NOT_IN_SCENES = frozenset({"theta", "symplectic-euler"})
 
 
