@@ -141,7 +141,7 @@ class ContactColumn(BlockColumn):
         return ContactRecord(
             time=result.time,
             force=force,
-            impulse=opened.impulse_of_force(force, self.scheme.step, self.scheme.delta),
+            impulse=opened.impulse_of_force(force, self.scheme.step, opened.end_weight_of_column(self.scene)),
             penetration=record[DEEPEST, 1:],
             gap=record[WIDEST, 1:],
             open_share=record[OPEN_SHARE, 1:],
