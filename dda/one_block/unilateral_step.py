@@ -704,9 +704,11 @@ def account_by_balance(
     algorithmic = sums[ALGORITHMIC]
     n = len(block.K)
     gg = length_of(block, shear_law, block.last, part.ratio).numbers[1]
-    if gg != 1:
+    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
+    if gg != 1 and not late_start:
         sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
-    released = stored_energy(block, shear_law, state) - stored_energy(block, shear_law, after)
+    released = stored_energy(block, shear_law, state, gg if late_start else 1.0)
+    released -= stored_energy(block, shear_law, after, 1.0)
     if block.stages == 2:
         between = block.between
         released += add_stage(block, shear_law, block.first, state, between, block.first.slipped, part, sums)
@@ -748,13 +750,13 @@ def add_stage(
     return work
 
 
-def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState) -> float:
-    """Return kinetic energy, strain energy and that of the contacts' springs [J]."""
+def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState, discount: float) -> float:
+    """Return kinetic energy, strain energy and that of the contacts' springs [J]; `discount` is that of P."""
     room = block.room
     n = len(block.K)
     strain = 0.0
     for i in range(n):
-        room.change[i] = state.P[i] + block.lag * state.f[i]
+        room.change[i] = discount * state.P[i] + block.lag * state.f[i]
         strain += block.K[i] * state.D[i] * state.D[i]
     energy = (quadratic(block.inverse_mass, room.change, n) / (block.step * block.step) + strain) / 2
     for i in range(len(room.slide)):
@@ -770,7 +772,8 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
         rows[number, i] = state.D[i]
         rows[number, n + i] = state.P[i]
         if block.lag != 0:
-            rows[number, n + i] += block.lag * state.f[i]
+            discount = block.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, n + i] = discount * state.P[i] + block.lag * state.f[i]
         total += state.D[i]
     if rows.shape[1] > 2 * n:
         rows[number, 2 * n] = block.passes[0]
