@@ -411,7 +411,7 @@ class ContactStepper:
         before = None
         solves = 0
         for stage in range(len(self.stages)):
-            before = self._advance_stage(state, before, loads, float(base[stage]), stage)
+            before = self._advance_stage(state, before, loads, base[stage], stage)
             solves += before.solves
         assert before is not None  # a scheme has a stage
         return replace(before, solves=solves)
@@ -464,7 +464,8 @@ class ContactStepper:
         for end in range(stages, len(excitation.pressure), stages):
             instants = range(end - stages + 1, end + 1)
             loads = [load, *(self.load(excitation, instant) for instant in instants)]
-            state = self.advance(state, loads, excitation.displacement[instants.start : instants.stop])
+            base = [float(excitation.displacement[instant]) for instant in instants]
+            state = self.advance(state, loads, base)
             yield state
             load = loads[-1]
 

@@ -118,7 +118,7 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int, 
     a = shares[0] * square if scheme.start == "consistent" else np.zeros_like(omega)
     responses = np.empty((len(weights), steps))
     for n in range(steps):
-        loads = shares[n * stages : (n + 1) * stages + 1]
+        loads = shares[n * stages : (n + 1) * stages + 1].tolist()
         end = step_increment(scheme, y, scheme.gg * v, a, loads, square)
         y = y + end.x
         v = end.v
