@@ -248,8 +248,9 @@ def stage_room(stage: Stage, n: int, c: int, q: int) -> BlockStage:
 
 def length_room(n: int, q: int) -> StepLength:
     """Return room for what belongs to the length of a step."""
-    matrices = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
-    return StepLength(*matrices, Flexibility(*zeros((q, q), (q, q))))
+    parts: list[Any] = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
+    parts.append(Flexibility(*zeros((q, q), (q, q))))
+    return StepLength(*parts)
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
