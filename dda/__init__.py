@@ -23,6 +23,7 @@ from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.scheme import spectral
+from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
 from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
@@ -35,6 +36,7 @@ __all__ = [
     "ADAPTIVE_COLUMNS",
     "COLUMNS",
     "FIXED",
+    "SCHEMES",
     "UNKNOWNS",
     "BaseMotion",
     "Block",
@@ -62,6 +64,7 @@ __all__ = [
     "highest_frequency",
     "modal_form",
     "modes",
+    "named_scheme",
     "one_step_operator",
     "opening_subdivided",
     "response",

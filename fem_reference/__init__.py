@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Mode, Result
+from fem_reference.problem.schemes.catalogue import SCHEMES, named_scheme
 
 if TYPE_CHECKING:
     from fem_reference.contact.kernel import UNILATERAL_COLUMNS
@@ -42,6 +43,7 @@ _HOMES = {
 __all__ = [
     "ADAPTIVE_COLUMNS",
     "COLUMNS",
+    "SCHEMES",
     "UNILATERAL_COLUMNS",
     "Bar",
     "Friction",
@@ -56,6 +58,7 @@ __all__ = [
     "assemble",
     "highest_frequency",
     "modes",
+    "named_scheme",
     "solve",
     "solve_adaptive",
     "solve_unilateral",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
+from validation.runs.files import check_ending
 from validation.runs.history import DISPLACEMENT
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
@@ -15,8 +16,6 @@ from validation.solvers.contract import Solver
 
 if TYPE_CHECKING:
     from validation.report.figures.solution import Figure
-
-ENDINGS = (".svg", ".pdf", ".png")  # of a file that a figure is written to
 
 
 @dataclass(frozen=True, repr=False)
@@ -78,8 +77,7 @@ class Solution(Run):
             if name not in history.columns:
                 raise InputError(f"must be among {', '.join(history.columns)}", field="columns", value=repr(name))
         target = None if path is None else Path(path)
-        if target is not None and target.suffix.lower() not in ENDINGS:
-            raise InputError(f"must end in {', '.join(ENDINGS)}", field="path", value=repr(target.name))
+        check_ending(target, "path")
         figure = solution_figure(history, names, self.solver)
         if target is not None:
             save_as(figure, target)

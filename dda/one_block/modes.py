@@ -10,7 +10,7 @@ from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme import spectral, viscous
+from dda.scheme import roots, spectral, viscous
 from dda.scheme.newmark import Scheme, correctors, effective_matrix, modal_step, predictors, viscosity
 
 
@@ -59,8 +59,11 @@ def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, compl
     """Return the two non-zero eigenvalues of one step of a mode, the larger modulus first.
 
     The step is applied to the unit states of (D, dt V) with the acceleration that equilibrium
-    gives them, A = -w^2 D - (a0 + a1 w^2) V, which every step but the first starts from.
+    gives them, A = -w^2 D - (a0 + a1 w^2) V, which every step but the first starts from. Of schemes by their stages
+    they are those of the closed form, `dda.scheme.roots`.
     """
+    if scheme.table is not None:
+        return roots.eigenvalues(scheme, frequency * scheme.step)
     k = (frequency * scheme.step) ** 2
     S = effective_matrix(scheme, 1.0, k)
     a, c, _ = modal_step(scheme, S, k, 0.0, (1.0, 0.0, -k))
@@ -82,17 +85,36 @@ def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) 
     K = np.diag(k)
     C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * K  # dt C
     D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
+    if scheme.table is not None:
+        return _staged_operator(scheme, M, K, (D, V, A))
     unit = replace(scheme, step=1.0)
     displacement, velocity = predictors(unit, D, V, A)
     A1 = np.asarray(-np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement), float)
     return np.vstack([*correctors(unit, displacement, velocity, A1), A1])
 
 
+def _staged_operator(scheme: Scheme, M: Array, K: Array, start: tuple[Array, Array, Array]) -> Array:
+    """Return the same of a scheme by its stages, for the accelerations themselves."""
+    D, V, A = start
+    D1 = D
+    V1 = V
+    A1 = A
+    for stage in scheme.stages:
+        S = effective_matrix(stage, M, K)
+        displacement = D1 + stage.d_u * scheme.gg * V + stage.d_g * V1 + stage.e_0 * A + stage.e_g * A1
+        velocity = scheme.gg * V + stage.g_0 * A + stage.g_g * A1
+        force = -K @ ((1 - stage.af) * displacement + stage.af * D) - stage.am * (M @ A)
+        A1 = np.linalg.solve(S, force) / (1 - stage.am)
+        D1 = displacement + stage.alpha * A1
+        V1 = velocity + stage.delta * A1
+    return np.vstack([D1, V1, A1])
+
+
 def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
     """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
     k = scheme.step**2 * form.K
     F = scheme.step**2 * form.F
-    diagonal = effective_matrix(scheme, np.diag(form.M), k)
+    diagonal = effective_matrix(scheme.stages[-1], np.diag(form.M), k)
     scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
     return scale[:, None] * form.M * scale, scale * k * scale, scale * F
 
@@ -101,24 +123,39 @@ def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the assembled step."""
     form = model.gap_form.reduced()
     M, k, F = _scaled(form, scheme)
-    S = effective_matrix(scheme, M, np.diag(k))
+    S = effective_matrix(scheme.stages[-1], M, np.diag(k))
     x = np.linalg.solve(S, F)
     residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
-    unscaled = effective_matrix(scheme, model.mass, scheme.step**2 * model.stiffness)
+    unscaled = effective_matrix(scheme.stages[-1], model.mass, scheme.step**2 * model.stiffness)
     reached = modes(model, scheme)
     omegas = np.array([mode.frequency * scheme.step for mode in reached])
     return Diagnostics(
         condition_number=float(np.linalg.cond(unscaled)),
         scaled_condition_number=float(np.linalg.cond(S)),
         scaled_residual=float(np.max(residual)),
-        spectral_radius=max(abs(mode.eigenvalues[0]) for mode in reached),
+        spectral_radius=_stepped_radius(scheme, reached),
         predicted_radius=_predicted(scheme, omegas),
         largest_omega=float(np.max(omegas)),
     )
 
 
+def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
+    """Return the largest |lambda| of the steps of the modes."""
+    if scheme.table is None:
+        return max(abs(mode.eigenvalues[0]) for mode in reached)
+    unit = np.ones((1, 1))
+    largest = 0.0
+    for mode in reached:
+        K = (mode.frequency * scheme.step) ** 2 * unit
+        operator = _staged_operator(scheme, unit, K, tuple(np.eye(3).reshape(3, 1, 3)))
+        largest = max(largest, float(np.max(np.abs(np.linalg.eigvals(operator)))))
+    return largest
+
+
 def _predicted(scheme: Scheme, omegas: Array) -> float:
     """Return the largest |lambda| of some w dt from trace and determinant in closed form."""
+    if scheme.table is not None:
+        return max(abs(complex(roots.roots(scheme, omega)[0])) for omega in omegas.tolist())
     if scheme.damped:
         return max(abs(viscous.eigenvalues(scheme, w / scheme.step)[0]) for w in omegas.tolist())
     return float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg)))

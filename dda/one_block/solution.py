@@ -81,7 +81,7 @@ def solve(
         stepped = _why_stepped(model, scheme, modal, full)
         ready = perf_counter()
         if model.load.ramp:
-            shares = [load_share(model.load.ramp, scheme.step * number) for number in range(steps + 1)]
+            shares = [load_share(model.load.ramp, instant) for instant in scheme.instants(steps).tolist()]
             observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
@@ -90,9 +90,9 @@ def solve(
         overflow = bound_overflow(observed, model.load_size)
         motion = model.load.motion
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
-            instants = scheme.step * np.arange(steps + 1.0)
+            instants = scheme.instants(steps)
             histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
-            base_columns = carried(motion, instants[1:])
+            base_columns = carried(motion, step_times(scheme, steps))
             own = np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
             observed += rows @ histories.T + own
             overflow = bound_overflow(observed, 1.0)
@@ -102,7 +102,7 @@ def solve(
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
-        solves=steps if stepped else 0,
+        solves=steps * len(scheme.stages) if stepped else 0,
         notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked", *overflow),
     )
 
@@ -164,6 +164,8 @@ def solve_adaptive(
 def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
     check_share(floor=floor)
     at_once(model.load, "self-adaptive damping")
+    if scheme.table is not None:
+        raise ValueError(f"scheme: self-adaptive damping goes with newmark only, got {scheme.name!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount is adaptive, got {scheme.gg!r}")
     if scheme.damped or model.load.motion is not None:

@@ -23,6 +23,8 @@ _STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3
 
 def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
     """Return why the printed recursion does not apply, or None if it does."""
+    if scheme.table is not None:
+        return f"eq. (6), (7) are Newmark's, not those of {scheme.name}"
     if scheme.damped:
         return "eq. (8) has no viscous damping"
     if scheme.alpha * scheme.step**2 == 0:

@@ -10,10 +10,17 @@ k0 = h^2 K0, F for h^2 F, mu = h^2 lambda, momentum P = h M V and inertia force 
 so that S0 is factorised once for all contact states and the flexibility of the contacts is
 C = alpha h^2 B S0^-1 B'. A closed corner's gap is -N/p, set on acceptance: it is no sum of increments.
 
-Two other rules keep the contact force out of f, the block's own, and put one force of the step into the displacement,
-with weight 1/2 for alpha, and into the momentum, with weight 1. With "implicit" it is the force at the end (Kane,
-Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and average acceleration
-of the block itself is then the midpoint rule, with F - K D0 for M A0.
+Every scheme is such a step, or two of them, with other numbers (`dda.scheme.stages`): where it balances the forces
+between the ends of a step, those of contact are averaged as the others are, (1 - af) lambda1 + af lambda0. Of a scheme
+of two stages each has an open-close iteration of its own, from the end of the one before; gg enters once.
+
+Two other rules, of Newmark's scheme, keep the contact force out of f, the block's own, and put one force of the step
+into the displacement, with weight 1/2 for alpha, and into the momentum, with weight 1. With "implicit" it is the force
+at the end (Kane, Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and
+average acceleration of the block itself is then the midpoint rule, with F - K D0 for M A0.
+
+Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes
+of the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
 
 On a moving base unknowns count from it: x = D + R y with K0 R = 0, so that its displacement in the step enters as the
 momentum M R (y1 - y).
@@ -23,16 +30,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.contact.augmented import augmented
 from dda.contact.conserving import conserving
+from dda.contact.dashpot import damped, set_gaps
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
+    NONE,
     TO_OWN,
     Contacts,
+    Flexibility,
     Free,
     Law,
     Shear,
@@ -42,6 +54,7 @@ from dda.contact.kernel import (
     find_contacts,
     law_of,
     shear_law_of,
+    spring_energy,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -50,31 +63,47 @@ from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import (
     Scheme,
-    StepScheme,
     acceleration_corrector,
+    implicit_weight,
+    inertia_force,
     initial_acceleration,
-    momentum_balance,
+    late_momentum,
+    plain_stage,
+    predictor,
     velocity_corrector,
 )
+from dda.scheme.stages import Stage
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
-from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
+from dda.stepping.energy import (
+    ALGORITHMIC,
+    CONTACT,
+    DAMPING,
+    FRICTION,
+    GIVEN,
+    SWITCHING,
+    add_contact_losses,
+    bulk_loss,
+)
 
 NEWMARK = "newmark"
 IMPLICIT = "implicit"
 CONSERVING = "energy-conserving"
-RULES = (NEWMARK, IMPLICIT, CONSERVING)
+IMPACT = "impact"
+AUGMENTED = "augmented"
+RULES = (NEWMARK, IMPLICIT, CONSERVING, IMPACT, AUGMENTED)
 
 
 class StepLength(NamedTuple):
-    """Everything of a step that depends on its length alone."""
+    """Everything of a stage that depends on the length of the step alone."""
 
-    numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
+    numbers: Vector  # (4,) length over the scheme's step, gg for this length, length [s], slope of `set_gaps`
     k: Vector  # (n,) h^2 K0
-    F: Vector  # (n,) h^2 F; where the load rises in a ramp, that at the end of the step which was made last
+    F: Vector  # (n,) h^2 F; where the load rises in a ramp, that at the end of the stage which was made last
     inverse: Matrix  # (n, n) of S0
     pushed: Matrix  # (n, q) weight h^2 S0^-1 multiplicity B': displacement of unit forces
     C: Matrix  # flexibility of the contacts in their own slides [m/N]
     C_paired: Matrix  # that in mean and difference of two slides [m/N]
+    retarded: Flexibility  # C + tau C' of contacts with a dashpot, tau = c/p [m/N]
 
 
 class BlockState(NamedTuple):
@@ -83,23 +112,37 @@ class BlockState(NamedTuple):
     D: Vector  # (n,) unknowns of the form
     P: Vector  # (n,) dt M V
     f: Vector  # (n,) dt^2 M A
+    force: Vector  # (n,) dt^2 (F - K0 D + B' lambda), of a scheme whose M A is an average of it
     contacts: Contacts
+
+
+class BlockStage(NamedTuple):
+    """One stage of the scheme."""
+
+    numbers: Stage  # with gg = 1: the momentum that it takes is discounted
+    begin: float  # where it begins, over the step
+    averages: bool  # whether it balances the forces between the ends of the step
+    whole: StepLength  # of a whole step
+    part: StepLength  # of the last part of a step
+    base: Vector  # (2,) displacement of the base in the stage that was made last [m]
+    slipped: Vector  # (c,) of the contacts in it [m]
 
 
 class Room(NamedTuple):
     """Room for the vectors of a step."""
 
-    P: Vector  # (n,) P and f in units of this step's length, balance, and increments without contact forces
+    P: Vector  # (n,) gg P, f and the force at the start of the step, in units of its length
     f: Vector
-    balance: Vector
+    force_0: Vector
+    balance: Vector  # (n,) and increments without contact forces
     x: Vector
     forces: Vector  # (q,) N, then T in the coordinates of B
     free: Free  # the contacts in a step without their forces
+    retarded: Free  # the same of w + tau w' of contacts with a dashpot, in `slide` tau w'; or of preloaded springs
     slide: Vector  # (c,) displacement of the contacts along the base
     A: Matrix  # (n, n)
     scale: Vector
-    start: Vector  # (2,) displacement of the base at the start of the step, along and away from itself [m]
-    base: Vector  # (2,) that in the step [m]
+    start: Vector  # (2,) displacement of the base at the start of the stage, along and away from itself [m]
     change: Vector  # (n,)
 
 
@@ -108,9 +151,13 @@ class BlockEquations(NamedTuple):
 
     law: Law
     stiffness: float  # p [N/m]
-    rule: int  # place in RULES
-    alpha: float
-    delta: float
+    penetration: float  # tolerance of the augmented Lagrangian [m]
+    pass_limit: int  # its passes in a step
+    restitution: float  # of impacts [-]
+    rule: int  # place in RULES; that of Newmark's where the contact force enters as there
+    newmark: bool  # whether the scheme is Newmark's
+    stages: int  # 1, or 2: `first` and `last`
+    lag: float  # by how much of a step P is older than D
     gg: float
     step: float  # [s]
     M: Matrix  # (n, n)
@@ -122,29 +169,45 @@ class BlockEquations(NamedTuple):
     translation: Matrix  # (n, 2) R, along and away from the base
     carried: Matrix  # (n, 2) M R
     inverse_mass: Matrix  # (n, n)
-    whole: StepLength  # of a whole step
-    part: StepLength  # of the last part of a step
-    made: Vector  # (1,) step lengths made
+    first: BlockStage  # of two
+    last: BlockStage
+    between: BlockState  # at the end of the first one
+    made: Vector  # (1,) matrices made
+    passes: Vector  # (1,) of the augmented Lagrangian since a step was kept
     room: Room
     work: Work
 
 
 def block_equations(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
+    form: UnilateralForm,
+    law: Unilateral,
+    scheme: Scheme,
+    rule: str,
+    limit: int,
+    penetration: float = 0.0,
+    pass_limit: int = 1,
+    restitution: float = 0.0,
 ) -> tuple[BlockEquations, Shear]:
     """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
     n = len(form.unknowns)
     c = form.contacts
     q = len(form.B)
-    vectors: list[Any] = zeros(n, n, n, n, q)
-    vectors.append(Free(*zeros(c, c, c)))
-    vectors += zeros(c, (n, n), n, 2, 2, n)
+    vectors: list[Any] = zeros(n, n, n, n, n, q)
+    vectors += [Free(*zeros(c, c, c)), Free(*zeros(c, c, c))]
+    vectors += zeros(c, (n, n), n, 2, n)
+    stages = [plain_stage(stage) for stage in scheme.stages]
+    rooms = [stage_room(stage, n, c, q) for stage in stages]
+    rooms[-1] = rooms[-1]._replace(begin=float(stages[0].end) if len(stages) == 2 else 0.0)
     block = BlockEquations(
-        law=law_of(law, limit),
+        law=law_of(replace(law, stiffness=math.inf) if rule == AUGMENTED else law, limit),
         stiffness=law.stiffness,
-        rule=RULES.index(rule),
-        alpha=scheme.alpha,
-        delta=scheme.delta,
+        penetration=penetration,
+        pass_limit=pass_limit,
+        restitution=restitution,
+        rule=0 if rule == AUGMENTED else RULES.index(rule),
+        newmark=scheme.table is None,
+        stages=len(stages),
+        lag=float(scheme.lag),
         gg=scheme.gg,
         step=scheme.step,
         M=form.M,
@@ -156,15 +219,37 @@ def block_equations(
         translation=form.translation,
         carried=form.M @ form.translation,
         inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
-        whole=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
-        part=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
+        first=rooms[0],
+        last=rooms[-1],
+        between=BlockState(*zeros(n, n, n, n), at_rest(np.zeros(c))),
         made=np.zeros(1),
+        passes=np.zeros(1),
         room=Room(*vectors),
         work=work_for(c),
     )
     shear_law = shear_law_of(law) if q > c else None
-    set_length(block, shear_law, 1.0, block.whole)
+    for stage in rooms:
+        set_length(block, shear_law, stage, 1.0, stage.whole)
     return block, shear_law
+
+
+def stage_room(stage: Stage, n: int, c: int, q: int) -> BlockStage:
+    """Return a first stage, with room for what belongs to it."""
+    return BlockStage(
+        numbers=stage,
+        begin=0.0,
+        averages=stage.am != 0 or stage.af != 0,
+        whole=length_room(n, q),
+        part=length_room(n, q),
+        base=np.zeros(2),
+        slipped=np.zeros(c),
+    )
+
+
+def length_room(n: int, q: int) -> StepLength:
+    """Return room for what belongs to the length of a step."""
+    matrices = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
+    return StepLength(*matrices, Flexibility(*zeros((q, q), (q, q))))
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -173,20 +258,21 @@ def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity:
     P = (dt * velocity) * (form.M @ (form.translation @ form.axes[:, 1]))
     F = load_share(form.ramp, 0.0) * (dt * dt * form.F)
     f = F if rule == CONSERVING else initial_acceleration(scheme, F)
-    return BlockState(form.start, P, f, at_rest(np.full(form.contacts, law.gap)))
+    return BlockState(form.start, late_momentum(scheme, P, f), f, F, at_rest(np.full(form.contacts, law.gap)))
 
 
 # ---- the step --------------------------------------------------------------------------------------------------------
 
 
-def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: StepLength) -> None:
-    """Write everything that depends on the length of a step: S0^-1, and the flexibility of the contacts.
+def set_length(block: BlockEquations, shear_law: Shear, stage: BlockStage, ratio: float, length: StepLength) -> None:
+    """Write everything of a stage that depends on the length of the step: S0^-1, and the flexibility of the contacts.
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
     """
     n = len(block.K)
     q = len(block.B)
     room = block.room
+    implicit = implicit_weight(stage.numbers)
     step = block.step * ratio
     h2 = step * step
     length.numbers[0] = ratio
@@ -196,9 +282,11 @@ def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: St
     for i in range(n):
         length.k[i] = h2 * block.K[i]
         length.F[i] = h2 * block.load[i]
-        room.A[i][i] += block.alpha * length.k[i]
+        room.A[i][i] += implicit * length.k[i]
     invert(room.A, n, room.scale, length.inverse)
-    weight = (block.alpha if block.rule == 0 else 0.5) * h2 * block.multiplicity
+    weight = (implicit if block.rule == 0 else 0.5) * h2 * block.multiplicity
+    if block.rule == 3:  # impulses change the velocity
+        weight = block.multiplicity
     for i in range(n):
         for j in range(q):
             length.pushed[i][j] = weight * dot(length.inverse[i], block.B[j], n)
@@ -212,16 +300,35 @@ def set_length(block: BlockEquations, shear_law: Shear, ratio: float, length: St
         change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C)
+    if block.law.damping > 0:
+        set_retarded(block, stage, length)
     block.made[0] += 1
 
 
-def length_of(block: BlockEquations, shear_law: Shear, ratio: float) -> StepLength:
+def set_retarded(block: BlockEquations, stage: BlockStage, length: StepLength) -> None:
+    """Write C + tau C' of contacts with a dashpot, where forces change their rates by C' = delta' h B S0^-1 B'."""
+    n = len(block.K)
+    retardation = block.law.damping * block.law.compliance
+    implicit = implicit_weight(stage.numbers)
+    h = length.numbers[2]
+    late = stage.numbers.delta * (1 - stage.numbers.af) / (1 - stage.numbers.am)
+    length.numbers[3] = retardation * late / (implicit * h) if implicit > 0 else 0.0
+    weight = (implicit * h * h + retardation * late * h) * block.multiplicity
+    for i in range(len(block.B)):
+        for j in range(len(block.B)):
+            total = 0.0
+            for k in range(n):
+                total += block.B[i][k] * dot(length.inverse[k], block.B[j], n)
+            length.retarded.C[i][j] = weight * total
+
+
+def length_of(block: BlockEquations, shear_law: Shear, stage: BlockStage, ratio: float) -> StepLength:
     """Return what belongs to a length, over the scheme's step."""
     if ratio == 1.0:
-        return block.whole
-    if block.part.numbers[0] != ratio:
-        set_length(block, shear_law, ratio, block.part)
-    return block.part
+        return stage.whole
+    if stage.part.numbers[0] != ratio:
+        set_length(block, shear_law, stage, ratio, stage.part)
+    return stage.part
 
 
 def solve_at_end(
@@ -238,8 +345,39 @@ def solve_conserving(
     return conserving(block.stiffness, before, block.room.free, length, after, block.work)
 
 
+def solve_damped(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts with a dashpot beside their springs, without shear."""
+    room = block.room
+    outcome, solves = damped(block.law, before, room.free, room.retarded, length, length.retarded, after, block.work)
+    set_gaps(length.numbers[3], room.free, room.retarded, length, after)
+    return outcome, solves
+
+
+def solve_augmented(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts on a rigid stop by passes over springs, without shear."""
+    room = block.room
+    springs = Law(1 / block.stiffness, 0.0, 0.0, block.law.limit, 0.0)
+    outcome, solves, passes = augmented(
+        springs,
+        block.penetration,
+        block.pass_limit,
+        before,
+        room.free,
+        room.retarded,
+        length,
+        after,
+        block.work,
+    )
+    block.passes[0] += passes
+    return outcome, solves
+
+
 def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
-    """Return what makes a step whose contacts are found by `solve`, one of the two functions above."""
+    """Return what makes a step whose contacts are found by `solve`, one of the functions above."""
 
     def advance(
         block: BlockEquations,
@@ -250,50 +388,146 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
         part: Part,
     ) -> tuple[int, int]:
         """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-        length = length_of(block, shear_law, part.ratio)
-        scheme = StepScheme(block.alpha, block.delta, length.numbers[1], length.numbers[2])
-        free_step(block, shear_law, length, scheme, state, base, part)
-        outcome, solves = solve(block, shear_law, state.contacts, length, after.contacts)
+        if block.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
+            return NONE, 0
+        begin_step(block, state, length_of(block, shear_law, block.last, part.ratio))
+        if block.stages == 1:
+            return make_stage(block, shear_law, block.last, state, after, base, part)
+        outcome, solves = make_stage(block, shear_law, block.first, state, block.between, base, part)
+        if outcome != FOUND:
+            return outcome, solves
+        outcome, further_solves = make_stage(block, shear_law, block.last, block.between, after, base, part)
+        if shear_law is not None and outcome == FOUND:
+            add_slips(block, after.contacts)
+        return outcome, solves + further_solves
+
+    def make_stage(
+        block: BlockEquations,
+        shear_law: Shear,
+        stage: BlockStage,
+        before: BlockState,
+        after: BlockState,
+        base: BaseRecord | None,
+        part: Part,
+    ) -> tuple[int, int]:
+        """Go from the end of the stage before, or the start of the step, to the end of a stage."""
+        length = length_of(block, shear_law, stage, part.ratio)
+        free_stage(block, shear_law, stage, length, before, base, part)
+        outcome, solves = solve(block, shear_law, before.contacts, length, after.contacts)
         if outcome == FOUND:
-            accept(block, shear_law, length, scheme, state, after)
+            accept(block, shear_law, stage, length, before, after)
             if shear_law is not None:
-                refer(block, state.contacts, after)
+                refer(block, before.contacts, after)
         return outcome, solves
 
     return advance
 
 
-def free_step(
+def add_slips(block: BlockEquations, contacts: Contacts) -> None:
+    """Keep what the contacts slipped in each of two stages, and write their sum for the step."""
+    for i in range(len(contacts.slipped)):
+        block.first.slipped[i] = block.between.contacts.slipped[i]
+        block.last.slipped[i] = contacts.slipped[i]
+        contacts.slipped[i] += block.first.slipped[i]
+
+
+def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> None:
+    """Write what all stages take from the start of a step, in units of its length; its velocity is discounted here."""
+    room = block.room
+    ratio = length.numbers[0]
+    gg = length.numbers[1]
+    for i in range(len(block.K)):
+        room.P[i] = gg * (ratio * state.P[i])
+        room.f[i] = ratio * ratio * state.f[i]
+    if block.last.averages:
+        for i in range(len(block.K)):
+            room.force_0[i] = ratio * ratio * state.force[i]
+
+
+def free_stage(
     block: BlockEquations,
     shear_law: Shear,
+    stage: BlockStage,
     length: StepLength,
-    scheme: StepScheme,
-    state: BlockState,
+    before: BlockState,
     base: BaseRecord | None,
     part: Part,
 ) -> None:
-    """Write the increments of a step without contact forces, and what it does to the contacts."""
+    """Write the increments of a stage without contact forces, and what it does to the contacts."""
     room = block.room
+    numbers = stage.numbers
     n = len(block.K)
     c = len(block.room.slide)
     ratio = part.ratio
     if block.ramp > 0:
-        share = load_share(block.ramp, (part.begun + ratio) * block.step)
+        share = load_share(block.ramp, (part.begun + ratio * numbers.end) * block.step)
         for i in range(n):
             length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     for i in range(n):
-        room.P[i] = ratio * state.P[i]
-        room.f[i] = ratio * ratio * state.f[i]
-        room.balance[i] = momentum_balance(scheme, length.F[i], length.k[i], state.D[i], room.P[i], room.f[i])
+        force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
+        if stage.averages:
+            force = inertia_force(numbers, force, room.force_0[i], room.f[i])
+        balance = predictor(numbers, numbers.d_u * room.P[i], room.f[i])
+        if stage.begin > 0:
+            balance += numbers.d_g * (ratio * before.P[i]) + numbers.e_g * (ratio * ratio * before.f[i])
+        room.balance[i] = balance + numbers.alpha * force
     if base is not None:
-        base_displacement(base, block.step, part, room.start, room.base)
+        interval = Part(part.begun + ratio * stage.begin, ratio * (numbers.end - stage.begin))
+        base_displacement(base, block.step, interval, room.start, stage.base)
         for i in range(n):
-            room.balance[i] -= dot(block.carried[i], room.base, 2)
+            room.balance[i] -= dot(block.carried[i], stage.base, 2)
     multiply(length.inverse, room.balance, n, n, room.x)
     for i in range(c):  # the gaps are the last unknowns
-        room.free.gap[i] = state.D[n - c + i] + room.x[n - c + i]
+        room.free.gap[i] = before.D[n - c + i] + room.x[n - c + i]
+    if block.law.damping > 0:
+        retard(block, stage, length, before, base is not None)
     if shear_law is not None:
         slides_by(block, room.x, room.free.slide)
+
+
+def retard(block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool) -> None:
+    """Write w + tau w' at the end of a stage without contact forces, with w' from the base, which moves evenly."""
+    room = block.room
+    n = len(block.K)
+    c = len(room.slide)
+    h = length.numbers[2]
+    retardation = block.law.damping * block.law.compliance
+    for i in range(n):
+        room.change[i] = momentum_at_end(block, stage, length, before, before.D[i] + room.x[i], 0.0, i)
+    for i in range(c):
+        rate = dot(block.inverse_mass[n - c + i], room.change, n) / h
+        if base_moves:
+            rate -= stage.base[1] / (h * (stage.numbers.end - stage.begin))
+        room.retarded.slide[i] = retardation * rate
+        room.retarded.gap[i] = room.free.gap[i] + room.retarded.slide[i]
+
+
+def momentum_at_end(
+    block: BlockEquations,
+    stage: BlockStage,
+    length: StepLength,
+    before: BlockState,
+    D: float,
+    pressed: float,
+    i: int,
+) -> float:
+    """Return h M V of an unknown at the end of a stage, in units of the step's length.
+
+    Parameters
+    ----------
+    D, pressed
+        The unknown there [m], and h^2 B' lambda.
+    """
+    room = block.room
+    numbers = stage.numbers
+    ratio = length.numbers[0]
+    f1 = acceleration_corrector(length.F[i], length.k[i], D) + pressed
+    if stage.averages:
+        f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
+    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
+    if stage.begin > 0:
+        P1 += numbers.g_g * (ratio * ratio * before.f[i])
+    return float(P1)
 
 
 def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
@@ -311,13 +545,14 @@ def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
 def accept(
     block: BlockEquations,
     shear_law: Shear,
+    stage: BlockStage,
     length: StepLength,
-    scheme: StepScheme,
-    state: BlockState,
+    before: BlockState,
     after: BlockState,
 ) -> None:
-    """Write (D, P, f) at the end of the step under the contact forces."""
+    """Write (D, P, f) at the end of the stage under the contact forces."""
     room = block.room
+    numbers = stage.numbers
     n = len(block.K)
     c = len(block.room.slide)
     normal = block.work.mean if block.rule == 2 else after.contacts.normal
@@ -325,7 +560,7 @@ def accept(
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
-        after.D[i] = state.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
+        after.D[i] = before.D[i] + room.x[i] + dot(length.pushed[i], room.forces, len(block.B))
     for i in range(c):
         after.D[n - c + i] = after.contacts.gap[i]
     for i in range(n):
@@ -336,7 +571,12 @@ def accept(
         f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
         if block.rule == 0:
             f1 += pressed
-        P1 = velocity_corrector(scheme, room.P[i], room.f[i], f1)
+        if stage.averages:
+            after.force[i] = f1 / (ratio * ratio)
+            f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
+        P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
+        if stage.begin > 0:
+            P1 += numbers.g_g * (ratio * ratio * before.f[i])
         if block.rule != 0:
             P1 += pressed
         after.P[i] = P1 / ratio
@@ -394,10 +634,23 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 def account(
     block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
 ) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says."""
+    """Add what an accepted part of a step loses [J]."""
+    if block.newmark:
+        account_newmark(block, shear_law, state, after, part, sums)
+    else:
+        account_by_balance(block, shear_law, state, after, part, sums)
+
+
+def account_newmark(
+    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
+) -> None:
+    """Add what an accepted part of Newmark's step loses [J], as `dda.stepping.energy` says."""
     room = block.room
+    alpha = block.last.numbers.alpha
+    delta = block.last.numbers.delta
+    carried = block.last.base
     n = len(block.K)
-    length = length_of(block, shear_law, part.ratio)
+    length = length_of(block, shear_law, block.last, part.ratio)
     gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
@@ -411,45 +664,125 @@ def account(
         if shear_law is not None:
             slides_by(block, room.change, room.slide)
         h = length.numbers[2]
-        late = block.delta if block.rule == 0 else 1.0
+        late = delta if block.rule == 0 else 1.0
         share = block.multiplicity
+        slipped = after.contacts.slipped
         add_contact_losses(
-            block.law, shear_law, state.contacts, after.contacts, room.slide, room.base, late, h, share, sums
+            block.law, shear_law, state.contacts, after.contacts, slipped, room.slide, carried, late, h, share, sums
         )
     if block.ramp > 0:  # what a load that rises does beside the work of the whole one
-        share = (1 - block.delta) * load_share(block.ramp, part.begun * block.step)
-        share += block.delta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
+        share = (1 - delta) * load_share(block.ramp, part.begun * block.step)
+        share += delta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
         for i in range(n):
-            moved = room.change[i] + dot(block.translation[i], room.base, 2)
+            moved = room.change[i] + dot(block.translation[i], carried, 2)
             sums[GIVEN] += (share - 1) * block.load[i] * moved
     if part.begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         share = load_share(block.ramp, 0.0)
         for i in range(n):
             missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - part.ratio * part.ratio * state.f[i]
-            moved = room.change[i] + dot(block.translation[i], room.base, 2)
-            sums[ALGORITHMIC] += (1 - block.delta) * moved * missing / h2
+            moved = room.change[i] + dot(block.translation[i], carried, 2)
+            sums[ALGORITHMIC] += (1 - delta) * moved * missing / h2
     kinetic = 0.0
     kinetic_of_change = 0.0
-    if block.alpha != block.delta / 2:
+    if alpha != delta / 2:
         for i in range(n):
             room.change[i] = (after.f[i] - state.f[i]) / dt2
         stored = quadratic(block.inverse_mass, after.f, n) - quadratic(block.inverse_mass, state.f, n)
         kinetic = stored / 2 / dt2 / dt2
         kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
-    sums[ALGORITHMIC] += bulk_loss(block.alpha, block.delta, h2, stiff, kinetic, kinetic_of_change)
+    sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic, kinetic_of_change)
+
+
+def account_by_balance(
+    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
+) -> None:
+    """Add what an accepted part of a step loses [J], of a scheme without a closed form: the algorithm loses the rest.
+
+    Forces of contact and loads that rise act with the mean of both ends of each stage.
+    """
+    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN]
+    algorithmic = sums[ALGORITHMIC]
+    n = len(block.K)
+    gg = length_of(block, shear_law, block.last, part.ratio).numbers[1]
+    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
+    if gg != 1 and not late_start:
+        sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
+    released = stored_energy(block, shear_law, state, gg if late_start else 1.0)
+    released -= stored_energy(block, shear_law, after, 1.0)
+    if block.stages == 2:
+        between = block.between
+        released += add_stage(block, shear_law, block.first, state, between, block.first.slipped, part, sums)
+        released += add_stage(block, shear_law, block.last, between, after, block.last.slipped, part, sums)
+    else:
+        released += add_stage(block, shear_law, block.last, state, after, after.contacts.slipped, part, sums)
+    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN] - lost
+    sums[ALGORITHMIC] = algorithmic + released - lost
+
+
+def add_stage(
+    block: BlockEquations,
+    shear_law: Shear,
+    stage: BlockStage,
+    before: BlockState,
+    after: BlockState,
+    slipped: Vector,
+    part: Part,
+    sums: Vector,
+) -> float:
+    """Add what the contacts lose in a stage and what base and a load that rises give; return the whole load's work."""
+    room = block.room
+    begin = (part.begun + part.ratio * stage.begin) * block.step
+    end = (part.begun + part.ratio * stage.numbers.end) * block.step
+    rise = (load_share(block.ramp, begin) + load_share(block.ramp, end)) / 2 - 1
+    work = 0.0
+    for i in range(len(block.K)):
+        room.change[i] = after.D[i] - before.D[i]
+        work += block.load[i] * (room.change[i] + dot(block.translation[i], stage.base, 2))
+    sums[GIVEN] += rise * work
+    if shear_law is not None:
+        slides_by(block, room.change, room.slide)
+    share = block.multiplicity
+    base = stage.base
+    law = block.law
+    add_contact_losses(
+        law, shear_law, before.contacts, after.contacts, slipped, room.slide, base, 0.5, end - begin, share, sums
+    )
+    return work
+
+
+def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState, discount: float) -> float:
+    """Return kinetic energy, strain energy and that of the contacts' springs [J]; `discount` is that of P."""
+    room = block.room
+    n = len(block.K)
+    strain = 0.0
+    for i in range(n):
+        room.change[i] = discount * state.P[i] + block.lag * state.f[i]
+        strain += block.K[i] * state.D[i] * state.D[i]
+    energy = (quadratic(block.inverse_mass, room.change, n) / (block.step * block.step) + strain) / 2
+    for i in range(len(room.slide)):
+        energy += block.multiplicity * spring_energy(block.law, shear_law, state.contacts, i)
+    return float(energy)
 
 
 def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:
-    """Write D and P at the end of a step; tell whether it is finite."""
+    """Write D and the momentum at its time, at the end of a step; tell whether it is finite."""
     n = len(block.K)
     total = 0.0
     for i in range(n):
         rows[number, i] = state.D[i]
         rows[number, n + i] = state.P[i]
+        if block.lag != 0:
+            discount = block.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, n + i] = discount * state.P[i] + block.lag * state.f[i]
         total += state.D[i]
+    if rows.shape[1] > 2 * n:
+        rows[number, 2 * n] = block.passes[0]
+        block.passes[0] = 0.0
     return math.isfinite(total)
 
 
 advance = stepping(solve_at_end)
 make_steps = driver(advance, account, keep)
 make_conserving_steps = driver(stepping(solve_conserving), account, keep)
+make_damped_steps = driver(stepping(solve_damped), account, keep)
+make_augmented_steps = driver(stepping(solve_augmented), account, keep)

@@ -22,12 +22,15 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
+from dda.scheme.roots import state_matrix
+from dda.scheme.stages import Stage, Table
 
 BLOCK = 1024  # most steps in a row: its products stay in the cache
 PLACES = 192  # binary places of a map's entries: one from 1e-30 on keeps far more digits than a double
 _DIGITS = Context(prec=80)  # of the one step from which they come
 _RANGE = 1e15  # of w dt: its square has full digits
 _ONE = 1 << PLACES
+GROWTH_ROUNDING = 1e-14  # of the determinant, by which a scheme without damping may seem to grow
 
 Map = tuple[int, int, int, int, int, int]
 """(a, b, c, d, e, g), times 2^PLACES, of (u, p) -> (a u + b p + e, c u + d p + g)."""
@@ -40,6 +43,8 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
     """
     if scheme.damped:
         return "viscous damping"
+    if scheme.averages:
+        return f"{scheme.name} carries the acceleration beside displacement and momentum"
     omegas = [scheme.step * w for w in frequencies.tolist()]
     if not all(1 / _RANGE < omega < _RANGE for omega in omegas):
         return f"w dt is outside {1 / _RANGE:g} to {_RANGE:g}"
@@ -48,6 +53,11 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 def _grows(scheme: Scheme, omega: float) -> bool:
     """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
+    if scheme.table is not None:
+        change = state_matrix(scheme, omega * omega)
+        trace = 2 + float(np.trace(change))
+        determinant = 1 + float(np.trace(change) + np.linalg.det(change))
+        return not (1 + trace + determinant > 0 and determinant <= 1 + GROWTH_ROUNDING)
     alpha = scheme.alpha
     delta = scheme.delta
     gg = scheme.gg
@@ -114,7 +124,11 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
 def with_all_digits(scheme: Scheme) -> Scheme:
     """Return the scheme in decimal numbers, which `modal_step` takes in place of doubles."""
     fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
-    return replace(scheme, **fields)
+    if scheme.table is not None:
+        stages = tuple(Stage(*map(Decimal, stage)) for stage in scheme.table.stages)
+        fields["table"] = Table(stages, Decimal(scheme.lag))
+    with localcontext(_DIGITS):
+        return replace(scheme, **fields)
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
@@ -146,17 +160,20 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
     one: Any = Decimal(1)
     with localcontext(_DIGITS):
         k = (frequency * exact.step) ** 2
-        S = newmark.effective_matrix(exact, one, k)
+        matrices = [newmark.effective_matrix(stage, one, k) for stage in exact.stages]
+        loads = [k for _ in matrices]
+        still = [zero for _ in matrices]
 
         def step(D: Any, P: Any, f: Any) -> tuple[int, int]:
-            D, P, _ = newmark.modal_step(exact, S, k, k, (D, P, f))
+            D, P, *_ = newmark.staged_step(exact, matrices, k, loads, still, (D, P, f, f))
             return int(D * _ONE), int(P * _ONE)
 
         unstrained = newmark.acceleration_corrector(k, k, zero)
         e, g = step(zero, zero, unstrained)
         a, c = step(one, zero, newmark.acceleration_corrector(k, k, one))
         b, d = step(zero, one, unstrained)
-        return (a - e, b - e, c - g, d - g, e, g), step(zero, zero, newmark.initial_acceleration(exact, k))
+        first = step(*newmark.rest(exact, k, zero, k)[:3])
+        return (a - e, b - e, c - g, d - g, e, g), first
 
 
 def _squared(power: Map, levels: int) -> Iterator[Map]:

@@ -1,25 +1,30 @@
-r"""A meshed column whose contacts open or slip, stepped by the Newmark scheme in its force form.
+r"""A meshed column whose contacts open or slip, stepped by a scheme in its force form.
 
-The runs of elements between the contacts are meshes of their own. With b = alpha dt^2, S = M + delta dt C + b K
-factorised once, and B the rows that give the openings y of the contacts::
+The runs of elements between the contacts are meshes of their own. With the numbers of a stage
+(`fem_reference.problem.stages`), b = beta / (1 - am), gamma' = gamma (1 - af) / (1 - am), S = M + gamma' dt C +
+beta' dt^2 K factorised once, u = gg v, B the rows that give the openings y of the contacts and e = (1 - am) a1 + am a
+the acceleration of the equation of motion::
 
-    u* = u + gg dt v + dt^2 (1/2 - alpha) a,     v* = gg v + dt (1 - delta) a
-    a_f = S^-1 (F1 - C v* - K u*),               q = B (u* + b a_f) - base + gap - r
-    z = q + (G + 1/k) N,   G = b B S^-1 B'       N between its bounds, z only where N is at one of them
-    a1 = a_f + S^-1 B' N,  u1 = u* + b a1,       v1 = v* + delta dt a1
+    x* = x + dt (d_u u + d_g vg) + dt^2 (e_0 a + e_g ag - b am a)
+    v* = u + dt (g_0 a + g_g ag - gamma am / (1 - am) a)
+    e_f = S^-1 (F* - (1 - af) (C v* + K x*) - af (C u + K x - B' N0))
+    q = B (x* + b dt^2 e_f) - base + gap - r
+    z = q + (G + 1/k) N,   G = beta' dt^2 B S^-1 B'       N between its bounds, z only where N is at one of them
+    e = e_f + (1 - af) S^-1 B' N,   x1 = x* + b dt^2 e,   a1 = (e - am a) / (1 - am),   v1 = v* + gamma / (1 - am) dt e
 
-N >= 0 and z >= 0 where contacts open; |T| <= s where they slip, by z, which is then added to r. G is tridiagonal, since
-a run ends at two contacts: a solution for the forces of given states is one banded elimination.
+The contacts' forces are those of the step's two ends, in the mean of the scheme. N >= 0 and z >= 0 where contacts open;
+|T| <= s where they slip, by z, which is then added to r. G is tridiagonal, since a run ends at two contacts: a solution
+for the forces of given states is one banded elimination.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +36,17 @@ from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitatio
 from fem_reference.column.stepping import Model
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result
-from fem_reference.scheme.newmark import Work
+from fem_reference.problem.stages import Stage
+from fem_reference.scheme.newmark import (
+    State,
+    Work,
+    discount,
+    end_velocity,
+    predictor,
+    stage_load,
+    start_velocity,
+    velocity_predictor,
+)
 
 AT_LOWER = -1
 INSIDE = 0
@@ -125,6 +140,12 @@ class ColumnState:
     opening: Array  # gap y, negative where a spring is pressed; or slip r [m]
     states: States
     solves: int = 0  # of the open-close iteration
+    undiscounted: bool = False  # whether gg does not act on V: the first half step of a staggered scheme
+
+    @property
+    def motion(self) -> State:
+        """The motion without the contacts."""
+        return State(self.D, self.V, self.A, self.undiscounted)
 
 
 class UnsolvedStepError(ArithmeticError):
@@ -199,8 +220,16 @@ class ContactProblem:
                 states = following
 
 
+class StageMatrices(NamedTuple):
+    """What a stage needs of its matrix S."""
+
+    solve: Callable[[Array], Array]  # S^-1 times a vector
+    mobility: csr_array  # S^-1 B'
+    problem: ContactProblem
+
+
 class ContactStepper:
-    """The scheme on a column of contacts, its matrix factorised once."""
+    """The scheme on a column of contacts, its matrices factorised once."""
 
     def __init__(self, column: ContactColumn, elements: Sequence[int], degree: int, scheme: Scheme) -> None:
         self.column = column
@@ -217,10 +246,10 @@ class ContactStepper:
         free = model.free
         self.M, self.C, self.K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
         self.B = self._openings()
-        self.b = scheme.alpha * scheme.step**2
-        self.S = csr_array(self.M + scheme.delta * scheme.step * self.C + self.b * self.K)
-        self.solve = self.work.factor(self.S)
-        self.mobility = csr_array(hstack([csr_array(self.solve(row)[:, None]) for row in self.B.toarray()]))
+        if scheme.staggered and ground.impedance is not None:
+            raise ValueError(
+                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
+            )
         self.compliance = np.array([1 / contact.stiffness for contact in column.contacts])
         n = len(column.contacts)
         if column.law == "unilateral":
@@ -229,10 +258,22 @@ class ContactStepper:
         else:
             self.upper = np.array([contact.strength for contact in column.contacts])
             self.lower = -self.upper
-        if scheme.alpha == 0 and np.any(self.compliance == 0):
-            raise ValueError("alpha: must be positive where contacts are rigid, got 0")
-        self.problem = self._problem(self.b, self.mobility, self.compliance)
+        if scheme.explicit and np.any(self.compliance == 0):
+            field, value = ("alpha", 0) if scheme.table is None else ("scheme", scheme.name)
+            raise ValueError(f"{field}: must be positive where contacts are rigid, got {value}")
+        self.stages: list[StageMatrices] = []
+        for number, first in enumerate(scheme.stage_matrices):
+            self.stages.append(self.stages[first] if first < number else self._stage(scheme.stages[number]))
         self.weight = np.asarray(-column.gravity * (model.M @ np.ones(mesh.size)))
+
+    def _stage(self, stage: Stage) -> StageMatrices:
+        """Factorise the matrix of a stage."""
+        dt = self.scheme.step
+        b = stage.stiffness_weight * dt**2
+        S = csr_array(self.M + stage.damping_weight * dt * self.C + b * self.K)
+        solve = self.work.factor(S)
+        mobility = csr_array(hstack([csr_array(solve(row)[:, None]) for row in self.B.toarray()]))
+        return StageMatrices(solve, mobility, self._problem(b, mobility, self.compliance))
 
     def _problem(self, b: float, mobility: csr_array, compliance: Array) -> ContactProblem:
         """The contacts' problem with G = b B S^-1 B', of which a contact and its neighbours have entries."""
@@ -315,7 +356,8 @@ class ContactStepper:
                 )
                 A = A + mobility @ N
                 force = force + N
-        return ColumnState(D, V, A, force, opening, states)
+        V = start_velocity(V, A, self.scheme)
+        return ColumnState(D, V, A, force, opening, states, undiscounted=self.scheme.staggered)
 
     def _velocities(self) -> Array:
         """Velocity of each unknown at t = 0: that of its stratum, between two the mean by their masses."""
@@ -364,21 +406,48 @@ class ContactStepper:
             D[run.first : run.first + run.size] = [base - below - shortening(float(height)) for height in heights]
         return D[self.model.free], force
 
-    def advance(self, state: ColumnState, F: Array, base: float) -> ColumnState:
-        """One step to the load and the displacement of the base at its end."""
+    def advance(self, state: ColumnState, loads: Sequence[Array], base: Sequence[float]) -> ColumnState:
+        """One step under the loads at its start and at the ends of its stages, to the base's displacement there."""
+        before = None
+        solves = 0
+        for stage in range(len(self.stages)):
+            before = self._advance_stage(state, before, loads, float(base[stage]), stage)
+            solves += before.solves
+        assert before is not None  # a scheme has a stage
+        return replace(before, solves=solves)
+
+    def _advance_stage(
+        self, state: ColumnState, before: ColumnState | None, loads: Sequence[Array], base: float, stage: int
+    ) -> ColumnState:
         s = self.scheme
-        predicted = state.D + s.gg * s.step * state.V + s.step**2 * (0.5 - s.alpha) * state.A
-        slowed = s.gg * state.V + s.step * (1 - s.delta) * state.A
-        drag = self.C @ slowed if self.model.impedance is not None else 0.0
-        free = self.solve(F - drag - self.K @ predicted)
-        slip = state.opening if self.column.law == "frictional" else -self.gaps
-        q = self.B @ (predicted + self.b * free) - self.base_opening(base) - slip
-        N, z, states, solves = self.problem.solve(q, state.states, self.column.solve_limit)
-        A = free + self.mobility @ N
+        numbers = s.stages[stage]
+        matrices = self.stages[stage]
+        start = state.motion
+        middle = None if before is None else before.motion
+        latest = state if before is None else before
+        b = numbers.compliance * s.step**2
+        predicted = predictor(start, s, stage, middle)
+        slowed = velocity_predictor(start, s, stage, middle)
+        force = stage_load(loads, s, stage)
+        if numbers.am:
+            predicted = predicted - b * numbers.am * state.A
+            slowed = slowed - numbers.gamma * numbers.am / (1 - numbers.am) * s.step * state.A
+        strained = predicted
+        rate = slowed
+        if numbers.af:
+            strained = (1 - numbers.af) * predicted + numbers.af * state.D
+            rate = (1 - numbers.af) * slowed + numbers.af * discount(start, s) * state.V
+            force = force + numbers.af * (self.B.T @ state.force)
+        drag = self.C @ rate if self.model.impedance is not None else 0.0
+        free = matrices.solve(force - drag - self.K @ strained)
+        slip = latest.opening if self.column.law == "frictional" else -self.gaps
+        q = self.B @ (predicted + b * free) - self.base_opening(base) - slip
+        N, z, states, solves = matrices.problem.solve(q, latest.states, self.column.solve_limit)
+        balanced = free + (1 - numbers.af) * (matrices.mobility @ N)
+        A = (balanced - numbers.am * state.A) / (1 - numbers.am)
         opening = slip + z if self.column.law == "frictional" else np.where(states == INSIDE, -N * self.compliance, z)
-        return ColumnState(
-            predicted + self.b * A, slowed + s.delta * s.step * A, A, N, np.asarray(opening), states, solves
-        )
+        V = slowed + numbers.gamma * s.step / (1 - numbers.am) * balanced
+        return ColumnState(predicted + b * balanced, V, A, N, np.asarray(opening), states, solves)
 
     def march(self, excitation: Excitation) -> Iterator[ColumnState]:
         """Yield the state at t = 0 and after each step.
@@ -388,11 +457,16 @@ class ContactStepper:
         UnsolvedStepError
             If the forces of a step are not found.
         """
+        stages = len(self.stages)
         state = self.start(excitation)
         yield state
-        for step in range(1, len(excitation.pressure)):
-            state = self.advance(state, self.load(excitation, step), float(excitation.displacement[step]))
+        load = self.load(excitation, 0)
+        for end in range(stages, len(excitation.pressure), stages):
+            instants = range(end - stages + 1, end + 1)
+            loads = [load, *(self.load(excitation, instant) for instant in instants)]
+            state = self.advance(state, loads, excitation.displacement[instants.start : instants.stop])
             yield state
+            load = loads[-1]
 
 
 def _separate_runs(column: ContactColumn, elements: Sequence[int], degree: int) -> LineMesh:
@@ -420,7 +494,7 @@ def solve_contacts(
     elements, degree
         Number of elements of each stratum, and their degree.
     excitation
-        What drives it; one instant more than steps.
+        What drives it at the scheme's `stage_times`: t = 0 and the ends of all stages.
     columns
         ``displacement`` of the top [m], ``contact_pressure``, the force of the base on the column [Pa], and at the
         heights ``displacement_1`` ... [m], ``velocity_1`` ... [m/s], ``stress_1`` ... [Pa, compression positive], and
@@ -438,7 +512,8 @@ def solve_contacts(
     stepper = ContactStepper(column, elements, degree, scheme)
     observed = _Observed(stepper, columns, heights)
     ready = perf_counter()
-    steps = len(excitation.pressure) - 1
+    stages = len(scheme.stages)
+    steps = (len(excitation.pressure) - 1) // stages
     histories = np.zeros((len(columns) + 1, steps))
     states = np.zeros((len(column.contacts), steps), np.int8)
     openings = np.zeros(states.shape)
@@ -460,14 +535,14 @@ def solve_contacts(
             outcome = UNSOLVED
             notes = (f"step {reached + 1}: {error}",)
     e = excitation
-    parts = np.array([e.displacement, e.velocity, e.acceleration, np.ones(steps + 1)])
-    histories += observed.of_base @ parts[:, 1:]
+    parts = np.array([e.displacement, e.velocity, e.acceleration, np.ones_like(e.pressure)])
+    histories += observed.of_base @ parts[:, stages::stages]
     ended = perf_counter()
     return ColumnContactResult(
         time=scheme.step * np.arange(1.0, reached + 1),
         columns=dict(zip(columns, histories[:-1, :reached], strict=True)),
         unknowns=len(stepper.model.free),
-        nonzeros=int(stepper.S.nnz),
+        nonzeros=stepper.work.nonzeros,
         factorisations=stepper.work.factorisations,
         solves=stepper.work.solves,
         notes=notes,
@@ -486,6 +561,7 @@ class _Observed:
 
     def __init__(self, stepper: ContactStepper, columns: Sequence[str], heights: Sequence[float]) -> None:
         model = stepper.model
+        self.scheme = stepper.scheme
         count = len(columns) + 1
         full = np.zeros((3, count, stepper.mesh.size))  # on displacement, velocity and acceleration
         self.force = np.zeros((count, len(stepper.column.contacts)))
@@ -544,5 +620,6 @@ class _Observed:
         """Values after a step, but for what the base adds."""
         opening = np.maximum(state.opening, 0.0) if self.opens else state.opening
         D, V, A = self.full
-        values: Array = D @ state.D + V @ state.V + A @ state.A + self.force @ state.force + self.opening @ opening
+        velocity = end_velocity(state.motion, self.scheme)
+        values: Array = D @ state.D + V @ velocity + A @ state.A + self.force @ state.force + self.opening @ opening
         return values

@@ -87,7 +87,7 @@ class Ground:
 
 @dataclass(frozen=True)
 class Excitation:
-    """Base motion and surface pressure at t = 0 and at every step, each of shape (steps + 1,).
+    """Base motion and surface pressure at the scheme's `stage_times`: t = 0 and the end of every stage of every step.
 
     Above a half-space `velocity` is the particle velocity of the wave that comes up.
     """

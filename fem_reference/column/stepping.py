@@ -1,10 +1,12 @@
-"""Histories of a meshed column by the Newmark scheme with damping.
+"""Histories of a meshed column by a scheme with damping.
 
-One step of M A + C V + K D = F from (D, V, A), with the matrix factorised once::
+One stage of M A + C V + K D = F from (D, V, A) and the stage before, with its matrix factorised once and the numbers
+of `fem_reference.problem.stages`, gamma' = gamma (1 - af) / (1 - am)::
 
-    D* = D + gg dt V + dt^2 (1/2 - alpha) A,     V* = gg V + dt (1 - delta) A
-    (M + delta dt C + alpha dt^2 K) (D1 - D) = (M + delta dt C) (D* - D) + alpha dt^2 (F1 - C V* - K D)
-    A1 = (D1 - D*) / (alpha dt^2),               V1 = V* + delta dt A1
+    D* = D + dt (d_u u + d_g Vg) + dt^2 (e_0 A + e_g Ag),     V* = u + dt (g_0 A + g_g Ag),    u = gg V
+    (M + gamma' dt C + beta' dt^2 K) (D1 - D) = (M + gamma' dt C) (D* - D)
+                                                + b dt^2 (F* - am M A - (1 - af) C V* - af C u - K D)
+    A1 = (D1 - D*) / (beta dt^2),               V1 = V* + gamma dt A1
 
 A prescribed base enters the others' equations by its displacement and acceleration, a half-space by a dashpot of its
 impedance and the load 2 rho c v of the incident wave.
@@ -24,7 +26,16 @@ from fem_reference.column.mesh import LineMesh, line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground, check_columns
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result
-from fem_reference.scheme.newmark import State, Work, acceleration, predictor
+from fem_reference.scheme.newmark import (
+    State,
+    Work,
+    acceleration,
+    discount,
+    predictor,
+    stage_load,
+    start_velocity,
+    velocity_predictor,
+)
 
 
 def solve_line(
@@ -43,7 +54,7 @@ def solve_line(
     elements, degree
         Number of elements of each stratum, and their degree.
     excitation
-        What drives it; one instant more than steps.
+        What drives it at the scheme's `stage_times`: t = 0 and the ends of all stages.
     columns
         Of `asked_columns`.
     heights
@@ -141,11 +152,6 @@ def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) ->
     return Observation(mesh.row(heights[int(number) - 1], stress=kind != DISPLACEMENT), none, none, parts)
 
 
-def velocity_predictor(state: State, scheme: Scheme) -> Array:
-    """V* = gg V + dt (1 - delta) A, the part of (7) that is known before the step [m/s]."""
-    return scheme.gg * state.V + scheme.step * (1 - scheme.delta) * state.A
-
-
 class DampedStepper:
     """The scheme on a model with damping, its matrices of the free unknowns factorised once."""
 
@@ -154,8 +160,21 @@ class DampedStepper:
         self.scheme = scheme
         self.work = work
         self.M, self.C, self.K = (matrix[model.free][:, model.free] for matrix in (model.M, model.C, model.K))
-        self.carried = csr_array(self.M + scheme.delta * scheme.step * self.C)
-        self.solve = work.factor(csr_array(self.carried + scheme.alpha * scheme.step**2 * self.K))
+        if scheme.staggered and model.impedance is not None:
+            raise ValueError(
+                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
+            )
+        self.carried = []
+        self.solves = []
+        for stage, first in enumerate(scheme.stage_matrices):
+            if first < stage:
+                self.carried.append(self.carried[first])
+                self.solves.append(self.solves[first])
+                continue
+            numbers = scheme.stages[stage]
+            carried = csr_array(self.M + numbers.damping_weight * scheme.step * self.C)
+            self.carried.append(carried)
+            self.solves.append(work.factor(csr_array(carried + numbers.stiffness_weight * scheme.step**2 * self.K)))
 
     def run(self, excitation: Excitation, rows: Sequence[Observation]) -> Array:
         """Return the observed columns at every step, shape (columns, steps)."""
@@ -170,9 +189,10 @@ class DampedStepper:
             excitation_weights[:, 0] += by_D[:, base]
             excitation_weights[:, 2] += by_A[:, base]
         state = self.start(loads[0])
-        histories = excitation_weights @ parts[1:].T
-        for n, F in enumerate(loads[1:]):
-            state = self.advance(state, F)
+        stages = len(self.scheme.stages)
+        histories = excitation_weights @ parts[stages::stages].T
+        for n in range(histories.shape[1]):
+            state = self.advance(state, loads[n * stages : (n + 1) * stages + 1])
             histories[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
         return histories
 
@@ -183,15 +203,37 @@ class DampedStepper:
             return State(zero, zero, zero)
         if np.any(self.M.diagonal() == 0):
             raise ValueError("start: must be 'zero' where a joint lies between half-space and column, got 'consistent'")
-        return State(zero, zero, self.work.factor(csr_array(self.M))(F))
+        A = self.work.factor(csr_array(self.M))(F)
+        return State(zero, start_velocity(zero, A, self.scheme), A, undiscounted=self.scheme.staggered)
 
-    def advance(self, state: State, F: Array) -> State:
-        """One step under the load `F` at its end."""
+    def advance(self, state: State, loads: Sequence[Array]) -> State:
+        """One step under the loads at its start and at the end of each stage."""
+        before = None
+        for stage in range(len(self.scheme.stages)):
+            before = self._advance_stage(state, before, loads, stage)
+        assert before is not None  # a scheme has a stage
+        return before
+
+    def _advance_stage(self, state: State, before: State | None, loads: Sequence[Array], stage: int) -> State:
         s = self.scheme
-        predicted = predictor(state, s)
-        slowed = velocity_predictor(state, s)
-        resisted = F - self.C @ slowed
-        increment = self.carried @ (predicted - state.D) + s.alpha * s.step**2 * (resisted - self.K @ state.D)
-        D = state.D + self.solve(increment)
-        A = acceleration(D, predicted, s) if s.alpha > 0 else self.solve(resisted - self.K @ D)
-        return State(D, slowed + s.delta * s.step * A, A)
+        numbers = s.stages[stage]
+        predicted = predictor(state, s, stage, before)
+        slowed = velocity_predictor(state, s, stage, before)
+        resisted = stage_load(loads, s, stage) - self.C @ self._mean_velocity(state, slowed, stage)
+        if numbers.am:
+            resisted = resisted - numbers.am * (self.M @ state.A)
+        if numbers.beta > 0:
+            weight = numbers.compliance * s.step**2
+            increment = self.carried[stage] @ (predicted - state.D) + weight * (resisted - self.K @ state.D)
+            D = state.D + self.solves[stage](increment)
+            A = acceleration(D, predicted, s, stage)
+        else:
+            D = predicted
+            strained = (1 - numbers.af) * D + numbers.af * state.D if numbers.af else D
+            A = self.solves[stage](resisted - self.K @ strained) / (1 - numbers.am)
+        return State(D, slowed + numbers.gamma * s.step * A, A)
+
+    def _mean_velocity(self, state: State, slowed: Array, stage: int) -> Array:
+        """(1 - af) V* + af u, which a dashpot feels before the new acceleration acts [m/s]."""
+        af = self.scheme.stages[stage].af
+        return (1 - af) * slowed + af * discount(state, self.scheme) * state.V if af else slowed

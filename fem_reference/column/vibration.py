@@ -1,7 +1,8 @@
 r"""Response of a meshed column to a drive that vibrates, without a step.
 
-(K + S C - W2 M) D = F with the scheme's own V = S D and A = -W2 D. In the order of their heights the unknowns make a
-narrow band, eliminated for every frequency. A base that is told how to move has the acceleration -w^2 y.
+The equations of the scheme's stages (`fem_reference.scheme.harmonic`) say (K + S C - W2 M) D = F with V = S D and
+A = -W2 D where there is one stage. In the order of their heights the unknowns make a narrow band, eliminated for every
+frequency. A base with a prescribed motion has the acceleration -w^2 y.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from fem_reference.column.mesh import line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Ground, check_columns
 from fem_reference.column.stepping import Model, row_of
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.harmonic import Complex, rates, squares
+from fem_reference.scheme.harmonic import Complex, StepSystem, squares, step_system
 
 
 def line_response(
@@ -55,12 +56,12 @@ def line_response(
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
     drive: Complex = np.zeros((4, len(w)), complex)
     drive[:] = [[0], [0], [0], [1]] if at_top else np.array([np.ones_like(w), 1j * w, -w * w, 0 * w])
-    W2 = squares(frequencies, scheme, exact)
-    S = rates(frequencies, scheme, exact)
-    D = np.zeros((mesh.size, len(w)), complex)
-    D[model.free] = _solutions(model, np.asarray(model.loads() @ drive, complex), W2, S)
-    V = S * D
-    A = -W2 * D
+    system = exact_system(w, squares(frequencies, scheme, exact)) if exact else step_system(frequencies, scheme)
+    X = _solutions(model, np.asarray(model.loads() @ drive, complex), system)
+    D, V, A = np.zeros((3, mesh.size, len(w)), complex)
+    D[model.free] = X[:, -1]
+    V[model.free] = np.einsum("fs,usf->uf", system.velocity, X)
+    A[model.free] = np.einsum("fs,usf->uf", system.acceleration, X)
     if ground.impedance is None:
         D[model.base] = drive[0]
         A[model.base] = drive[2]
@@ -68,22 +69,35 @@ def line_response(
     return dict(zip(columns, observed, strict=True))
 
 
-def _solutions(model: Model, loads: Complex, W2: Complex, S: Complex) -> Complex:
-    """Free unknowns at every frequency, shape (unknowns, frequencies)."""
+def exact_system(w: Array, W2: Complex) -> StepSystem:
+    """The equation of motion itself as the only stage: v = i w x and a = -W2 x."""
+    one = np.ones((len(w), 1), complex)
+    rate = 1j * w[:, None]
+    square = W2[:, None]
+    return StepSystem(-square[:, None], rate[:, None], one[:, None], one, -square, rate)
+
+
+def _solutions(model: Model, loads: Complex, system: StepSystem) -> Complex:
+    """Free unknowns of all stages at every frequency, shape (unknowns, stages, frequencies)."""
     M, C, K = (coo_array(part[model.free][:, model.free]) for part in (model.M, model.C, model.K))
     order = reverse_cuthill_mckee((abs(M) + abs(K)).tocsr(), symmetric_mode=True)
     place = np.argsort(order)
     # at least one diagonal on each side, also of one unknown: older SciPy look for the main one in the second row
     width = max(int(np.max(np.abs(place[part.row] - place[part.col]), initial=1)) for part in (M, K))
-    solutions = np.empty_like(loads)
-    for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
-        band = np.zeros((2 * width + 1, len(order)), complex)
-        for part, factor in ((K, 1.0), (C, s), (M, -w2)):
-            row = place[part.row]
-            col = place[part.col]
-            band[width + row - col, col] += factor * part.data
+    stages = system.load.shape[1]
+    width = (width + 1) * stages - 1  # the stages of an unknown stand together
+    solutions = np.empty((len(order), stages, loads.shape[1]), complex)
+    for i in range(loads.shape[1]):
+        band = np.zeros((2 * width + 1, len(order) * stages), complex)
+        for part, factors in ((K, system.stiffness[i]), (C, system.damping[i]), (M, system.inertia[i])):
+            for row_stage, col_stage in np.ndindex(stages, stages):
+                row = place[part.row] * stages + row_stage
+                col = place[part.col] * stages + col_stage
+                band[width + row - col, col] += factors[row_stage, col_stage] * part.data
+        right = loads[order, i, None] * system.load[i]
         try:
-            solutions[order, i] = solve_banded((width, width), band, loads[order, i], check_finite=False)
+            solution = solve_banded((width, width), band, right.ravel(), check_finite=False)
+            solutions[order, :, i] = solution.reshape(right.shape)
         except np.linalg.LinAlgError:  # a resonance that nothing damps
-            solutions[:, i] = np.inf
+            solutions[:, :, i] = np.inf
     return solutions

@@ -1,4 +1,4 @@
-"""The block as a bar on a spring: exact in space, Newmark or exact in time.
+"""The block as a bar on a spring: exact in space, in time a scheme's or exact.
 
 With mu = 0, a vertical load and a distributed foundation every vertical line of an upright rectangle
 moves alike: a bar of length h and stiffness EA = E W per unit thickness on a base spring k = 2 p, with
@@ -29,6 +29,7 @@ from fem_reference.problem.bar import no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
 from fem_reference.scheme import modal as bar_scheme
+from fem_reference.scheme.staged import principal_first, weighted_response
 
 FIRST = 256
 """Modes of the first attempt."""
@@ -115,15 +116,14 @@ class Bar:
         weight = shares("load", b, self.kappa)
         modes = []
         for i, w in enumerate(b / self.travel):
-            pair = bar_scheme.roots(float(w) * scheme.step, scheme)
-            pair = pair[np.argsort(-np.abs(pair), kind="stable")]
-            modes.append(Mode(float(w), float(weight[i]), np.append(pair, 0.0)))
+            roots = principal_first(bar_scheme.roots(float(w) * scheme.step, scheme))
+            modes.append(Mode(float(w), float(weight[i]), np.resize(np.append(roots, 0.0), 3)))
         return tuple(modes)
 
     def solve(
         self, scheme: Scheme, steps: int, columns: tuple[str, ...] = ("displacement", "contact_pressure")
     ) -> Result:
-        """History under the Newmark scheme; row 0 is step 1.
+        """History under a scheme; row 0 is step 1.
 
         Raises
         ------
@@ -148,10 +148,15 @@ class Bar:
         b = wave_numbers(self.kappa, count)
         weights = np.array([shares(name, b, self.kappa) for name in columns])
         cut = np.vstack([weights * cut_off(count, count), weights * cut_off(count, count // 2)])
-        at_once = replace(scheme, start="zero") if self.ramp else scheme  # no load acts at t = 0
-        history = bar_scheme.weighted_response(b / self.travel * scheme.step, cut, at_once, steps)
-        if self.ramp:
-            history = ramped(history, self.ramp / scheme.step)
+        omega = b / self.travel * scheme.step
+        if self.ramp and scheme.table is not None:
+            acting = np.minimum(scheme.stage_times(steps) / self.ramp, 1.0)
+            history = weighted_response(omega, cut, scheme, steps, acting)
+        elif self.ramp:
+            at_once = replace(scheme, start="zero")  # no load acts at t = 0
+            history = ramped(bar_scheme.weighted_response(omega, cut, at_once, steps), self.ramp / scheme.step)
+        else:
+            history = bar_scheme.weighted_response(omega, cut, scheme, steps)
         fine = history[: len(columns)]
         coarse = history[len(columns) :]
         error = np.abs(fine - coarse).max(axis=1, initial=0.0)

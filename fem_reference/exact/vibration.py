@@ -31,7 +31,13 @@ def response(
     ValueError
         If gg = 0 where the response that is exact in time is asked for.
     """
-    W2, factor = answering(frequencies, scheme, exact)
+    parts = answering(frequencies, scheme, exact)
+    amplitudes = [(factor, _undamped(bar, W2)) for W2, factor in parts]
+    return {name: np.asarray(sum(factor * part[name] for factor, part in amplitudes)) for name in columns}
+
+
+def _undamped(bar: Bar, W2: Complex) -> dict[str, Complex]:
+    """Amplitudes of all columns at squared frequencies W2."""
     root = bar.travel * np.sqrt(W2)
     theta: Complex = np.where(root.imag > 0, -root, root)
     whole = np.exp(-1j * theta)
@@ -41,12 +47,11 @@ def response(
     half = np.exp(-0.5j * theta)
     middle = half * ((1 + whole) / 2 + bar.kappa / 2 * _sine(theta / 2, whole))
     with np.errstate(divide="ignore", invalid="ignore"):
-        amplitudes = {
+        return {
             "displacement": -bar.pressure * bar.height / bar.young * middle / below,
             "contact_pressure": bar.pressure * bar.kappa * whole / below,
             "horizontal_displacement": np.zeros_like(theta),
         }
-    return {name: factor * amplitudes[name] for name in columns}
 
 
 def _sine(theta: Complex, square: Complex) -> Complex:

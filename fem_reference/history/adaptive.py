@@ -83,6 +83,8 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
     check_request(steps, tuple(name for name in columns if name not in ADAPTIVE_COLUMNS))
     if not 0 <= floor <= 1:
         raise ValueError(f"floor: must be from 0 to 1, got {floor!r}")
+    if scheme.table is not None:
+        raise ValueError(f"scheme: must be 'newmark' where the discount adapts, got {scheme.name!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
     if scheme.damped or problem.motion is not None or problem.ramp:
@@ -103,7 +105,7 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
     loss = np.zeros(steps)
     M = stepper.M
     K = stepper.K
-    F = stepper.F
+    loads = (stepper.F, stepper.F)
     before = energy = 0.0
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
@@ -113,7 +115,7 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
                 discount[n] = max(floor, math.sqrt(energy / before))
                 loss[n] = (1 - discount[n] ** 2) * energy
             scheme = replace(stepper.scheme, gg=float(discount[n]))
-            state = advance(state, F, scheme, lambda x: M @ x, lambda x: K @ x, stepper.solve)
+            state = advance(state, loads, scheme, lambda x: M @ x, lambda x: K @ x, stepper.solves)
             history[:, n] = rows @ state.D
             before = energy
             energy = float(state.V @ (M @ state.V)) / 2

@@ -20,7 +20,7 @@ from scipy.linalg import eigh_tridiagonal
 
 from fem_reference.history.krylov import KrylovSpace
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.modal import applicable, determinant
+from fem_reference.scheme.modal import applicable, roots
 from fem_reference.scheme.newmark import State, Stepper, advance, initial_acceleration
 
 Extended = NDArray[np.longdouble]
@@ -69,6 +69,8 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
     """
     if reason := applicable(stepper.scheme):
         return reason
+    if any(solve is not stepper.solve for solve in stepper.solves):
+        return "the stages of the scheme have different matrices"
     capacity = min(LARGEST, len(stepper.F), steps // PAID)
     if capacity < min(FEWEST, len(stepper.F)):
         return "few steps"
@@ -108,7 +110,7 @@ def _cancelled(modes: Modes, history: Array, duals: Array, scheme: Scheme) -> fl
     A shape is right to one rounding of its own size in the norm of S; a row sees that times its dual norm
     (row' S^-1 row)^1/2, and the motion is about as large as the static one.
     """
-    size = np.linalg.norm(modes.load * scheme.alpha / modes.stiffness)
+    size = np.linalg.norm(modes.load * scheme.stages[0].stiffness_weight / modes.stiffness)
     largest = np.max(np.abs(history), axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.nanmax(np.finfo(float).eps * duals * size / largest, initial=0.0))
@@ -144,16 +146,17 @@ def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> M
 def _phase_error(kappa: float, exact: float, scheme: Scheme, steps: int) -> float:
     """Phase that a mode loses before it is damped because its stiffness has lost digits, as plain steps lose them."""
     digits = max(abs(kappa - exact) / exact, np.finfo(float).eps / exact)
-    modulus = float(np.sqrt(determinant(np.array(exact / scheme.alpha), scheme)))
+    omega = np.sqrt(exact / scheme.stages[0].stiffness_weight / (1 - exact))
+    modulus = float(abs(roots(float(omega), scheme)[0]))
     lasting = min(steps, 1 / (1 - modulus)) if modulus < 1 else steps
-    return float(digits * np.sqrt(exact / scheme.alpha) / 2 * lasting)
+    return float(digits * omega / 2 * lasting)
 
 
 def _stiffness(stepper: Stepper, shapes: Array) -> Array:
     """Alpha dt^2 x' K x of shapes x, one a row, in extended precision."""
     extended = shapes.astype(np.longdouble)
     forces = (stepper.K.astype(np.longdouble) @ extended.T).T
-    scale = stepper.scheme.alpha * stepper.scheme.step**2
+    scale = stepper.scheme.stages[0].stiffness_weight * stepper.scheme.step**2
     kappa: Array = (scale * np.sum(extended * forces, axis=1)).astype(float)
     return kappa
 
@@ -180,11 +183,13 @@ def _one_step(modes: Modes, scheme: Scheme) -> tuple[Any, Array]:
     kappa: Any = modes.stiffness.astype(np.longdouble)
     zero: Any = np.zeros_like(tau)
     one: Any = np.ones_like(tau)
-    K = kappa / scheme.alpha
+    K = kappa / scheme.stages[0].stiffness_weight
+    loads = [one] * (len(scheme.stages) + 1)
+    solves = [lambda x: x] * len(scheme.stages)
     images = []
     for unit in np.eye(4)[:, :3]:
         state = State(*(x * one for x in unit))
-        new = advance(state, one, scheme, lambda x: tau * x, lambda x: K * x, lambda x: x)
+        new = advance(state, loads, scheme, lambda x: tau * x, lambda x: K * x, solves)
         images.append(np.array([new.D, new.V, new.A]))
     step: Any = np.zeros((len(tau), 4, 4), np.longdouble)
     step[:, 3, 3] = 1

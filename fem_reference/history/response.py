@@ -1,9 +1,9 @@
 r"""Response of the block's mesh to a load that vibrates, without a step.
 
-(K - W2 M) D = F at the scheme's complex squared frequencies W2. A mesh that is one column of elements is a narrow
-band and is eliminated for every frequency. For others a `KrylovSpace` of the stiffness itself, V' K V = 1 and
-V' M V = T, holds all frequencies at once: D = V' y with (1 - W2 T) y = |F| e_1. The next vector times W2 beta y_m is
-what remains; where it is not small, the sparse matrix is factorised for the frequency.
+(K - W2 M) D = F at the scheme's complex squared frequencies W2, summed where a step has several stages. A mesh that is
+one column of elements is a narrow band and is eliminated for every frequency. For others a `KrylovSpace` of the
+stiffness itself, V' K V = 1 and V' M V = T, holds all frequencies at once: D = V' y with (1 - W2 T) y = |F| e_1. The
+next vector times W2 beta y_m is what remains; where it is not small, the sparse matrix is factorised for the frequency.
 """
 
 from __future__ import annotations
@@ -67,10 +67,11 @@ def response(
     """
     check_request(1, tuple(columns))
     model = build(problem) if model is None else model
-    W2, factor = answering(frequencies, scheme, exact)
+    parts = answering(frequencies, scheme, exact)
     F = problem.load_size * model.F if along is None else model.base_force @ np.asarray(along, float)
     rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(F))
-    amplitudes = dict(zip(columns, observed(model, F, rows, W2) * factor, strict=True))
+    values = sum(observed(model, F, rows, W2) * factor for W2, factor in parts)
+    amplitudes = dict(zip(columns, np.asarray(values), strict=True))
     if along is not None and "contact_pressure" in amplitudes:
         amplitudes["contact_pressure"] = amplitudes["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
     return amplitudes

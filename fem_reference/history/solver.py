@@ -55,7 +55,7 @@ def solve(
     ready = time.perf_counter()
     small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
     if isinstance(small, str):
-        instants = scheme.step * np.arange(steps + 1.0)
+        instants = scheme.stage_times(steps)
         moved = None if problem.motion is None else problem.motion(instants)
         shares = problem.load_shares(instants) if problem.ramp else None
         history = run(stepper, model, steps, tuple(columns), writer, moved, shares)
@@ -118,26 +118,28 @@ def run(
 ) -> Array:
     """Observe every step for a load of unit size; shape (columns, steps).
 
-    `moved` is the displacement of the base at t = 0, dt, ..., shape (steps + 1, 2) [m], None where it is fixed, and
-    `shares` is what acts of the load then, shape (steps + 1,), None where it is constant.
+    `moved` is the displacement of the base at the scheme's `stage_times`, shape (instants, 2) [m], None where it is
+    fixed, and `shares` is what acts of the load then, shape (instants,), None where it is constant.
     """
     rows = _rows(model, columns)
     history = np.empty((len(columns), steps))
     forces = None if shares is None else shares[:, None] * model.F
     if moved is not None:
         forces = (model.F if forces is None else forces) + moved @ model.base_force.T
+    stages = len(stepper.scheme.stages)
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
         state = stepper.start(None if forces is None else forces[0])
         for n in range(steps):
-            state = stepper.advance(state, None if forces is None else forces[n + 1])
+            loads = None if forces is None else forces[n * stages : (n + 1) * stages + 1]
+            state = stepper.advance(state, loads)
             history[:, n] = rows @ state.D
             if writer is not None:
                 writer.record(n + 1, state.D)
     if writer is not None:
         writer.close()
     if moved is not None and "contact_pressure" in columns:
-        history[columns.index("contact_pressure")] += moved[1:] @ model.base_pressure
+        history[columns.index("contact_pressure")] += moved[stages::stages] @ model.base_pressure
     return history
 
 

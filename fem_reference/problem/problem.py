@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.motion import Motion
+from fem_reference.problem.stages import Stage, StageTable, newmark_stage
 
 Array = NDArray[np.float64]
 
@@ -18,6 +19,8 @@ HYPOTHESES = ("plane stress", "plane strain")
 FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
 CELLS = ("quadrilaterals", "triangles")
 STARTS = ("zero", "consistent")
+SAME_MATRIX = 1e-15
+"""Relative difference of two stages' weights, by rounding, below which they share a matrix."""
 
 
 def _require(condition: bool, field: str, rule: str, value: object) -> None:
@@ -257,7 +260,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Scheme:
-    """Parameters of the Newmark scheme with kinetic damping (paper, equations (5) to (7)).
+    """A time scheme with kinetic damping: Newmark's (paper, equations (5) to (7)), or one given by a table of stages.
 
     Raises
     ------
@@ -265,27 +268,66 @@ class Scheme:
         For a value out of its range, naming field, rule and value.
     """
 
-    alpha: float  # weight of the new acceleration in the displacement [-]
-    delta: float  # weight of the new acceleration in the velocity [-]
+    alpha: float  # Newmark's weight of the new acceleration in the displacement [-]; NaN for a scheme with a table
+    delta: float  # Newmark's weight of the new acceleration in the velocity [-]; NaN for a scheme with a table
     gg: float  # factor on the velocity at the start of each step [-], 0 to 1
     step: float  # time step dt [s]
     start: Literal["zero", "consistent"] | str = "zero"  # initial acceleration: A0 = 0 as the paper, or M A0 = F
     mass_damping: float = 0.0  # a0 of C = a0 M + a1 K [1/s]
     stiffness_damping: float = 0.0  # a1 [s]
+    table: StageTable | None = None  # stages of a scheme other than Newmark's: see `named_scheme`
 
     def __post_init__(self) -> None:
-        for field in ("alpha", "delta", "gg", "step"):
+        for field in ("gg", "step"):
             _finite(field, getattr(self, field))
-        _require(self.alpha >= 0, "alpha", "must not be negative", self.alpha)
-        _require(self.delta >= 0, "delta", "must not be negative", self.delta)
+        for field in ("alpha", "delta") if self.table is None else ():
+            _finite(field, getattr(self, field))
+            _require(getattr(self, field) >= 0, field, "must not be negative", getattr(self, field))
         _require(0 <= self.gg <= 1, "gg", "must be from 0 to 1", self.gg)
         _require(self.step > 0, "step", "must be positive", self.step)
         _require(self.start in STARTS, "start", f"must be one of {STARTS}", self.start)
         for field in ("mass_damping", "stiffness_damping"):
             value = getattr(self, field)
             _require(math.isfinite(value) and value >= 0, field, "must be finite and not negative", value)
+            _require(self.table is None or value == 0, field, "must be 0 for a scheme other than Newmark's", value)
+        consistent = self.start == "consistent" or not self.staggered
+        _require(consistent, "start", f"must be 'consistent' for {self.name!r}", self.start)
+
+    @property
+    def name(self) -> str:
+        """Name of the scheme, among `fem_reference.SCHEMES`."""
+        return "newmark" if self.table is None else self.table.name
+
+    @cached_property
+    def stages(self) -> tuple[Stage, ...]:
+        """Stages of a step, in their order."""
+        return (newmark_stage(self.alpha, self.delta),) if self.table is None else self.table.stages
+
+    @cached_property
+    def stage_matrices(self) -> tuple[int, ...]:
+        """Number of the first stage that has the matrix of each stage: each is factorised once."""
+        weights = np.array([(stage.stiffness_weight, stage.damping_weight) for stage in self.stages])
+        first = [int(np.argmax(np.all(np.isclose(weights, row, rtol=SAME_MATRIX, atol=0), axis=1))) for row in weights]
+        return tuple(first)
+
+    @property
+    def staggered(self) -> bool:
+        """Whether the velocity is that of the half step before, and the first step has a discount of 1."""
+        return self.table is not None and self.table.staggered
+
+    @property
+    def explicit(self) -> bool:
+        """Whether a stage needs no stiffness in its matrix."""
+        return any(stage.beta == 0 for stage in self.stages)
 
     @property
     def damped(self) -> bool:
         """Whether there is viscous damping."""
         return self.mass_damping > 0 or self.stiffness_damping > 0
+
+    def stage_times(self, steps: int) -> Array:
+        """Instants at which the stages of so many steps end, the first one t = 0, shape (steps * stages + 1,) [s]."""
+        if len(self.stages) == 1:
+            return self.step * np.arange(steps + 1.0)
+        ends = np.array([stage.end for stage in self.stages])
+        return np.append(0.0, (self.step * (np.arange(float(steps))[:, None] + ends)).ravel())

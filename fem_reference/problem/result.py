@@ -35,7 +35,7 @@ class Mode:
 
     frequency: float  # natural frequency w [rad/s]
     share: float  # share of the static response, (phi'F)^2 / (w^2 F'D_static) [-]
-    eigenvalues: NDArray[np.complex128]  # of the mode's own one-step operator, greatest modulus first, shape (3,)
+    eigenvalues: NDArray[np.complex128]  # of the mode's own step, the complex pair first, shape (3,)
 
 
 def check_request(steps: int, columns: tuple[str, ...]) -> None:

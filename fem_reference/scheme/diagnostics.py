@@ -37,7 +37,7 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Mod
     return Diagnostics(
         condition_number=float(np.linalg.cond(S.toarray())) if small else float("nan"),
         scaled_residual=float(np.max(residual)),
-        spectral_radius=max(float(np.abs(eigenvalues(w / scheme.step, scheme)[0])) for w in omegas),
+        spectral_radius=max(float(np.max(np.abs(eigenvalues(w / scheme.step, scheme)))) for w in omegas),
         predicted_radius=max(float(np.max(np.abs(roots(float(w), scheme)))) for w in omegas),
         largest_omega=float(np.max(omegas)),
     )

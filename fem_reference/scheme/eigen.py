@@ -12,6 +12,7 @@ from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode
 from fem_reference.scheme.newmark import State, Stepper, Work
+from fem_reference.scheme.staged import principal_first
 
 DENSE = 400
 """Unknowns up to which all modes are found by a dense solver."""
@@ -80,7 +81,7 @@ def _start_vector(size: int) -> Array:
 
 
 def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
-    """Eigenvalues of the step's operator on (D, dt V, dt^2 A) of one free mode, greatest modulus first.
+    """Eigenvalues of the step's operator on (D, dt V, dt^2 A) of one free mode, the complex pair first.
 
     The operator is made by applying the scheme's own step to unit states.
     """
@@ -93,7 +94,7 @@ def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
         new = stepper.advance(State(np.array([D]), np.array([V / dt]), np.array([A / dt**2])))
         columns.append([new.D[0], dt * new.V[0], dt**2 * new.A[0]])
     roots: NDArray[np.complex128] = np.linalg.eigvals(np.array(columns).T).astype(complex)
-    return roots[np.argsort(-np.abs(roots), kind="stable")]
+    return principal_first(roots)
 
 
 def highest_frequency(problem: Problem, full: bool = False, model: Model | None = None) -> float:

@@ -1,4 +1,4 @@
-"""The Newmark scheme on every mode of a continuum, from trace and determinant.
+"""A scheme on every mode of a continuum, Newmark's from trace and determinant.
 
 For Omega = w dt, beta = 1 + alpha Omega^2 and h = Omega^2 / beta a step has the eigenvalues 0 and the
 roots of lambda^2 - trace lambda + det = 0, where::
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme import viscous
+from fem_reference.scheme import staged, viscous
 
 Complex = NDArray[np.complex128]
 
@@ -43,6 +43,8 @@ def applicable(scheme: Scheme) -> str | None:
 
     A continuum has modes of every frequency: the roots must stay in the unit disk up to h = 1 / alpha.
     """
+    if scheme.table is not None:
+        return staged.applicable(scheme)
     if scheme.damped:
         return viscous.applicable(scheme)
     if scheme.alpha == 0:
@@ -94,7 +96,9 @@ def spectrum(omega: Array, scheme: Scheme) -> Spectrum:
 
 
 def roots(omega: float, scheme: Scheme) -> Complex:
-    """The two roots of one mode, shape (2,)."""
+    """Roots of one mode: the two of Newmark's scheme that are not zero, the three of a scheme with a table."""
+    if scheme.table is not None:
+        return staged.roots(omega, scheme)
     if scheme.damped:
         return viscous.roots(omega, scheme)
     s = spectrum(np.array([omega]), scheme)
@@ -182,6 +186,8 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     ndarray
         Shape (quantities, steps).
     """
+    if scheme.table is not None:
+        return staged.weighted_response(omega, weights, scheme, steps)
     if scheme.damped:
         return viscous.weighted_response(omega, weights, scheme, steps)
     # On a soft spring the lowest mode barely moves and is all that moves: 1 - x would cancel there.

@@ -22,8 +22,8 @@ def damped_again(monkeypatch):
     """Gg stands in a shorter step as in a whole one."""
     real = step.set_length
 
-    def faulty(block, shear_law, ratio, length):
-        real(block, shear_law, ratio, length)
+    def faulty(block, shear_law, stage, ratio, length):
+        real(block, shear_law, stage, ratio, length)
         length.numbers[1] = block.gg
 
     monkeypatch.setattr(step, "set_length", faulty)
@@ -33,8 +33,8 @@ def velocity_twice(monkeypatch):
     """A step that is repeated begins with the velocity of the failed one."""
     real = step.accept
 
-    def faulty(block, shear_law, length, scheme, state, after):
-        real(block, shear_law, length, scheme, state, after)
+    def faulty(block, shear_law, stage, length, state, after):
+        real(block, shear_law, stage, length, state, after)
         if length.numbers[0] == 1:
             state.P[:] = after.P
 

@@ -49,10 +49,10 @@ def test_nine_digits_are_kept(solver: str, values: dict[str, Any], step: float, 
 class AccelerationFirst(Stepper):
     """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
 
-    def advance(self, state: State, F: Any = None) -> State:
+    def advance(self, state: State, loads: Any = None) -> State:
         s = self.scheme
         ahead = predictor(state, s)
-        A = self.solve((self.F if F is None else F) - self.K @ ahead)
+        A = self.solve((self.F if loads is None else loads[-1]) - self.K @ ahead)
         return State(ahead + s.alpha * s.step**2 * A, velocity(state, A, s), A)
 
 

@@ -35,6 +35,12 @@ CASES = [
     ({"load.pressure": 0.0, "load.traction": 2e9}, "load.traction", "strain", "write traction in Pa"),
     ({"load.gravity": 9.81e5, "block.young": 3e10}, "load.gravity", "strain", "write gravity = 9.81"),
     ({"contact": SLIDING | {"friction": 0.577}}, "contact.friction", "friction", "write friction = 29.98"),
+    (
+        {"contact": SLIDING | {"damping_ratio": 5.0}},
+        "contact.damping_ratio",
+        "damping ratio",
+        "write damping_ratio = 0.05",
+    ),
     ({"contact": SLIDING | {"friction": 4.9}}, "contact.friction", "friction", "write the angle in degrees"),
 ]
 PLAUSIBLE = [

@@ -33,6 +33,7 @@ UNLOCKED = {"contact__law": "unilateral"}
 SLIDING = UNLOCKED | {"contact__friction": 30.0}
 AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
 RIGID = UNLOCKED | {"contact__stiffness": math.inf, "contact__shear_stiffness": 0.0}
+IMPACT = {"contact__rule": "impact", "contact__restitution": 0.5}
 REFUSED = [
     ({"block__young": -1.0}, "block.young: must be greater than 0, got -1.0"),
     ({"block__young": 0}, "block.young: must be greater than 0, got 0"),
@@ -79,7 +80,7 @@ REFUSED = [
     ({"block__velocity": -1.0}, 'block: velocity goes with contact.law = "unilateral" only'),
     ({"contact__law": "open"}, "contact.law: must be 'locked' or 'unilateral', got 'open'"),
     ({"contact__rule": "implicit"}, 'contact: rule goes with law = "unilateral" only'),
-    (UNLOCKED | {"contact__rule": "explicit"}, "'newmark', 'implicit' or 'energy-conserving', got 'explicit'"),
+    (UNLOCKED | {"contact__rule": "explicit"}, "'energy-conserving', 'impact' or 'augmented', got 'explicit'"),
     (
         UNLOCKED | AVERAGE | {"contact__rule": "energy-conserving", "contact__band": [1e-6, 0.0]},
         'contact: band goes with rule = "newmark"',
@@ -98,6 +99,48 @@ REFUSED = [
         RIGID | AVERAGE | {"contact__rule": "energy-conserving"},
         'stiffness must be finite with rule = "energy-conserving"',
     ),
+    ({"time__scheme": "hht"}, 'time: rho_inf is required with scheme = "hht", got nothing'),
+    ({"time__scheme": "hht", "time__rho_inf": 0.4}, 'time: rho_inf must be at least 0.5 with scheme = "hht", got 0.4'),
+    ({"time__scheme": "wbz", "time__rho_inf": 1.1}, "time.rho_inf: must be less than or equal to 1, got 1.1"),
+    ({"time__rho_inf": 0.5}, 'time: rho_inf goes with scheme = "chung-hulbert" or "hht" or "wbz" or "composite" only'),
+    ({"time__split": 0.5}, 'time: split goes with scheme = "composite" only, got 0.5 without it'),
+    ({"time__scheme": "composite", "time__split": 1.0}, "time.split: must be less than 1, got 1.0"),
+    (
+        {"time__scheme": "composite", "time__alpha": 0.5},
+        'alpha is Newmark\'s and does not go with scheme = "composite"',
+    ),
+    (
+        {"time__scheme": "composite", "time__delta": 1.0},
+        'delta is Newmark\'s and does not go with scheme = "composite"',
+    ),
+    ({"time__scheme": "leapfrog"}, 'time: start must be "consistent" with scheme = "leapfrog", got "zero"'),
+    ({"time__scheme": "houbolt"}, "time.scheme: must be 'newmark', 'chung-hulbert', 'hht', 'wbz', 'leapfrog' or"),
+    ({"contact__damping_ratio": 0.1}, 'contact: damping_ratio goes with law = "unilateral" only, got 0.1'),
+    (UNLOCKED | {"contact__damping_ratio": -0.1}, "contact.damping_ratio: must be greater than or equal to 0"),
+    (UNLOCKED | {"contact__restitution": 1.1}, "contact.restitution: must be less than or equal to 1, got 1.1"),
+    (UNLOCKED | {"contact__restitution": 0.0}, "contact: restitution must be greater than 0 of dashpots, got 0"),
+    (
+        UNLOCKED | {"contact__restitution": 0.5, "contact__damping_ratio": 0.1},
+        "contact: damping_ratio and restitution exclude each other, got both",
+    ),
+    (SLIDING | {"contact__damping_ratio": 0.1}, "contact: friction does not go with dashpots, got 30 deg"),
+    (RIGID | {"contact__damping_ratio": 0.1}, "contact: stiffness must be finite where dashpots stand beside it"),
+    (
+        UNLOCKED | AVERAGE | {"contact__rule": "implicit", "contact__damping_ratio": 0.1},
+        'contact: damping_ratio goes with rule = "newmark" only, got 0.1',
+    ),
+    (UNLOCKED | AVERAGE | IMPACT, 'contact: stiffness must be inf with rule = "impact", got '),
+    (
+        RIGID | AVERAGE | {"contact__rule": "impact"},
+        'contact: restitution is required with rule = "impact", got nothing',
+    ),
+    (RIGID | IMPACT, "steps by Moreau's theta: time.alpha must be theta^2"),
+    (
+        RIGID | IMPACT | {"time__scheme": "composite"},
+        'contact: rule = \'impact\' goes with time.scheme = "newmark", got "composite"',
+    ),
+    (RIGID | {"contact__rule": "augmented"}, 'contact: stiffness must be finite with rule = "augmented", got inf'),
+    (UNLOCKED | {"contact__penetration": 1e-6}, 'contact: penetration goes with rule = "augmented" only, got 1e-06'),
     (RIGID | {"contact__stiffness": -math.inf}, "contact.stiffness: must be a finite number"),
     (RIGID | {"contact__stiffness": math.nan}, "contact.stiffness: must be a finite number"),
     ({"run__geometry": "updated"}, 'run: geometry goes with contact.law = "unilateral" only'),
@@ -141,6 +184,40 @@ REFUSED = [
     ({"sweep": {"run.solvers": [["dda"]]}}, "sweep: must name a key of a table"),
     ({"sweep": {"time": [1]}}, "sweep: must name a key of a table"),
 ]
+
+
+def test_a_scheme_refuses_the_numbers_of_newmarks() -> None:
+    time = parse(time__scheme="chung-hulbert", time__rho_inf=0.8).time
+    for weight in ("alpha", "delta"):
+        with pytest.raises(InputError) as caught:
+            getattr(time, weight)
+        assert caught.value.field == f"time.{weight}"
+    assert (parse().time.alpha, parse().time.delta) == (0.5, 1.0)
+
+
+def test_a_scheme_that_is_set_takes_out_the_numbers_of_the_one_before() -> None:
+    scene = parse(time__alpha=0.25, time__delta=0.5)
+    hht = scene.with_values({"time.scheme": "hht", "time.rho_inf": 0.75})
+    assert (hht.time.scheme, hht.time.rho_inf) == ("hht", 0.75)
+    composite = hht.with_values({"time.scheme": "composite", "time.split": 0.5})
+    assert (composite.time.rho_inf, composite.time.split) == (0.75, 0.5)
+    assert composite.with_values({"time.scheme": "wbz"}).time.split is None
+    leapfrog = composite.with_values({"time.scheme": "leapfrog", "time.start": "consistent"})
+    assert (leapfrog.time.rho_inf, leapfrog.time.split) == (None, None)
+    newmark = composite.with_values({"time.scheme": "newmark", "time.alpha": 0.3})
+    assert (newmark.time.alpha, newmark.time.rho_inf) == (0.3, None)
+
+
+def test_dashpots_by_restitution_and_by_damping_ratio_replace_each_other() -> None:
+    scene = parse(**UNLOCKED, contact__restitution=0.5).with_values({"contact.damping_ratio": 0.2})
+    assert (scene.contact.restitution, scene.contact.damping_ratio) == (None, 0.2)
+    assert scene.with_values({"contact.restitution": 0.3}).contact.damping_ratio == 0
+
+
+@pytest.mark.parametrize("theta", [0.5, 0.6, 1.0])
+def test_the_impact_law_takes_moreaus_theta(theta: float) -> None:
+    weights = {"time__alpha": theta**2, "time__delta": 2 * theta - 0.5}
+    assert parse(**RIGID, **IMPACT, **weights).contact.restitution == 0.5
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])

@@ -28,6 +28,10 @@ CONSERVING = OPEN | AVERAGE | {"contact.rule": "energy-conserving", "contact.she
 RIGID = OPEN | {"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0}
 LAGGED = FRICTION | {"contact.rules": "lagged"}
 SUB_BLOCKS = {"block.subdivide": [2, 1]}
+DASHPOTS = OPEN | {"contact.damping_ratio": 0.2}
+IMPACT = OPEN | AVERAGE | {"contact.stiffness": math.inf, "contact.rule": "impact", "contact.restitution": 0.5}
+AUGMENTED = OPEN | {"contact.rule": "augmented"}
+COMPOSITE = {"time.scheme": "composite"}
 
 SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few others as may be
     features.SUB_BLOCKS: SUB_BLOCKS,
@@ -46,6 +50,17 @@ SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few ot
     features.ADAPTIVE: KINETIC,
     features.IMPLICIT: IMPLICIT,
     features.CONSERVING: CONSERVING,
+    features.DASHPOTS: DASHPOTS,
+    features.IMPACT: IMPACT,
+    features.AUGMENTED: AUGMENTED,
+    features.GENERALISED_ALPHA: {"time.scheme": "hht", "time.rho_inf": 0.75},
+    features.LEAPFROG: {"time.scheme": "leapfrog", "time.start": "consistent"},
+    features.COMPOSITE: COMPOSITE,
+}
+# Newmark's scheme is stepped by all; others by these, and by none of what is exact in time, which takes them all.
+OTHER_SCHEMES = {
+    *("dda", "fem", "bar"),
+    *("continuum", "layers", "block-events", "bar-events", "column-events", "bars-events"),
 }
 TAKES: dict[str, set[str]] = {
     features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum"},
@@ -69,6 +84,12 @@ TAKES: dict[str, set[str]] = {
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
     features.CONSERVING: {"dda", "block-events", "bar-events"},
+    features.DASHPOTS: {"dda", "block-events"},
+    features.IMPACT: {"dda", "block-events"},
+    features.AUGMENTED: {"dda"},  # its limit is a rigid stop that turns back as its steps happen to
+    features.GENERALISED_ALPHA: OTHER_SCHEMES,
+    features.LEAPFROG: OTHER_SCHEMES,
+    features.COMPOSITE: OTHER_SCHEMES,
 }
 OF_CONTACTS: dict[str, dict[str, Any]] = {  # what a column of two blocks on contacts has beside them
     features.UNILATERAL_COLUMN: {},
@@ -88,6 +109,14 @@ APART = [  # what a solver takes each by itself: solver, values, the two that ar
     ("dda", TURNING | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.ROTATION),
     ("dda", TURNING | IMPLICIT, features.IMPLICIT, features.ROTATION),
     ("dda", MOVED | CONSERVING, features.BASE_MOTION, features.CONSERVING),
+    ("dda", SUB_BLOCKS | DASHPOTS, features.SUB_BLOCKS, features.DASHPOTS),
+    ("dda", MOVED | IMPACT, features.BASE_MOTION, features.IMPACT),
+    ("dda", SUB_BLOCKS | AUGMENTED, features.SUB_BLOCKS, features.AUGMENTED),
+    ("dda", AUGMENTED | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.AUGMENTED),
+    ("block-events", DASHPOTS | {"load.traction": 1e5}, features.OFF_CENTRE, features.DASHPOTS),
+    ("block-events", IMPACT | {"load.traction": 1e5}, features.OFF_CENTRE, features.IMPACT),
+    *((solver, COMPOSITE | VISCOUS, features.COMPOSITE, features.DAMPING) for solver in ("dda", "fem", "bar")),
+    *((solver, COMPOSITE | KINETIC, features.COMPOSITE, features.ADAPTIVE) for solver in ("dda", "fem")),
     *((solver, MOVED | VISCOUS, features.BASE_MOTION, features.DAMPING) for solver in ("dda", "fem")),
     *((solver, OPEN | VISCOUS, features.UNILATERAL, features.DAMPING) for solver in ("dda", "fem", "bar")),
     *((solver, MOVED | KINETIC, features.BASE_MOTION, features.ADAPTIVE) for solver in ("dda", "fem")),

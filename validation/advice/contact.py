@@ -42,11 +42,14 @@ def omega(scene: Scene) -> float:
 def stepping(scene: Scene) -> Stepping | None:
     """Return the scheme of a landing; None where it is not known.
 
-    Energy-conserving contact is not linear between switches, a scheme with alpha = 0 has no contact force at the end of
-    its step, and only a rectangle lands as one strain.
+    Energy-conserving contact is not linear between switches; the map of a landing is that of Newmark's scheme on
+    springs without dashpots; a scheme with alpha = 0 has no contact force at the end of its step, and only a rectangle
+    lands as one strain.
     """
     scheme = Stepping.of(scene)
-    is_known = scheme.has_contact_forces and scene.contact.rule != "energy-conserving" and rectangle(scene) is not None
+    c = scene.contact
+    has_map = scheme.scheme == "newmark" and c.rule in ("newmark", "implicit") and not c.has_dashpots
+    is_known = has_map and scheme.has_contact_forces and rectangle(scene) is not None
     return scheme if is_known else None
 
 

@@ -1,8 +1,9 @@
 """The damping that a scene really has: total, algorithmic and kinetic, mode by mode.
 
-The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`) are evaluated at the frequencies
-of the DDA block. The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that
-of the same scheme at gg = 1; the kinetic part is the rest.
+The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`; of schemes other than Newmark's the
+roots of `validation.theory.stepping`) are evaluated at the frequencies of the DDA block. The total damping ratio xi is
+that of the scheme with its discount gg; the algorithmic part is that of the same scheme at gg = 1; the kinetic part is
+the rest.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import NotReported, Role, Solver
 from validation.solvers.registry import by_role, get_solver
+from validation.theory.stepping import Stepping
 
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
 FIRST = "first axial"
@@ -80,6 +82,8 @@ def damping_ratio(scene: Scene, frequency: float) -> float:
     if scene.damping.present:
         return viscous.damping_ratio(_viscous_scheme(scene), frequency)
     t = scene.time
+    if t.scheme != "newmark":
+        return Stepping.of(scene).damping_ratio(frequency * t.step)
     return float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
 
 
@@ -105,6 +109,8 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     t = scene.time
     omega = frequency * t.step
     gg = t.discount
+    if t.scheme != "newmark":
+        return _mode_damping_of_scheme(Stepping.of(scene), name, frequency)
     total = damping_ratio(scene, frequency)
     algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
     numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
@@ -127,6 +133,25 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
         number(elongation),
         float(np.min(roots.real)),
         number(total - numerical),
+    )
+
+
+def _mode_damping_of_scheme(stepping: Stepping, name: str, frequency: float) -> ModeDamping:
+    """Return the damping of a mode under a scheme that is not Newmark's, which takes no damping tables."""
+    omega = frequency * stepping.step
+    total = stepping.damping_ratio(omega)
+    algorithmic = replace(stepping, gg=1.0).damping_ratio(omega)
+    return ModeDamping(
+        name,
+        frequency,
+        number(total),
+        stepping.spectral_radius(omega),
+        omega,
+        number(algorithmic),
+        number(total - algorithmic),
+        number(stepping.period_error(omega)),
+        float(np.min(stepping.roots(omega)[:2].real)),
+        0.0,
     )
 
 
@@ -181,7 +206,10 @@ def stable_step(scene: Scene) -> float:
         DDA refuses the scene, or its model does not fit into memory.
     """
     t = scene.time
-    critical = spectral.critical_omega(t.alpha, t.delta, t.discount)
+    if t.scheme == "newmark":
+        critical = spectral.critical_omega(t.alpha, t.delta, t.discount)
+    else:
+        critical = Stepping.of(scene).critical_omega
     return critical if math.isinf(critical) else critical / highest_frequency(scene)
 
 

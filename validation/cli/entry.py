@@ -11,7 +11,22 @@ from functools import cache
 
 import typer
 
-from validation.cli import compare, contact, damping, gallery, judge, merge, report, run, show, verdicts, waves, work
+from validation.cli import (
+    claims,
+    compare,
+    contact,
+    damping,
+    gallery,
+    judge,
+    merge,
+    report,
+    run,
+    show,
+    translate,
+    verdicts,
+    waves,
+    work,
+)
 from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import end, interruptible
@@ -24,10 +39,12 @@ COMMANDS = (
     show,
     report,
     gallery,
+    claims,
     damping,
     contact,
     compare,
     judge,
+    translate,
     verdicts,
     waves,
     work,
@@ -36,7 +53,7 @@ GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "merge", "solve"),
     "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
     "Your own code or program": ("judge", "compare", "export-pack"),
-    "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
+    "Time step, springs and damping": ("advise", "damping", "contact", "translate", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (

@@ -67,7 +67,8 @@ def default_jobs() -> int:
 @app.command("list")
 def list_command(
     what: Annotated[
-        str | None, typer.Argument(help="keys, metrics, scenes, solvers or studies: that list in full.", metavar="LIST")
+        str | None,
+        typer.Argument(help="keys, metrics, schemes, scenes, solvers or studies: that list in full.", metavar="LIST"),
     ] = None,
 ) -> None:
     """List studies, built-in scenes, solvers and metrics; or one of these, or all keys of a scene, in full.
@@ -309,7 +310,7 @@ def _run_shard(
             runs.append(run)
             if not judging.quiet and not judging.as_json:
                 for case in run.failed:
-                    echo(how_it_ended(*case, rows[case]))
+                    echo(how_it_ended(*case, rows[case].outcome, rows[case].notes))
     shards.write(shards.record_of(shard, options, groups), results)
     counted = len(shards.all_keys(part))
     total = len(shards.all_keys(groups))

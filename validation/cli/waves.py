@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 FigureOption = Annotated[
     Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
 ]
-FigureEndings = (".svg", ".pdf", ".png")
 PEAKS = 3  # that are printed
 EXACT = "exact in time"
 CONTINUA = ("continuum", "layers")  # solvers that are exact in space too: of a block, of a column
@@ -46,10 +45,11 @@ def response(
     Example: [bold]dda-validate response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
     """
     from validation.advice.response import response as answer
+    from validation.runs.files import check_ending
 
     case = one_case(scene, assignments)
     frequencies = _frequencies(low, high, points, logarithmic)
-    check_figure(figure)
+    check_ending(figure, "--figure")
     answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
     if csv is not None:
         _write(answers[EXACT if exact else solver], csv)
@@ -72,14 +72,6 @@ def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Arr
         raise InputError("must be greater than 0 with --log", field="--from", value="0")
     spaced = np.geomspace if logarithmic else np.linspace
     return np.asarray(spaced(low, high, points), dtype=np.float64)
-
-
-def check_figure(path: Path | None) -> None:
-    """Refuse a figure's file of an unknown kind before anything is computed."""
-    from validation.errors import InputError
-
-    if path is not None and path.suffix.lower() not in FigureEndings:
-        raise InputError(f"must end in {', '.join(FigureEndings)}", field="--figure", value=repr(path.name))
 
 
 def _write(response: Response, path: Path) -> None:
@@ -179,8 +171,9 @@ def rayleigh(
     from dataclasses import replace
 
     from validation.advice import rayleigh as advice
+    from validation.runs.files import check_ending
 
-    check_figure(figure)
+    check_ending(figure, "--figure")
     case = None if scene is None else one_case(scene, assignments)
     scheme = _scheme(case, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg})
     points: list[tuple[float, float]] = []

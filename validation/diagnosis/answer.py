@@ -17,7 +17,7 @@ class Answer:
 
     sentence: str
     causes: list[str]
-    scheme: dict[str, float | None]  # alpha, delta, gg
+    scheme: dict[str, Any]  # alpha, delta, gg; of another scheme than Newmark's its name and numbers
     departure: Departure | None
     notes: tuple[str, ...] = ()
     ranking: list[dict[str, Any]] = field(default_factory=list)  # the best first

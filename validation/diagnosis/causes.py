@@ -13,6 +13,7 @@ import numpy as np
 from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, intervals
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
@@ -43,6 +44,7 @@ class Cause:
     output: bool = False
     usual: bool = False
     alone: bool = False
+    family: bool = False
     outside: bool = False
 
 
@@ -116,6 +118,11 @@ def causes_of(
         names = names - {"springs-factor"} | {"base-compliance"}
     if "dead-band" in names and not scene.opens:
         names |= {"contact-opened"}
+    if names & {"scheme", "contact-dashpot", "rigid-contact"} and variant.family == "newmark":
+        if (scene.family, scene.alpha, scene.delta) != ("newmark", variant.alpha, variant.delta):
+            names |= {"scheme"}
+        if scene.start != variant.start:
+            names |= {"start"}
     return [name for name in LISTED if name in names]
 
 
@@ -209,6 +216,11 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
         "lateness": _lateness(value),
         "gravity": {0.0: "is missing", -1.0: "acts upwards"}.get(value, f"is {value:.5g} times the scene's"),
         "lacking": "is missing" if value == 0 else "has the wrong sign",
+        "rho_inf": (1 - value) / (1 + value) if value > -1 else math.nan,
+        "implicit_euler": ": implicit Euler" if value == 1 else "",
+        "form": "",
+        "split": "",
+        "clipping": "",
         "twelfth": {3.0: ", of a mass in the corners", 12.0: ", without its twelfth"}.get(round(value, 3), ""),
         "scheme": "",
         "open_steps": "",
@@ -221,6 +233,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
             "formula": {"velocity": "velocity (7)", "displacement": "displacement (6)"}.get(v.discounted, ""),
             "place": {1.0: ", the top edge", -1.0: ", the base"}.get(round(v.point, 6), ""),
             "carried": "force of the springs" if v.kept == "springs" else "stress",
+            "split": f"split {split_of(v):.4g}",
         }
     return cause.sentence.format(value=value, per_cent=100 * value, v=v, scene=scene, **(words | further))
 

@@ -16,6 +16,7 @@ from validation.diagnosis.variant import Variant
 SAME_FACTOR = 1e-5  # relative
 SIDE = "load.gravity = 9.81: the weight is proportional to the area of the block"
 BESIDE_GRAVITY = "load.pressure beside the gravity: a reversed sign turns both, gravity upwards its own part"
+ONE_SCHEME = "nothing: it is one scheme by two names"
 WIDER = "load.eccentricity, or a printed mass: the width of the block and of its base"
 
 
@@ -82,6 +83,17 @@ def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
         scene = next(filter(None, further), "a scene with less damping, over more periods")
         equals.append(_relative(ids, values_of(target.column, ids, v), scene))
     return equals
+
+
+def other_names(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
+    """Return the other causes that the best explanation, a time scheme, is called by."""
+    if not verdict.explained:
+        return []
+    names = []
+    for explanation in verdict.aliases:
+        ids = causes_of(target.column, explanation.ids, explanation.fit.variant, verdict.scene_fit.variant)
+        names.append(_relative(ids, values_of(target.column, ids, explanation.fit.variant), ONE_SCHEME))
+    return names
 
 
 def _relative(ids: list[str], values: dict[str, float], scene: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis import causes, evidence, families, sentences
+from validation.diagnosis import causes, evidence, families, schemes, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
@@ -29,7 +29,8 @@ from validation.diagnosis.readings import (
     slips,
     words_of_slips,
 )
-from validation.diagnosis.search import Verdict, beside, paired, simple
+from validation.diagnosis.scene_keys import assignments
+from validation.diagnosis.search import Verdict, beside, discounted, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -40,6 +41,7 @@ from validation.scenes.scene import Scene
 DDA = "dda"
 RIVALS = ("bar", "continuum")
 MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+SAME_SPLIT = 1e-4  # of a composite scheme
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -100,7 +102,9 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
     answer = _judged(scene, foreign, tolerance)
-    return replace(answer, remedy=answer.remedy or remedy_of(foreign, answer.slips))
+    if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
+        return answer
+    return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
 
 
 def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
@@ -109,7 +113,7 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
     answer = _judged(scene, foreign, tolerance)
     first, second = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
-    remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
+    remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
     sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
@@ -132,7 +136,29 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
             )
         if is_frictional:
             of_friction.refuse_other_scenes(scene)
+    if scene.time.scheme != "newmark":
+        _refuse_other_schemes(scene)
     features.refuse_sweep(scene)
+
+
+def _refuse_other_schemes(scene: Scene) -> None:
+    """Refuse a scene that is stepped here, or by the solvers beside it, by Newmark's scheme only."""
+    if scene.column is not None:
+        return
+    what = ""
+    if features.FRICTION in features.of(scene):
+        what = "blocks with friction"
+    elif rectangle_of(scene) is None:
+        what = "blocks that are no upright rectangle under a centred load"
+    elif scene.contact.law == "unilateral" and scene.block.poisson:
+        what = "contact that opens under a block with Poisson's ratio"
+    if what:
+        raise InputError(
+            f"compare takes {what} with Newmark's scheme only",
+            source=scene.name,
+            field="time.scheme",
+            value=f'"{scene.time.scheme}"',
+        )
 
 
 def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
@@ -165,15 +191,18 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     theirs: RivalVerdict | None = None
-    if not verdict.explains and scene.contact.law == "locked":
+    has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark"
+    if not verdict.explains and has_rivals:
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
-        verdict = paired(case.target, scene_variant, verdict)
+    if not verdict.explains and scene.contact.law == "locked":
+        verdict = paired(case.target, scene_variant, discounted(case.target, scene_variant, verdict))
     elif not verdict.explains:
-        verdict = beside(case.target, scene_variant, verdict)
+        verdict = discounted(case.target, scene_variant, verdict)
+        verdict = verdict if verdict.reached else beside(case.target, scene_variant, verdict)
     others: list[Rival] = []
-    if scene.contact.law == "locked" and np.ptp(case.target.steps) == 0:
+    if has_rivals and np.ptp(case.target.steps) == 0:
         v = verdict.best.fit.variant
         at_hand = theirs.ranked if theirs else ()
         others = rivals(case.reading.scene_of(scene), case.rivals, case.reading, [(v.alpha, v.delta)], at_hand)
@@ -226,17 +255,19 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if either:
         verdict = replace(verdict, explained=False)
     ids = all_causes if verdict.explained else [UNEXPLAINED]
-    v = best_fit.variant if verdict.explained else scene_variant
+    v = _with_first_split(target, best_fit.variant) if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
     first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
-    refitted = fit(target, [(v, tuple(dict.fromkeys(("alpha", "delta", "gg", *shown.free))))])[0]
+    of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
+    refitted = fit(target, [(v, tuple(dict.fromkeys((*of_scheme, *shown.free))))])[0]
     values = causes.values_of(target.column, ids, v)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     if "dead-band" in ends:
         values["dead-band"] = causes.roundest(*ends["dead-band"])
-    alike = either or families.as_good(target, verdict) or families.relatives(target, ids, values, v)
+    alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
+    alike = alike or families.relatives(target, ids, values, v)
     nearest: dict[str, Any] | None = None
     if not (verdict.explained or alike):
         numbers = causes.values_of(target.column, all_causes, best_fit.variant)
@@ -249,9 +280,15 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if "dead-band" in ends:
         low, high = ends["dead-band"]
         further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    if v.family == "composite":
+        further["split"] = _splits(target, v)
+    if "contact-dashpot" in ids and v.opens:
+        further["clipping"] = _clipping(target, v)
+    if v.opens and schemes.stages(v)[-1].mean_force > 0:
+        further["form"] = _contact_form(target, v)
     words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
-        sentences.scheme_of(v),
+        sentences.scheme_of(v) + (schemes.other_names(v) if any(CAUSES[name].integrator for name in ids) else ""),
         words | words_of_slips(corrected),
         first_departure,
         sentences.remaining(best_fit.misfit),
@@ -265,7 +302,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
-        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
+        scheme=schemes.scheme_numbers(v),
         ranking=ranking(DDA, target, v, shown.free, others),
         departure=first_departure,
         causes=ids,
@@ -284,7 +321,48 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         slips=corrected if verdict.explained else (),
         pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
         intervals=ends,
+        remedy=assignments(ids, v, scene_variant) if verdict.explained else "",
     )
+
+
+def _clipping(target: Target, v: Variant) -> str:
+    """Return whether the dashpot pulls before the contact opens, if the rows tell."""
+    other = fit(target, [(replace(v, clipped=not v.clipped), ())])[0]
+    if target.explained(other.residual):
+        return "; these rows do not tell whether it is clipped"
+    return ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
+
+
+def _contact_form(target: Target, v: Variant) -> str:
+    """Return of what the contact force of generalised alpha is a mean, if the rows tell."""
+    is_of_gaps = v.contact == "mean gap"
+    other = fit(target, [(replace(v, contact="springs" if is_of_gaps else "mean gap"), ())])[0]
+    if target.explained(other.residual):
+        return ""
+    return f", the contact force {'that of the mean gap' if is_of_gaps else 'the mean of those at both ends'}"
+
+
+def _has_second_split(target: Target, v: Variant) -> bool:
+    """Whether a composite scheme gives the same rows with another split."""
+    other = schemes.companion_split(v)
+    if abs(other - schemes.split_of(v)) < SAME_SPLIT:
+        return False
+    return target.explained(fit(target, [(replace(v, split=other), ())])[0].residual)
+
+
+def _with_first_split(target: Target, v: Variant) -> Variant:
+    """Return a variant, of the two splits that give the same rows the smaller one."""
+    if v.family != "composite" or not _has_second_split(target, v):
+        return v
+    return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
+
+
+def _splits(target: Target, v: Variant) -> str:
+    """Return the share at which a composite scheme is split, and the other one that gives the same rows."""
+    split = f"split {schemes.split_of(v):.4g}"
+    if not _has_second_split(target, v):
+        return split
+    return f"{split} or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
 
 
 def _opened(target: Target, v: Variant) -> list[int]:

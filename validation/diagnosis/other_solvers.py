@@ -19,6 +19,7 @@ from validation.diagnosis.fits.target import Bar, Target, joined
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import CandidateChange, fitted, nearest_start, of_discount, of_numbers
 from validation.diagnosis.readings import Reading
+from validation.diagnosis.schemes import FAMILIES
 from validation.diagnosis.variant import Variant
 from validation.errors import InputError
 from validation.runs.history import Array
@@ -29,6 +30,7 @@ SCHEMES_OF = {"continuum": 1, "fem": 1}  # how many are tried: the continuum has
 NUDGE = 1e-4  # of ln stiffness or ln factor, for the derivative
 ROUNDS = 9  # evaluations of a fit: a compliance of some per cent needs two, half the stiffness six
 MOST = math.log(1e3)  # no spring is softer or stiffer than that
+OF_SCHEMES = frozenset({"alpha", "delta", "gg", "base", "spectral", "split"})
 SLIPS = {"density-factor", "young-factor", "load-factor", "gg"}  # numbers that are tried besides the springs
 DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
@@ -236,12 +238,20 @@ def ranking(
     model: str, target: Target, best: Variant, free: Sequence[str], others: Sequence[Rival]
 ) -> list[dict[str, Any]]:
     """Return every named scheme with what else explains the history, and the other solvers, by misfit."""
-    pairs = dict.fromkeys([(best.alpha, best.delta), *NAMED.values()])
-    free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in ("alpha", "delta", "gg", "base")))))
-    fits = fit(target, [(replace(best, alpha=a, delta=d), free) for a, d in pairs])
+    is_newmark = best.family == "newmark"
+    pairs = dict.fromkeys([*([(best.alpha, best.delta)] if is_newmark else []), *NAMED.values()])
+    free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in OF_SCHEMES))))
+    contact = "springs" if best.contact == "impact" else best.contact
+    newmark = replace(best, family="newmark", spectral=0.0, split=0.0, contact=contact)
+    fits = fit(target, [(replace(newmark, alpha=a, delta=d), free) for a, d in pairs])
     misfits = [each.misfit for each in fits]
-    misfits[0] = min(misfits[0], fit(target, [(best, ())])[0].misfit)
+    own_misfit = fit(target, [(best, ())])[0].misfit
     rows = []
+    if is_newmark:
+        misfits[0] = min(misfits[0], own_misfit)
+    else:
+        row = row_of(model, None, None, best.gg, own_misfit, compliance(target.column, best))
+        rows.append(row | {"name": FAMILIES[best.family]})
     for each, misfit in zip(fits, misfits, strict=True):
         v = each.variant
         rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target.column, v)))

@@ -20,15 +20,16 @@ from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.moves import fitted as fitted_move
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 
 PERIODS = 5.0  # of the first mode, over which a fit does not go astray
 SHORTEST, COARSE = 30, 500  # steps of the first fits
 STRETCH = 5  # of the fitted part of a long history, from fit to fit
-KEPT = 16  # candidates that are fitted over more of the history
+KEPT = 28  # candidates that are fitted over more of the history
 CHUNK = 1500  # variants in one pass
 FIRST_ROUNDS, ROUNDS = 5, 12  # of the fits: of all candidates, of those that are left
-MANY = 80  # candidates that are fitted further
+MANY = 140  # candidates that are fitted further
 
 Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their fit begins, its free numbers
 CLEAR = 10.0  # of the information criterion: odds of 150 to 1
@@ -49,6 +50,13 @@ MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apa
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
 HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
+SCHEMES = [  # causes that are a time scheme, in the order in which one of several names is chosen
+    *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite"),
+    *("symplectic-euler", "exact-in-time"),
+]
+PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme
+PROBED = 40  # steps of such a run
+SAME_PROGRAM = 1e-8  # relative difference, of roundings
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
@@ -158,6 +166,7 @@ class Verdict:
     single: tuple[Explanation, ...] = ()  # every cause by itself, the best first
     around: float = 0.0  # relative L2 that what surrounds a block leaves [-]
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
+    aliases: tuple[Explanation, ...] = ()  # other names of the best one: one scheme at any time step
 
     @property
     def explains(self) -> bool:
@@ -194,12 +203,15 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
     best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
     alike = {f.ids: f for f in reversed(close) if f.ids != best.ids and not _contained(best, f)}
+    best, aliases = _canonical(target, best, close)
+    alike = {ids: f for ids, f in alike.items() if ids not in aliases}
     is_named = not alike and _nameable(target, scene_fit, best)
     if target.explained(scene_fit.residual) and not (
         is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
     ):
         return Verdict(scene_fit, Explanation((), scene_fit), True)
-    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True)
+    others = tuple(f for ids, f in aliases.items() if ids != best.ids)
+    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=others)
 
 
 def _rounder(close: list[Explanation]) -> list[Explanation]:
@@ -214,6 +226,42 @@ def _digits(value: float) -> int:
     """Return the significant digits that a fitted number or its exponential has, of what can be told."""
     forms = (value, math.exp(-value)) if abs(value) < LARGEST_EXPONENT else (value,)
     return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in forms)
+
+
+def _canonical(
+    target: Target, best: Explanation, close: Sequence[Explanation]
+) -> tuple[Explanation, dict[tuple[str, ...], Explanation]]:
+    """Return the explanation by whose name a scheme of several names is called, and all names of it.
+
+    Two explanations are one scheme if they give the same rows at any time step, not only at this one.
+    """
+    aliases = {best.ids: best}
+    if _scheme_alone(best) is None:
+        return best, aliases
+    for f in close:
+        is_other = f.ids not in aliases and _scheme_alone(f) is not None and f.ids[1:] == best.ids[1:]
+        if is_other and same_program(target, best.fit.variant, replace(f.fit.variant, gg=best.fit.variant.gg)):
+            aliases[f.ids] = f
+    return aliases[min(aliases, key=lambda ids: SCHEMES.index(ids[0]))], aliases
+
+
+def _scheme_alone(explanation: Explanation) -> str | None:
+    """Return the id of a time scheme with fixed numbers that explains by itself, or beside a discount, else None."""
+    first, *others = explanation.ids or ("",)
+    alone = first in SCHEMES and others in ([], ["gg"]) and set(explanation.fit.free) <= {"gg"}
+    return first if alone else None
+
+
+def same_program(target: Target, one: Variant, other: Variant) -> bool:
+    """Whether two variants give the same rows at this and at other time steps."""
+    for longer in PROBES:
+        steps = np.full(PROBED, longer * float(target.steps[0]))
+        run = histories(target.column, [one, other], steps).displacement
+        with np.errstate(all="ignore"):
+            apart = np.abs(run[:, 0] - run[:, 1])
+            if not np.all(apart <= SAME_PROGRAM * np.max(np.abs(run), axis=1).max()):
+                return False
+    return True
 
 
 def _contained(best: Explanation, other: Explanation) -> bool:
@@ -260,7 +308,7 @@ def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
         return True
     single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
-    if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
+    if all(name in SCHEMES for name in explanation.ids):  # any other integrator is near to some scheme
         return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
     usual = single and LISTED[explanation.ids[0]].usual
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
@@ -340,6 +388,17 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
     return _nearer(verdict, beside(target, scene, before))
 
 
+def discounted(target: Target, scene: Variant, before: Verdict) -> Verdict:
+    """Return what another time scheme explains beside another discount; else what was found before."""
+    if before.reached or target.spread > 3 * HIDDEN_TWO * before.scene_fit.misfit:
+        return before
+    every = moves(target, scene)
+    (discount,) = (move for move in every if move.id == "gg" and move.free)
+    of_schemes = [move for move in every if move.id == "scheme" or LISTED[move.id].family]
+    combos = [(move, discount) for move in of_schemes if len(move.free) < 2]
+    return _nearer(decided(target, before.scene_fit, fitted(target, scene, combos)), before)
+
+
 def _nearer(*verdicts: Verdict) -> Verdict:
     """Return the verdict that explains more."""
     return min(verdicts, key=lambda v: (not v.explained, not v.reached, v.best.fit.misfit))
@@ -408,6 +467,8 @@ def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[
         cause = LISTED[move.id]
         if cause.alone or cause.outside or move.free == ("alpha", "delta"):
             continue
+        if move.id == "scheme" and move.changes.get("start", scene.start) != scene.start:
+            continue  # two causes
         if move.id == "reported-point" and not move.free:
             continue
         starts = tuple(getattr(alone[move.id], name) for name in move.free if move.id in alone) or move.starts[:1]

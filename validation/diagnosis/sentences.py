@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.fits.fit import named
+from validation.diagnosis.schemes import EXPLICIT, FAMILIES, split_of
 from validation.diagnosis.variant import Variant
 from validation.gates.gate import ROUNDING
 
@@ -34,8 +35,15 @@ def scheme_of(v: Variant) -> str:
         return "exact in time"
     if v.family == "newmark":
         return scheme_words(v.alpha, v.delta, v.gg)
-    number = f"alpha_f = {v.spectral:.4g}" if v.family == "hht" else f"spectral radius {v.spectral:.4g}"
-    name = "HHT" if v.family == "hht" else "generalised alpha (Chung and Hulbert)"
+    if v.contact == "impact":
+        return f"Moreau and Jean's scheme (theta = {v.spectral:.4g}, gg = {v.gg:.5g})"
+    name = FAMILIES[v.family]
+    if v.family in EXPLICIT:
+        return f"{name} (gg = {v.gg:.5g})"
+    numbers = {"hht": f"alpha_f = {v.spectral:.4g}", "theta": f"theta = {v.spectral:.4g}"}
+    number = numbers.get(v.family, f"rho_inf = {v.spectral:.4g}")
+    if v.family == "composite":
+        return f"{name} (split {split_of(v):.4g}, {number}, gg = {v.gg:.5g})"
     return f"{name} ({number}, gg = {v.gg:.5g}, initial acceleration {v.start})"
 
 

@@ -7,10 +7,13 @@ summed up by itself, so that a stiff spring keeps its digits. With U = dt V and 
     x1 - x = gg U + (1/2 - alpha) W + alpha W1,     U1 = gg U + (1 - delta) W + delta W1
     M ((1 - a_m) W1 + a_m W) + dt^2 f((1 - a_f) x1 + a_f x) + dt C ((1 - a_f) U1 + a_f gg U) = dt^2 F
 
-with the internal force f and viscous damping C = a0 M + a1 K. It is linear in (g, s, x, U, W, 1), s the shear of the
-closed contact, as long as contact and geometry stay: such histories are sums of powers of one matrix, which is had by
-stepping the unit vectors, and cost no loop over the steps. Where the contact opens or the geometry moves, the same step
-is made one by one, as `dda.solve_unilateral` does. A variant that is exact in time has the exponential of its matrix.
+with the internal force f and viscous damping C = a0 M + a1 K; other schemes have other numbers in these places, and
+composite ones two such stages (`validation.diagnosis.schemes`). A step is linear in (g, s, x, U, W, n, 1), s the shear
+of the closed contact and n the gap by which the springs press at its start, as long as contact and geometry stay: such
+histories are sums of powers of one matrix, which is had by stepping the unit vectors, and cost no loop over the steps.
+Where the contact opens or the geometry moves, the same step is made one by one, as `dda.solve_unilateral` does. A
+variant that is exact in time has the exponential of its matrix. Contact methods with a force of their own take the step
+with open contact and add that force's (`validation.diagnosis.contact_force`).
 """
 
 from __future__ import annotations
@@ -25,6 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import dda
+from validation.diagnosis.contact_force import FORCED, Contact, force_of, linear_force
+from validation.diagnosis.schemes import EXPLICIT, Stage, stages
 from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
 
 OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
@@ -53,15 +58,17 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
     beyond = max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))  # steps that the last rows report of
     longer = np.concatenate([steps, np.repeat(steps[-1:], beyond)])
     equal = n > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
-    groups: dict[tuple[bool, bool, int, int, bool], list[int]] = {}
+    groups: dict[tuple[Any, ...], list[int]] = {}
     for j, v in enumerate(variants):
         powers = equal and not (v.opens or v.updated)
-        groups.setdefault((powers, v.updated, _unknowns(rectangle, v), v.parts, v.exact), []).append(j)
+        force = v.contact if v.contact in FORCED else "springs"
+        alike = (powers, v.updated, _unknowns(rectangle, v), v.parts, v.exact, len(stages(v)), force)
+        groups.setdefault(alike, []).append(j)
     displacement = np.empty((len(longer), len(variants)))
     pressure = np.empty_like(displacement)
     opened = np.zeros(displacement.shape, dtype=bool)
     with np.errstate(all="ignore"):
-        for (powers, _, unknowns, parts, _), members in groups.items():
+        for (powers, _, unknowns, parts, *_), members in groups.items():
             stepper = Stepper(rectangle, [variants[j] for j in members], unknowns)
             if powers:
                 columns = stepper.powers(float(longer[0]), len(longer), parts)
@@ -99,6 +106,7 @@ class Equations:
     stiffness: Array  # K, (variants, d, d)
     carried: Array  # by which x is carried from step to step, (variants, d, d)
     spring: Array  # by which the gap is carried [N/m], (variants,)
+    pressed: Array  # by which the gap that pressed at the start of a step is carried [N/m], (variants,)
     shear: Array  # by which the shear of the contact is carried, on ex [N m], (variants,)
     gap: Array  # row of the gap in x, (variants, d)
     load: Array  # F, (variants, d)
@@ -112,7 +120,13 @@ class Stepper:
         # every number of the variants by its name, one array each
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
-        self.alpha, self.delta, self.mean_mass, self.mean_force = np.array([v.scheme for v in variants]).T
+        numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
+        self.stages = []  # of each its numbers, (variants, 1)
+        for of_stage in np.moveaxis(numbers_of_stages, 1, 0):
+            self.stages.append(Stage(*(number[:, None] for number in of_stage.T)))
+        self.size = 4 + 3 * unknowns
+        self.presses = np.array([v.contact != "mean gap" for v in variants])  # by the gap of the end of the step before
+        self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
         self.gg_displacement = np.where(of.discounted == "velocity", 1.0, of.gg)[:, None]
         self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
         self.keeps_stress = of.kept != "springs"
@@ -189,68 +203,137 @@ class Stepper:
         K[:, 1, 0] -= lost
         carried[:, 0, 1] -= lost * self.keeps_springs
         carried[:, 1, 0] -= lost * self.keeps_springs
-        return Equations(M, K, carried, k * self.keeps_springs, kx * self.keeps_springs, c, F)
+        pressed = np.where(self.presses, self.springs, k) * self.keeps_springs
+        return Equations(M, K, carried, k * self.keeps_springs, pressed, kx * self.keeps_springs, c, F)
 
     def _on_one_spring(self, n: int) -> Equations:
         model = self.rectangle.model
         spring = self.rectangle.normal / 2
         whole = self.without_gap + spring * np.outer(self.corner, self.corner)
-        of_variant = (model.mass, whole, self.without_gap, np.array(spring), np.zeros(()), self.corner, model.force)
+        k = np.array(spring)
+        of_variant = (model.mass, whole, self.without_gap, k, k, np.zeros(()), self.corner, model.force)
         return Equations(*(np.repeat(array[None], n, axis=0) for array in of_variant))
 
     # ---- one step ---------------------------------------------------------------------------------------------------
 
-    def step(self, q: Equations, inverse: Array, dt: float, state: Array) -> Array:
-        """Return the state at the end of a step, (..., variants, 3 + 3 d), before the contact is looked at."""
+    def step(self, q: Equations, inverse: Array, dt: float, state: Array, middle: Array | None = None) -> Array:
+        """Return the state at the end of a stage, before the contact is looked at.
+
+        Parameters
+        ----------
+        inverse
+            Of the matrix of the stage, see `inverse`.
+        state
+            At the start of the step, (..., variants, 4 + 3 d).
+        middle
+            At the end of the first stage; None if this is the first.
+        """
         d = self.d
         x, U, W = state[..., 2 : 2 + d], state[..., 2 + d : 2 + 2 * d], state[..., 2 + 2 * d : 2 + 3 * d]
         one = state[..., -1:]
-        alpha, delta, am, af = (c[:, None] for c in (self.alpha, self.delta, self.mean_mass, self.mean_force))
-        ahead = self.gg_displacement * U + (0.5 - alpha) * W
+        c = self.stages[0 if middle is None else 1]
+        af = c.mean_force
+        ahead = self.gg_displacement * c.d_u * U + c.e_0 * W
         discounted = self.gg_velocity * U
-        rate = discounted + (1 - delta) * W
-        internal = times(q.carried, x) + (q.spring * state[..., 0])[..., None] * q.gap
+        rate = discounted + c.g_0 * W
+        if middle is not None:
+            ahead = ahead + c.d_g * middle[..., 2 + d : 2 + 2 * d] + c.e_g * middle[..., 2 + 2 * d : 2 + 3 * d]
+            rate = rate + c.g_g * middle[..., 2 + 2 * d : 2 + 3 * d]
+        pressing = q.spring * (1 - af[:, 0]) * state[..., 0] + q.pressed * af[:, 0] * state[..., -2]
+        internal = times(q.carried, x) + pressing[..., None] * q.gap
         if d > 2:
             internal[..., 2 if d < 6 else 3] += q.shear * state[..., 1]
         pull = one * q.load - internal - (1 - af) * times(q.stiffness, ahead)
-        right = dt * dt * pull - times(q.mass, am * W)
+        right = dt * dt * pull - times(q.mass, c.mean_mass * W)
         if self.damped:
             right = right - dt * times(self._damping(q), (1 - af) * rate + af * discounted)
         W1 = times(inverse, right)
-        increment = ahead + alpha * W1
-        U1 = np.where(self.of.secant[:, None], increment, rate + delta * W1)
+        increment = ahead + c.beta * W1
+        U1 = np.where(self.of.secant[:, None], increment, rate + c.gamma * W1)
         gap = state[..., 0] + np.sum(q.gap * increment, axis=-1)
         sheared = state[..., 1] + (increment[..., 2] if d > 2 else 0.0)
-        return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, one], axis=-1)
+        return np.concatenate([gap[..., None], sheared[..., None], x + increment, U1, W1, gap[..., None], one], axis=-1)
 
     def _damping(self, q: Equations) -> Array:
         return np.asarray(self.of.viscous[:, None, None] * q.mass + self.of.structural[:, None, None] * q.stiffness)
 
     def matrix(self, q: Equations, dt: float) -> Array:
-        """Return the matrix of a step, by stepping the unit vectors, (variants, 3 + 3 d, 3 + 3 d)."""
-        units = np.repeat(np.eye(3 + 3 * self.d)[:, None, :], len(self.variants), axis=1)
-        return np.moveaxis(self.step(q, self.inverse(q, dt), dt, units), 0, -1)
+        """Return the matrix of a step in which contact stays, by stepping the unit vectors, (variants, size, size)."""
+        first = self.stage_matrix(q, dt, 0)
+        if len(self.stages) == 1:
+            return first
+        second = self.stage_matrix(q, dt, 1)
+        return np.asarray(second[..., : self.size] + second[..., self.size :] @ first)
 
-    def inverse(self, q: Equations, dt: float) -> Array:
-        """Return the inverse of the matrix of a step, (variants, d, d)."""
-        delta, am, af = (c[:, None, None] for c in (self.delta, self.mean_mass, self.mean_force))
-        part = self.alpha[:, None, None] * dt * dt * q.stiffness
+    def stage_matrix(self, q: Equations, dt: float, stage: int) -> Array:
+        """Return the matrix of a stage, by its unit vectors: of the start and, of a second one, of the middle."""
+        n = len(self.variants)
+        inverse = self.inverse(q, dt, stage)
+        if stage == 0:
+            units = np.repeat(np.eye(self.size)[:, None, :], n, axis=1)
+            return np.moveaxis(self.step(q, inverse, dt, units), 0, -1)
+        units = np.repeat(np.eye(2 * self.size)[:, None, :], n, axis=1)
+        columns = self.step(q, inverse, dt, units[..., : self.size], units[..., self.size :])
+        return np.moveaxis(columns, 0, -1)
+
+    def inverse(self, q: Equations, dt: float, stage: int = 0) -> Array:
+        """Return the inverse of the matrix of a stage, (variants, d, d)."""
+        c = Stage(*(number[:, None] for number in self.stages[stage]))
+        part = c.beta * dt * dt * q.stiffness
         if self.damped:
-            part = part + delta * dt * self._damping(q)
-        return np.asarray(np.linalg.inv((1 - am) * q.mass + (1 - af) * part))
+            part = part + c.gamma * dt * self._damping(q)
+        return np.asarray(np.linalg.inv((1 - c.mean_mass) * q.mass + (1 - c.mean_force) * part))
+
+    def forced_matrix(self, dt: float) -> tuple[Array, Array]:
+        """Return the matrix of a step with open contact, and the state that a unit contact force adds.
+
+        In an implicit, an energy-conserving and an impact law the contact's force is no part of M A: it enters the
+        displacement by 1/2 dt^2 (by theta dt of an impulse), the velocity by dt, and A what the block's strain gives.
+        """
+        d = self.d
+        q = self.equations(np.zeros(len(self.variants), dtype=bool), self.wide, self.high)
+        T = self.matrix(q, dt)
+        (c,) = self.stages
+        unit = dt * dt * q.gap
+        inverse = self.inverse(q, dt)
+        if self.force in ("dashpot", "rigid"):
+            W = times(inverse, unit)
+            x = c.beta * W
+            U = c.gamma * W
+        else:
+            inverse_mass = np.linalg.inv(q.mass)
+            if self.force == "impact":
+                U = times(inverse, unit)
+                x = c.gamma * U
+                W = -dt * dt * times(inverse_mass @ q.stiffness, x)
+            else:
+                x = times(inverse, unit) / 2
+                W = -dt * dt * times(inverse_mass @ q.stiffness, x)
+                U = c.gamma * W + times(inverse_mass, unit)
+        gap = np.sum(q.gap * x, axis=-1)
+        push = np.zeros((len(self.variants), self.size))
+        push[:, 0] = push[:, -2] = gap
+        push[:, 2 : 2 + d] = x
+        push[:, 2 + d : 2 + 2 * d] = U
+        push[:, 2 + 2 * d : 2 + 3 * d] = W
+        return T, push
 
     def start(self, q: Equations, dt: float) -> Array:
-        """Return the state at rest, (variants, 3 + 3 d)."""
+        """Return the state at rest, (variants, 4 + 3 d)."""
         n, d = len(self.variants), self.d
-        state = np.zeros((n, 3 + 3 * d))
+        state = np.zeros((n, self.size))
         acceleration = times(np.linalg.inv(q.mass), q.load)
-        state[:, 2 + 2 * d : 2 + 3 * d] = dt * dt * (self.of.start == "consistent")[:, None] * acceleration
+        explicit = np.array([v.family in EXPLICIT for v in self.variants])
+        started = explicit | (self.of.start == "consistent")
+        state[:, 2 + 2 * d : 2 + 3 * d] = dt * dt * started[:, None] * acceleration
+        half_step = np.array([v.family == "leapfrog" for v in self.variants])[:, None] / (2 * self.gg_velocity)
+        state[:, 2 + d : 2 + 2 * d] = -half_step * dt * dt * acceleration
         state[:, -1] = 1.0
         return state
 
     def observers(self, q: Equations) -> Array:
-        """Return the rows of displacement and pressure in a state, (variants, 2, 3 + 3 d)."""
-        rows = np.zeros((len(self.variants), 2, 3 + 3 * self.d))
+        """Return the rows of displacement and pressure in a state, (variants, 2, 4 + 3 d)."""
+        rows = np.zeros((len(self.variants), 2, self.size))
         if self.d == 6:
             rows[:, 0, 3] = 1.0
             rows[:, 0, 6] = self.of.point * self.rectangle.height / 2
@@ -268,13 +351,20 @@ class Stepper:
         n = len(self.variants)
         q = self.equations(np.ones(n, dtype=bool), self.wide, self.high)
         small = dt / parts
+        observers = self.observers(q)
         if self.variants[0].exact:
             T = self._exponential(q, dt)
-        else:
+            rows = observers @ T  # of the first step, then of more and more of them
+        elif self.force == "springs":
             T = self.matrix(q, small)
             T = np.linalg.matrix_power(T, parts) if parts > 1 else T
+            rows = observers @ T
+        else:
+            T, pressure = self._with_force(small)
+            whole = np.linalg.matrix_power(T, parts - 1)  # of the last of the parts, by the start of the first
+            rows = np.concatenate([observers[:, :1] @ T @ whole, pressure[:, None] @ whole], axis=1)
+            T = T @ whole
         state = self.start(q, small)
-        rows = self.observers(q) @ T  # of the first step, then of more and more of them
         power, length = T, 1
         while length < min(BLOCK, steps):
             rows = np.concatenate([rows, rows @ power], axis=1)
@@ -286,12 +376,75 @@ class Stepper:
         observed = np.concatenate(blocks, axis=1)[:, :steps]
         return observed[..., 0].T, observed[..., 1].T
 
+    def _with_force(self, dt: float) -> tuple[Array, Array]:
+        """Return the matrix of a step with the force of locked contact, and its pressure as a row by the start."""
+        free, push = self.forced_matrix(dt)
+        contact = self._contact(dt, push)
+        force = linear_force(self.force, contact, self._gap_rows(free))
+        T = free + push[:, :, None] * force[:, None, :]
+        pressure = force
+        if self.force == "energy-conserving":
+            pressure = -contact.stiffness[:, None] * T[:, 0]
+        return T, np.asarray(pressure / (self.rectangle.width * self.wide)[:, None])
+
+    def _contact(self, dt: float, push: Array) -> Contact:
+        """Return what the contact's force follows from in steps of one length."""
+        mass = self.masses[0] * self.wide * self.high
+        dashpot = 2 * self.of.dashpot * np.sqrt(self.springs * mass) / dt
+        rate = np.sum(self._gap_of_velocity() * push, axis=-1)
+        return Contact(self.springs, dashpot, self.of.restitution, self.of.clipped, push[:, 0], rate)
+
+    def _gap_of_velocity(self) -> Array:
+        """Return the row of the gap's rate in a state, (variants, size)."""
+        row = np.zeros((len(self.variants), self.size))
+        q = self.equations(np.zeros(len(self.variants), dtype=bool), self.wide, self.high)
+        row[:, 2 + self.d : 2 + 2 * self.d] = q.gap
+        return row
+
+    def _gap_rows(self, free: Array) -> tuple[Array, Array, Array, Array]:
+        """Return gap and rate at the start and at the end of a step without contact force, as rows by the start."""
+        gap = np.zeros((len(self.variants), self.size))
+        gap[:, 0] = 1.0
+        rate = self._gap_of_velocity()
+        free_rate = np.einsum("vi,vij->vj", rate, free)
+        return gap, self.gg_velocity * rate, free[:, 0], free_rate
+
+    def forced_loop(self, steps: Array) -> tuple[Array, Array, Flags]:
+        """Return displacement, pressure and open flags of contact that opens and has a force of its own."""
+        n = len(self.variants)
+        first = self.equations(np.ones(n, dtype=bool), self.wide, self.high)
+        state = self.start(first, float(steps[0]))
+        displacement_row = self.observers(first)[:, 0]
+        width = self.rectangle.width * self.wide
+        before = 0.0
+        displacements = []
+        pressures = []
+        flags = []
+        for dt in steps.tolist():
+            if dt != before:
+                free, push = self.forced_matrix(dt)
+                contact = self._contact(dt, push)
+                gap_rows = self._gap_rows(free)
+            if before and dt != before:
+                state[:, 2 + self.d : 2 + 2 * self.d] *= dt / before
+                state[:, 2 + 2 * self.d : 2 + 3 * self.d] *= (dt / before) ** 2
+            before = dt
+            w0, rate, w_f, rate_f = (np.sum(row * state, axis=-1) for row in gap_rows)
+            force, closed = force_of(self.force, contact, (w0, rate, w_f, rate_f))
+            state = times(free, state) + push * force[:, None]
+            if self.force == "energy-conserving":
+                force = np.maximum(-contact.stiffness * state[:, 0], 0.0)
+            displacements.append(np.sum(displacement_row * state, axis=-1))
+            pressures.append(force / width)
+            flags.append(~closed)
+        return np.array(displacements), np.array(pressures), np.array(flags)
+
     def _exponential(self, q: Equations, dt: float) -> Array:
         """Return the matrix of a step that is exact in time: of x' = U, M U' = dt^2 (F - f) - dt C U, t over dt."""
         from scipy.linalg import expm
 
         d, n = self.d, len(self.variants)
-        G = np.zeros((n, 3 + 3 * d, 3 + 3 * d))
+        G = np.zeros((n, self.size, self.size))
         over_mass = dt * dt * np.linalg.inv(q.mass)
         G[:, 0, 2 + d : 2 + 2 * d] = q.gap
         G[:, 2 : 2 + d, 2 + d : 2 + 2 * d] = np.eye(d)
@@ -307,32 +460,45 @@ class Stepper:
 
     def loop(self, steps: Array) -> tuple[Array, Array, Flags]:
         """Return displacement, pressure and open flags of contact that opens or geometry that moves."""
+        if self.force != "springs":
+            return self.forced_loop(steps)
         n, moves = len(self.variants), bool(np.any(self.of.updated))
         wide, high, on = self.wide, self.high, np.ones(n, dtype=bool)
         first = self.equations(on, wide, high)
         state, observers = self.start(first, float(steps[0])), self.observers(first)
+        weighted_gap = ~self.presses & self.of.opens
         before, rows, flags = 0.0, [], []
         for dt in steps.tolist():
             if dt != before and not moves:
                 closed, opened = (
-                    self.matrix(self.equations(np.full(n, contact), wide, high), dt) for contact in (True, False)
+                    [
+                        self.stage_matrix(self.equations(np.full(n, contact), wide, high), dt, stage)
+                        for stage in range(len(self.stages))
+                    ]
+                    for contact in (True, False)
                 )
             if before and dt != before:
                 state[:, 2 + self.d : 2 + 2 * self.d] *= dt / before
                 state[:, 2 + 2 * self.d : 2 + 3 * self.d] *= (dt / before) ** 2
             before, was_closed = dt, on
-            for _ in range(OPEN_CLOSE_ITERATIONS):
-                if moves:
-                    q = self.equations(on, wide, high)
-                    end = self.step(q, self.inverse(q, dt), dt, state)
-                else:
-                    T = np.where(on[:, None, None], closed, opened)
-                    end = times(T, state)
-                limit = np.where(on, self.of.band * self.of.reopening, -self.of.band)
-                new = np.where(self.of.opens, end[:, 0] < limit, True)
-                if np.array_equal(new, on):
-                    break
-                on = new
+            middle: Array | None = None
+            for stage, numbers in enumerate(self.stages):
+                start = state if middle is None else np.concatenate([state, middle], axis=-1)
+                for _ in range(OPEN_CLOSE_ITERATIONS):
+                    if moves:
+                        q = self.equations(on, wide, high)
+                        end = self.step(q, self.inverse(q, dt, stage), dt, state, middle)
+                    else:
+                        T = np.where(on[:, None, None], closed[stage], opened[stage])
+                        end = times(T, start)
+                    limit = np.where(on, self.of.band * self.of.reopening, -self.of.band)
+                    af = numbers.mean_force[:, 0]
+                    gap = np.where(weighted_gap, (1 - af) * end[:, 0] + af * state[:, 0], end[:, 0])
+                    new = np.where(self.of.opens, gap < limit, True)
+                    if np.array_equal(new, on):
+                        break
+                    on = new
+                middle = end
             landing = on & ~was_closed & ~self.of.reset
             if self.d > 2 and np.any(landing):
                 T = self.matrix(q, dt) if moves else T
@@ -342,10 +508,12 @@ class Stepper:
                 high = high * (1 + self.of.updated * strain[:, 1])
                 wide = wide * (1 + self.of.updated * (strain[:, 2] if self.d > 2 else 0.0))
             end[:, 1] = np.where(on, end[:, 1], 0.0)
+            end[:, -2] = np.where(on | weighted_gap, end[:, 0], 0.0)
             state = end
             observed = times(observers, state)
-            rows.append(np.column_stack([observed[:, 0], np.where(on, observed[:, 1], 0.0)]))
-            flags.append(~on)
+            pressing = np.where(weighted_gap, end[:, 0] < 0, on)
+            rows.append(np.column_stack([observed[:, 0], np.where(pressing, observed[:, 1], 0.0)]))
+            flags.append(~pressing)
         columns = np.array(rows)
         return columns[..., 0], columns[..., 1], np.array(flags)
 

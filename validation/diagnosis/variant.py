@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Literal
 
@@ -11,14 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import dda
+from validation.diagnosis.schemes import Family, stages
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Family = Literal["newmark", "hht", "chung-hulbert"]
+ContactForm = Literal["springs", "mean gap", "dashpot", "implicit", "energy-conserving", "rigid", "impact"]
 GRAVITY = 9.81  # m/s2
-OPENING = frozenset({features.UNILATERAL, features.DEAD_BAND, features.WEIGHT})  # that opening contact may come with
+OPENING = features.SCHEMES | {features.UNILATERAL, features.DEAD_BAND, features.WEIGHT}  # of opening contact known here
+AVERAGE_ACCELERATION = (0.25, 0.5)  # alpha and delta that a variant of another scheme has, without effect
 POISSON = 0.499  # a fit may try more
 
 
@@ -26,9 +28,8 @@ POISSON = 0.499  # a fit may try more
 class Variant:
     """One way to compute a scene: a scheme, what a program adds, what was mistaken, and what is written of it.
 
-    The numbers of the generalised-alpha families follow from `spectral`: HHT has alpha_f = e and alpha_m = 0, Chung and
-    Hulbert's method alpha_f = r/(r + 1) and alpha_m = (2 r - 1)/(r + 1); both have alpha = (1 - alpha_m + alpha_f)^2/4
-    and delta = 1/2 - alpha_m + alpha_f.
+    The numbers of the other families than Newmark's follow from `spectral` (`validation.diagnosis.schemes`): alpha_f of
+    HHT, theta of the theta scheme, rho_inf of the others.
     """
 
     alpha: float  # [-]
@@ -63,7 +64,12 @@ class Variant:
     coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]
     kept: Literal["both", "springs", "stress"] = "both"  # forces that are carried from step to step
     family: Family = "newmark"
-    spectral: float = 0.0  # e of HHT, r (the spectral radius at high frequency) of Chung and Hulbert [-]
+    spectral: float = 0.0  # alpha_f of HHT, theta of the theta scheme, else rho_inf [-]
+    split: float = 0.0  # share of the step at which a composite scheme is split; 0 is the usual one of its rho_inf [-]
+    contact: ContactForm = "springs"
+    dashpot: float = 0.0  # c / (2 sqrt(k m)) of the closed contact, k and m of springs and block [-]
+    clipped: bool = True  # the dashpot does not pull
+    restitution: float = 0.0  # of the impact law [-]
     parts: int = 1  # steps of the program in one of the scene's
     exact: bool = False  # no scheme: exact in time
     shift: int = 0  # steps by which the rows come late
@@ -74,14 +80,9 @@ class Variant:
 
     @property
     def scheme(self) -> tuple[float, float, float, float]:
-        """Return alpha, delta, alpha_m and alpha_f."""
-        if self.family == "newmark":
-            return self.alpha, self.delta, 0.0, 0.0
-        if self.family == "hht":
-            mass, force = 0.0, self.spectral
-        else:
-            mass, force = (2 * self.spectral - 1) / (self.spectral + 1), self.spectral / (self.spectral + 1)
-        return (1 - mass + force) ** 2 / 4, 0.5 - mass + force, mass, force
+        """Return alpha, delta, alpha_m and alpha_f of the last stage."""
+        last = stages(self)[-1]
+        return last.beta, last.gamma, last.mean_mass, last.mean_force
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,8 +181,17 @@ def _opens_only(scene: Scene) -> bool:
 
 def own_variant(scene: Scene) -> Variant:
     """Return the scene's own scheme and contact, nothing added."""
-    t, (closing, opening) = scene.time, scene.contact.band
+    closing, opening = scene.contact.band
     opens = scene.contact.law == "unilateral"
     ratio = opening / closing if closing else 0.0
-    ramp = scene.load.ramp
-    return Variant(t.alpha, t.delta, t.discount, t.start, opens=opens, band=closing, reopening=ratio, ramp=ramp)
+    return replace(own_scheme(scene), opens=opens, band=closing, reopening=ratio, ramp=scene.load.ramp)
+
+
+def own_scheme(scene: Scene) -> Variant:
+    """Return the scene's own scheme, of a block or of a column."""
+    t = scene.time
+    alpha, delta = (t.alpha, t.delta) if t.scheme == "newmark" else AVERAGE_ACCELERATION
+    spectral = t.rho_inf or 0.0
+    if t.scheme == "hht":
+        spectral = (1 - spectral) / (1 + spectral)
+    return Variant(alpha, delta, t.discount, t.start, family=t.scheme, spectral=spectral, split=t.split or 0.0)

@@ -18,6 +18,8 @@ from validation.errors import InputError
 from validation.runs.history import Array, History
 from validation.runs.regular import regular
 
+FIGURE_ENDINGS = (".svg", ".pdf", ".png")
+
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
@@ -88,6 +90,18 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """
     with atomic_path(path) as temporary, temporary.open("wb") as stream:
         write(stream)
+
+
+def check_ending(path: Path | None, field: str) -> None:
+    """Refuse a figure's file of an unknown kind, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        The path ends in none of `FIGURE_ENDINGS`.
+    """
+    if path is not None and path.suffix.lower() not in FIGURE_ENDINGS:
+        raise InputError(f"must end in {', '.join(FIGURE_ENDINGS)}", field=field, value=repr(path.name))
 
 
 def _umask() -> int:

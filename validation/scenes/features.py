@@ -40,6 +40,8 @@ UNILATERAL_COLUMN, FRICTIONAL_COLUMN = "column that opens", "column that slips"
 RIGID_BLOCKS, RIGID_JOINTS = "rigid blocks", "rigid joints"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
+DASHPOTS, IMPACT, AUGMENTED = "contact dashpots", "impact law", "augmented Lagrangian"
+GENERALISED_ALPHA, LEAPFROG, COMPOSITE = "generalised-alpha scheme", "leapfrog scheme", "composite scheme"
 FEATURES = (
     Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
     Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
@@ -48,7 +50,12 @@ FEATURES = (
     Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
     Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
     Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
-    Feature(RIGID, lambda scene: math.isinf(scene.contact.stiffness), linear=False),
+    # The law of an impact is one of velocities; a rigid stop in displacements turns back as its steps happen to.
+    Feature(
+        RIGID,
+        lambda scene: math.isinf(scene.contact.stiffness) and scene.contact.rule != "impact",
+        linear=False,
+    ),
     Feature(FRICTION, lambda scene: scene.contact.friction is not None, linear=False),
     Feature(LAGGED, lambda scene: scene.contact.rules == "lagged", linear=False),
     Feature(SLOPE, lambda scene: scene.load.slope != 0),
@@ -74,14 +81,23 @@ FEATURES = (
     Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
     Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
+    Feature(DASHPOTS, lambda scene: scene.contact.has_dashpots, linear=False),
+    Feature(IMPACT, lambda scene: scene.contact.rule == "impact", linear=False),
+    Feature(AUGMENTED, lambda scene: scene.contact.rule == "augmented", linear=False),
+    Feature(GENERALISED_ALPHA, lambda scene: scene.time.scheme in ("chung-hulbert", "hht", "wbz"), of_columns=True),
+    Feature(LEAPFROG, lambda scene: scene.time.scheme == "leapfrog", of_columns=True),
+    Feature(COMPOSITE, lambda scene: scene.time.scheme == "composite", of_columns=True),
 )
 OF_MOVING_COLUMN = frozenset({UNILATERAL_COLUMN, FRICTIONAL_COLUMN})
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
-# Viscous damping is defined where the motion is linear; the discount follows the kinetic energy of one block.
+SCHEMES = frozenset({GENERALISED_ALPHA, LEAPFROG, COMPOSITE})  # other than Newmark's; an exact motion has none either
+CONTACT_METHODS = frozenset({DASHPOTS, IMPACT, AUGMENTED})
+# Viscous damping is defined where the motion is linear, and written for Newmark's scheme; the discount follows the
+# kinetic energy of one block.
 DAMPING_APART: Apart = (
-    (DAMPING, frozenset({BASE_MOTION, UNILATERAL, COLUMN})),
-    (ADAPTIVE, frozenset({BASE_MOTION, UNILATERAL, COLUMN, DAMPING})),
+    (DAMPING, SCHEMES | {BASE_MOTION, UNILATERAL, COLUMN}),
+    (ADAPTIVE, SCHEMES | {BASE_MOTION, UNILATERAL, COLUMN, DAMPING}),
 )
 FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than the declaration: users' solvers see them
 

@@ -14,7 +14,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
-_REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("\w+"(?: or "\w+")*))?$')
+_REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w-]+"(?: or "[\w-]+")*))?$')
 
 
 @dataclass(frozen=True)
@@ -38,15 +38,21 @@ def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
     for name, field in table.model_fields.items():
         for key in field.metadata:
             if isinstance(key, Key):
-                yield name, field, key
+                yield field.alias or name, field, key
 
 
 def stated(table: Section) -> Iterator[tuple[str, Any, Key]]:
     """Yield name, value and description of the keys whose values are not the defaults."""
     for name, field, key in keys_of(type(table)):
-        value = getattr(table, name)
+        value = stated_value(table, name)
         if value != field.default:
             yield name, value, key
+
+
+def stated_value(table: Section, key_name: str) -> Any:
+    """Return the value of a key by the name that a file gives it."""
+    alias = f"stated_{key_name}"
+    return getattr(table, alias if alias in type(table).model_fields else key_name)
 
 
 def check_needs(tables: Mapping[str, Section]) -> None:
@@ -83,7 +89,7 @@ def _fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) -> b
     table = tables.get(section or place)
     if table is None:
         return False
-    value = getattr(table, name)
+    value = stated_value(table, name)
     return value != type(table).model_fields[name].default if words is None else f'"{value}"' in words.split(" or ")
 
 

@@ -24,6 +24,7 @@ LEAST_MODULUS = 1e6  # Pa
 LARGEST_IN_GPA = 200.0  # what is below in the place of a modulus is taken for GPa, from here on for MPa
 LEAST_FRICTION = 5.0  # deg
 LARGEST_COEFFICIENT = 1.5  # of friction
+LARGEST_DAMPING_RATIO = 1.0  # of dashpots: critical
 EARTH = 9.81  # m/s2
 UNIT_FACTORS = (1e-3, 1e-6, 1e-9, 1e3, 1e6, 1e9)  # between Pa, kPa, MPa and GPa
 
@@ -33,7 +34,7 @@ class Implausible:
     """A value that was probably not meant, and what to write."""
 
     field: str
-    kind: str  # "density", "modulus", "wave", "strain" or "friction"
+    kind: str  # "density", "modulus", "wave", "strain", "friction" or "damping ratio"
     sentence: str
 
 
@@ -59,6 +60,8 @@ def implausible_values(scene: Scene) -> list[Implausible]:
         values += units or [*_wave(body), *_strain(body)]
     for field, angle in _friction_angles(scene):
         values += _friction(field, angle)
+    if scene.column is None:
+        values += _damping_ratio(scene.contact.damping_ratio)
     return values
 
 
@@ -198,3 +201,12 @@ def _friction(field: str, angle: float | None) -> Iterator[Implausible]:
     else:
         advice = f"is below {LEAST_FRICTION:g} deg, lower than that of any rock joint: write the angle in degrees"
     yield Implausible(field, "friction", f"{field} = {angle:g} deg {_or_meant(advice)}")
+
+
+def _damping_ratio(ratio: float) -> Iterator[Implausible]:
+    if ratio <= LARGEST_DAMPING_RATIO:
+        return
+    field = "contact.damping_ratio"
+    advice = _or_meant(f"write damping_ratio = {ratio / 100:.4g}")
+    sentence = f"{field} = {ratio:g} is above critical damping and looks like per cent: {advice}"
+    yield Implausible(field, "damping ratio", sentence)

@@ -89,11 +89,25 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check_rule(self) -> Self:
-        weights = self.time.alpha, self.time.delta
-        if self.column is None and self.contact.rule != "newmark" and weights != (0.25, 0.5):
+        if self.column is not None or self.contact.rule in ("newmark", "augmented"):
+            return self
+        rule = f"rule = {self.contact.rule!r}"
+        t = self.time
+        if t.scheme != "newmark":
+            raise ValueError(f'contact: {rule} goes with time.scheme = "newmark", got "{t.scheme}"')
+        numbers = f"got {t.alpha:g} and {t.delta:g}"
+        if self.contact.rule == "impact":
+            # Moreau and Jean's theta is this family of Newmark's; 1e-12 is for numbers of few digits.
+            theta = (t.delta + 0.5) / 2
+            if not (0.5 <= theta <= 1 and math.isclose(t.alpha, theta**2, rel_tol=1e-12)):
+                raise ValueError(
+                    f"contact: {rule} steps by Moreau's theta: time.alpha must be theta^2 and time.delta "
+                    f"2 theta - 1/2 with theta from 1/2 to 1, such as 0.25 and 0.5, {numbers}"
+                )
+        elif (t.alpha, t.delta) != (0.25, 0.5):
             raise ValueError(
-                f"contact: rule = {self.contact.rule!r} steps the block by average acceleration: time.alpha must be "
-                f"0.25 and time.delta 0.5, got {weights[0]:g} and {weights[1]:g}"
+                f"contact: {rule} steps the block by average acceleration: time.alpha must be 0.25 and time.delta "
+                f"0.5, {numbers}"
             )
         return self
 
@@ -153,11 +167,13 @@ class Scene(SceneTables):
             A key is no key of a scene, a value is not allowed, or two of the keys exclude each other.
         """
         data = self.definition()
+        replaced_keys = set(values)
         for field, value in values.items():
-            if both := [other for other in _EXCLUSIVE.get(field, ()) if other in values]:
+            excluded = _excluded(field, value)
+            if both := [other for other in excluded if other in values]:
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
             _set_dotted(data, field, value, self.name)
-        replaced_keys = {*values, *(other for field in values for other in _EXCLUSIVE.get(field, ()))}
+            replaced_keys |= set(excluded)
         sweep = {f: v for f, v in self.sweep.items() if f not in replaced_keys}
         data["sweep"] = sweep if set(sweep) - {"mode"} else {}
         if label:
@@ -192,9 +208,21 @@ def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> 
     table = data.setdefault(section, {}) if section else data
     if not isinstance(table, dict):
         raise InputError("must be section.key", source=where, field=field, value=repr(field))
-    for partner in _EXCLUSIVE.get(field, ()):
+    for partner in _excluded(field, value):
         table.pop(partner.partition(".")[2], None)
     table[key] = value
+
+
+def _excluded(field: str, value: object) -> tuple[str, ...]:
+    """Return the keys of the same table that a key with this value excludes."""
+    if field == "time.scheme":
+        # What the new scheme has no number for goes; rho_inf of one scheme is rho_inf of the next.
+        if value == "newmark":
+            return ("time.rho_inf", "time.split")
+        if value == "leapfrog":
+            return ("time.alpha", "time.delta", "time.rho_inf", "time.split")
+        return ("time.alpha", "time.delta") if value == "composite" else ("time.alpha", "time.delta", "time.split")
+    return _EXCLUSIVE.get(field, ())
 
 
 def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str, type[Section]]:
@@ -218,13 +246,19 @@ def _all_tables() -> dict[str, type[Section]]:
 def _sweepable() -> set[str]:
     """Return the dotted keys of the tables that a sweep may vary."""
     tables = {place: table for place, table in tables_of_scenes().items() if place != "run" and "." not in place}
-    return {f"{place}.{name}" for place, table in tables.items() for name in table.model_fields}
+    return {
+        f"{place}.{field.alias or name}"
+        for place, table in tables.items()
+        for name, field in table.model_fields.items()
+    }
 
 
 _FILES = ("fem.mesh", "load.base_motion", "input.record")
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
     "time.gg_rate": ("time.gg",),
+    "contact.damping_ratio": ("contact.restitution",),
+    "contact.restitution": ("contact.damping_ratio",),
     "fem.elements": ("fem.mesh",),
     "fem.mesh": ("fem.elements",),
     "block.side": ("block.width", "block.height", "block.vertices", "block.base", "block.top"),

@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
 
+from validation.errors import InputError
 from validation.scenes.keys import Key, Section
 from validation.scenes.outline import Point, area, check_polygon, convex_quadrilateral
 
@@ -80,6 +81,7 @@ Words = Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_distinct
 
 OPENS = 'law = "unilateral"'
 STEPPED = 'rule = "newmark" or "implicit"'
+WITH_RHO_INF = 'scheme = "chung-hulbert" or "hht" or "wbz" or "composite"'
 UPDATED = 'geometry = "updated"'
 
 
@@ -173,9 +175,25 @@ class ContactSection(Section):
     ] = None
     cohesion: Annotated[NonNegative, Key("Pa", "over the whole base, half at each corner", None, ("friction",))] = 0.0
     rule: Annotated[
-        Literal["newmark", "implicit", "energy-conserving"],
+        Literal["newmark", "implicit", "energy-conserving", "impact", "augmented"],
         Key("", "how a step takes the contact force", "", (OPENS,)),
     ] = "newmark"
+    damping_ratio: Annotated[
+        NonNegative,
+        Key("", "c / (2 sqrt(k m)) of dashpots beside the springs, k both springs", "ζ", (OPENS, 'rule = "newmark"')),
+    ] = 0.0
+    restitution: Annotated[
+        Annotated[Real, Field(ge=0, le=1)] | None,
+        Key(
+            "",
+            "rebound over landing speed: of the impact law, or in place of damping_ratio",
+            "e",
+            (OPENS, 'rule = "newmark" or "impact"'),
+        ),
+    ] = None
+    penetration: Annotated[
+        Positive, Key("m", "that the passes of the augmented Lagrangian leave", None, ('rule = "augmented"',))
+    ] = 1e-9
     rules: Annotated[
         Literal["consistent", "lagged"],
         Key("", "lagged: friction of the iteration before", "", ("friction", 'rule = "newmark"')),
@@ -199,18 +217,43 @@ class ContactSection(Section):
             raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
         if math.isinf(self.stiffness):
             self._check_rigid()
+        self._check_impacts()
         if self.law == "locked" and self.shear_stiffness == 0:
             raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
         return self
 
     def _check_rigid(self) -> None:
-        if self.law == "locked" or self.rule == "energy-conserving":
-            stated_rule = 'law = "locked"' if self.law == "locked" else 'rule = "energy-conserving"'
+        if self.law == "locked" or self.rule in ("energy-conserving", "augmented"):
+            stated_rule = 'law = "locked"' if self.law == "locked" else f'rule = "{self.rule}"'
             raise ValueError(f"stiffness must be finite with {stated_rule}, got inf")
         if self.shear_stiffness is None:
             raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
         if self.band[1] > 0:
             raise ValueError(f"band must open at once, band[1] = 0, where stiffness = inf, got {list(self.band)}")
+
+    def _check_impacts(self) -> None:
+        """Check what turns an impact back: dashpots beside the springs, a law of impact, or a multiplier."""
+        if self.rule == "impact":
+            if math.isfinite(self.stiffness):
+                raise ValueError(f'stiffness must be inf with rule = "impact", got {self.stiffness:g}')
+            if self.restitution is None:
+                raise ValueError('restitution is required with rule = "impact", got nothing; 0 is plastic, 1 elastic')
+        if self.damping_ratio and self.restitution is not None:
+            raise ValueError("damping_ratio and restitution exclude each other, got both")
+        if self.has_dashpots and math.isinf(self.stiffness):
+            raise ValueError(
+                'stiffness must be finite where dashpots stand beside it, got inf; rule = "impact" takes restitution'
+            )
+        if self.rule == "newmark" and self.restitution == 0:
+            raise ValueError('restitution must be greater than 0 of dashpots, got 0; rule = "impact" takes 0')
+        if self.friction is not None and (self.has_dashpots or self.rule in ("impact", "augmented")):
+            method = "dashpots" if self.has_dashpots else f'rule = "{self.rule}"'
+            raise ValueError(f"friction does not go with {method}, got {self.friction:g} deg")
+
+    @property
+    def has_dashpots(self) -> bool:
+        """Whether dashpots stand beside the springs, by their damping ratio or by the rebound that they leave."""
+        return self.damping_ratio > 0 or (self.rule == "newmark" and self.restitution is not None)
 
     @property
     def shear(self) -> float:
@@ -248,12 +291,28 @@ class LoadSection(Section):
 
 
 class TimeSection(Section):
-    """The Newmark scheme of equations (6) and (7) and its steps."""
+    """The time scheme, Newmark's of equations (6) and (7) or another by its name, and its steps."""
 
     step: Annotated[Positive, Key("s", "time step", "dt")]
     steps: Annotated[Count, Key("", "number of steps")]
-    alpha: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the displacement", "α")] = 0.5
-    delta: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the velocity", "δ")] = 1.0
+    scheme: Annotated[
+        Literal["newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite"],
+        Key("", "time scheme; dda-validate list schemes describes them", ""),
+    ] = "newmark"
+    rho_inf: Annotated[
+        Annotated[Real, Field(ge=0, le=1)] | None,
+        Key("", "spectral radius at infinite frequency; of the composite scheme 0 if absent", "ρ∞", (WITH_RHO_INF,)),
+    ] = None
+    split: Annotated[
+        Annotated[Real, Field(gt=0, lt=1)] | None,
+        Key("", "share of the step that the composite scheme's first solve spans", "γ", ('scheme = "composite"',)),
+    ] = None
+    stated_alpha: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the displacement", "α")] = (
+        Field(0.5, alias="alpha")
+    )
+    stated_delta: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the velocity", "δ")] = Field(
+        1.0, alias="delta"
+    )
     gg: Annotated[
         Annotated[Real, Field(ge=0, le=1)] | None, Key("", "factor on the velocity at the start of each step")
     ] = None
@@ -265,7 +324,45 @@ class TimeSection(Section):
     def _check(self) -> Self:
         if self.gg is not None and self.gg_rate is not None:
             raise ValueError("gg and gg_rate exclude each other, got both")
+        if self.scheme != "newmark":
+            self._check_scheme()
         return self
+
+    def _check_scheme(self) -> None:
+        """Check the numbers of a scheme that is not Newmark's."""
+        named = f'scheme = "{self.scheme}"'
+        for weight, value in (("alpha", self.stated_alpha), ("delta", self.stated_delta)):
+            if f"stated_{weight}" in self.model_fields_set:
+                raise ValueError(f"{weight} is Newmark's and does not go with {named}, got {value:g}")
+        if self.rho_inf is None and self.scheme in ("chung-hulbert", "hht", "wbz"):
+            raise ValueError(f"rho_inf is required with {named}, got nothing")
+        if self.scheme == "hht" and self.rho_inf is not None and self.rho_inf < 0.5:
+            raise ValueError(
+                f"rho_inf must be at least 0.5 with {named}, got {self.rho_inf:g}; "
+                "HHT's alpha = -(1 - rho_inf) / (1 + rho_inf) lies between -1/3 and 0"
+            )
+        if self.scheme == "leapfrog" and self.start != "consistent":
+            raise ValueError(f'start must be "consistent" with {named}, got "{self.start}"')
+
+    @property
+    def alpha(self) -> float:
+        """Newmark's weight of the acceleration in the displacement; refused of another scheme."""
+        return self._newmark("alpha", self.stated_alpha)
+
+    @property
+    def delta(self) -> float:
+        """Newmark's weight of the acceleration in the velocity; refused of another scheme."""
+        return self._newmark("delta", self.stated_delta)
+
+    def _newmark(self, field: str, value: float) -> float:
+        """Return a weight of Newmark's scheme: no one may take another scheme for it."""
+        if self.scheme != "newmark":
+            raise InputError(
+                'is needed for what is asked, of scheme = "newmark"',
+                field=f"time.{field}",
+                value=f'scheme = "{self.scheme}"',
+            )
+        return value
 
     @property
     def discount(self) -> float:

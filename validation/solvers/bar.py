@@ -17,9 +17,9 @@ from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, time_of, to_modes
 from validation.solvers.translation import check_columns, naming, no_fields, switches_between_steps, to_run
 
 if TYPE_CHECKING:
@@ -43,7 +43,11 @@ class NewmarkBar(Prepared):
         self.scene = scene
         self.name = name
         self.bar = bar_of(scene)
-        self.scheme = scheme_of(scene)
+        self.scheme = self.scheme_of_bar()
+
+    def scheme_of_bar(self) -> fem_reference.Scheme:
+        """Return the scheme of the scene."""
+        return scheme_of(self.scene)
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
@@ -112,11 +116,16 @@ class OpeningBar(Prepared):
         result = self.result
         step = self.scheme.step
         force = result.contact_pressure * self.bar.width
+        end_weight = opened.end_weight(self.scene)
+        if end_weight is None:
+            impulse = opened.impulse_of_momentum(self.scene, result.velocity)
+        else:
+            impulse = opened.impulse_of_force(force, step, end_weight)
         return opened.record(
             self.scene,
             time=result.time,
             force=force,
-            impulse=opened.impulse_of_force(force, step, self.scheme.delta),
+            impulse=impulse,
             penetration=np.maximum(0.0, -result.gap),
             gap=np.maximum(0.0, result.gap),
             open_share=1 - result.closed,
@@ -129,7 +138,7 @@ class ExactBar(Solver):
     """Exact in space, Newmark in time."""
 
     name = "bar"
-    handles: frozenset[str] = frozenset(
+    handles: frozenset[str] = features.SCHEMES | frozenset(
         {features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING, features.RAMP}
     )
     apart = ((features.RAMP, frozenset({features.UNILATERAL})), *features.DAMPING_APART)
@@ -160,6 +169,10 @@ class ExactBar(Solver):
 
 class ContinuousBar(NewmarkBar):
     """A bar in continuous time; gg is the rate -ln(gg) / dt."""
+
+    def scheme_of_bar(self) -> fem_reference.Scheme:
+        """Return the step and the discount of the scene."""
+        return time_of(self.scene)
 
     def history(self) -> fem_reference.Result:
         """Return the history, exact in time."""
@@ -195,7 +208,8 @@ class Continuum(ExactBar):
     """Exact in space and time."""
 
     name = "continuum"
-    handles = frozenset({features.SUB_BLOCKS, features.DAMPING})
+    unread = (*OF_SUB_BLOCKS, *OF_SCHEMES)
+    handles = features.SCHEMES | {features.SUB_BLOCKS, features.DAMPING}
     role = Role.TRUTH
     rank = 6.0
     line = LineStyle("#999999", (), 0.7, 1)

@@ -34,6 +34,8 @@ class Role(enum.StrEnum):
 
 
 EXACT_IN_TIME = (Role.LIMIT, Role.TRUTH)  # no time step enters the motion
+# keys that a motion exact in time does not read
+OF_SCHEMES = ("time.alpha", "time.delta", "time.start", "time.scheme", "time.rho_inf", "time.split")
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers.blocks.closed import block_of, dda_limit, load_of
-from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
@@ -50,7 +50,10 @@ def scheme_of(scene: Scene) -> dda.Scheme:
 
     t = scene.time
     d = scene.damping
-    return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    if t.scheme == "newmark":
+        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    with naming(scene):
+        return dda.named_scheme(t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split)
 
 
 class OneBlock(Prepared):
@@ -169,6 +172,10 @@ class SubBlocks(OneBlock):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
+# Dashpots, impact law and augmented Lagrangian are of the corners of one block, which open at once.
+NOT_WITH_METHODS = frozenset({features.SUB_BLOCKS, features.DEAD_BAND})
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
@@ -180,9 +187,14 @@ class DDA(Solver):
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.RULES
+        | features.SCHEMES
+        | features.CONTACT_METHODS
     )
     apart: features.Apart = (
         (features.ROTATION, handles - COMPATIBLE),
+        (features.DASHPOTS, NOT_WITH_METHODS),
+        (features.AUGMENTED, NOT_WITH_METHODS),
+        (features.IMPACT, NOT_WITH_METHODS | {features.BASE_MOTION}),
         (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
         (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
         (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
@@ -198,7 +210,7 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why a band and friction do not go together."""

@@ -20,7 +20,7 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, no_fields
 
 if TYPE_CHECKING:
@@ -351,11 +351,26 @@ class BarMotion(Motion):
         return Rebound(-closing, opening[0] if opening else None)
 
 
+UNSYMMETRIC = frozenset({features.OFF_CENTRE, features.SLOPE, features.BASE_MOTION})
+
+
 class BlockEvents(Solver):
     """The block of one strain on springs without tension and with friction, exact in time: `dda` as dt -> 0."""
 
     name = "block-events"
-    handles = features.LOADS | features.RULES | {features.UNILATERAL, features.FRICTION, features.SLOPE}
+    # An augmented Lagrangian tends to a rigid stop in displacements, which turns back as its steps happen to: no limit.
+    handles = (
+        features.LOADS
+        | features.RULES
+        | features.SCHEMES
+        | {features.UNILATERAL, features.FRICTION, features.SLOPE, features.DASHPOTS, features.IMPACT}
+    )
+    # Dashpots and the law of impact are of both corners landing at once, without friction, on a base at rest.
+    apart: features.Apart = (
+        (features.DASHPOTS, UNSYMMETRIC),
+        (features.IMPACT, UNSYMMETRIC),
+    )
+    unread: tuple[str, ...] = OF_SCHEMES
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
     rank = 5.5
@@ -377,7 +392,7 @@ class BarEvents(BlockEvents):
     """The bar on a spring that carries no tension, exact in space and time: what `fem` tends to."""
 
     name = "bar-events"
-    handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES
+    handles = frozenset({features.UNILATERAL, features.WEIGHT}) | features.RULES | features.SCHEMES
     role = Role.TRUTH
     rank = 6.5
     line = LineStyle("#666666", (), 0.9, 1)

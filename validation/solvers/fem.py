@@ -79,7 +79,21 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
 
     t = scene.time
     d = scene.damping
-    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    if t.scheme == "newmark":
+        return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    with naming(scene):
+        return fem_reference.named_scheme(
+            t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split
+        )
+
+
+def time_of(scene: Scene) -> fem_reference.Scheme:
+    """Return the step and the discount of a scene, for what is exact in time and knows no scheme."""
+    import fem_reference
+
+    t = scene.time
+    d = scene.damping
+    return fem_reference.Scheme(0.25, 0.5, t.discount, t.step, "consistent", d.mass, d.stiffness)
 
 
 def mesh_limit(problem: fem_reference.Problem, model: Callable[[], Model | None]) -> StepLimit:
@@ -238,13 +252,17 @@ class OpeningMesh(Prepared):
         columns = result.columns
         energies = zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = columns["contact_pressure"] * self.scene.block.base_length
-        end_weight = 1.0 if self.contact.rule == "implicit" else scheme.delta
+        end_weight = opened.end_weight(self.scene)
+        if end_weight is None:
+            impulse = opened.impulse_of_momentum(self.scene, columns["velocity"])
+        else:
+            impulse = opened.impulse_of_force(force, scheme.step, end_weight)
         slip = None if self.contact.friction is None else columns["largest_slide"]
         return opened.record(
             self.scene,
             time=result.time,
             force=force,
-            impulse=opened.impulse_of_force(force, scheme.step, end_weight),
+            impulse=impulse,
             penetration=columns["largest_penetration"],
             gap=columns["largest_gap"],
             slip=slip,
@@ -260,21 +278,25 @@ class FiniteElements(Solver):
     """The same block as a fine mesh of scikit-fem elements."""
 
     name = "fem"
-    handles = features.LOADS | frozenset(
-        {
-            features.SLOPE,
-            features.FRICTION,
-            features.SUB_BLOCKS,
-            features.UNILATERAL,
-            features.IMPLICIT,
-            features.COLUMN,
-            features.UNILATERAL_COLUMN,
-            features.FRICTIONAL_COLUMN,
-            features.RIGID_JOINTS,
-            features.DAMPING,
-            features.ADAPTIVE,
-            features.RAMP,
-        }
+    handles = (
+        features.LOADS
+        | features.SCHEMES
+        | frozenset(
+            {
+                features.SLOPE,
+                features.FRICTION,
+                features.SUB_BLOCKS,
+                features.UNILATERAL,
+                features.IMPLICIT,
+                features.COLUMN,
+                features.UNILATERAL_COLUMN,
+                features.FRICTIONAL_COLUMN,
+                features.RIGID_JOINTS,
+                features.DAMPING,
+                features.ADAPTIVE,
+                features.RAMP,
+            }
+        )
     )
     apart = ((features.RAMP, frozenset({features.UNILATERAL, features.ADAPTIVE})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
+from validation.theory.stepping import Stepping
 
 
 @dataclass(frozen=True)
 class StepLimit:
     """What limits the step of a conditionally stable scheme."""
 
-    critical: Callable[[float, float, float], float]  # of (alpha, delta, gg): the largest stable w dt [-], or infinity
+    # Newmark's of (alpha, delta, gg): the largest stable w dt [-], or infinity
+    critical: Callable[[float, float, float], float]
     highest_frequency: Callable[[], float]  # [rad/s], contacts closed and sticking; infinite on a rigid stop
 
 
@@ -37,15 +39,21 @@ def check_step(scene: Scene, limit: StepLimit) -> None:
         w dt exceeds the critical value of the scheme and the scene does not allow it.
     """
     t = scene.time
-    omega = min(limit.critical(t.alpha, t.delta, gg) for gg in discounts(scene))
+    stepping = Stepping.of(scene)
+    if t.scheme == "newmark":
+        omega = min(limit.critical(t.alpha, t.delta, gg) for gg in discounts(scene))
+    else:
+        omega = stepping.critical_omega
     if math.isinf(omega) or t.allow_unstable:
         return
     frequency = limit.highest_frequency()
     largest_step = omega / frequency
     if t.step <= largest_step * (1 + 1e-12):
         return
-    scheme = f"alpha = {t.alpha:g}, delta = {t.delta:g}"
+    scheme = f"alpha = {t.alpha:g}, delta = {t.delta:g}" if t.scheme == "newmark" else f"the {stepping.name}"
     advice = "choose 2 alpha >= delta >= 1/2, or set allow_unstable = true"
+    if t.scheme != "newmark":
+        advice = "choose an implicit scheme (dda-validate list schemes), or set allow_unstable = true"
     if largest_step == 0:
         where = "on a rigid stop (stiffness = inf)" if math.isinf(frequency) else "without damping"
         raise InputError(

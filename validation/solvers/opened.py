@@ -50,6 +50,26 @@ def record(scene: Scene, **parts: Any) -> ContactRecord:
     return ContactRecord(start_velocity=speed, start_energy=energy, input_energy=input_energy, **parts)
 
 
+def end_weight(scene: Scene) -> float | None:
+    """Return the weight of the contact force at a step's end in the step's impulse; None where it is no such sum.
+
+    It is delta of Newmark's scheme, and 1 of a contact force that is fully implicit or the impulse of an impact over
+    dt. The conserving rule and the other schemes take forces between the steps, or forces of several.
+    """
+    if scene.time.scheme != "newmark":
+        return None
+    weights = {"newmark": scene.time.delta, "augmented": scene.time.delta, "implicit": 1.0, "impact": 1.0}
+    return weights.get(scene.contact.rule)
+
+
+def end_weight_of_column(scene: Scene) -> float:
+    """Return the weight of a column's contact force at a step's end: delta, or 1/2, true to second order of others.
+
+    The momentum of the column does not give the impulse at its foot, so that there is no exact sum to take instead.
+    """
+    return scene.time.delta if scene.time.scheme == "newmark" else 0.5
+
+
 def impulse_of_force(force: Array, step: float, late: float) -> Array:
     """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s].
 
@@ -67,7 +87,7 @@ def impulse_of_force(force: Array, step: float, late: float) -> Array:
 
 
 def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
-    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + F t from t = 0 on [N s].
+    """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + integral F from t = 0 on [N s].
 
     Parameters
     ----------
@@ -78,9 +98,11 @@ def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
     """
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
     gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
-    return np.asarray(
-        gained + resultant_load(scene) * scene.time.step * np.arange(1, len(velocity) + 1), dtype=np.float64
-    )
+    time = scene.time.step * np.arange(1, len(velocity) + 1)
+    ramp = scene.load.ramp
+    if ramp > 0:  # the load rises to F in the ramp: less than F t by F ramp / 2 at its end
+        time = np.where(time < ramp, time**2 / (2 * ramp), time - ramp / 2)
+    return np.asarray(gained + resultant_load(scene) * time, dtype=np.float64)
 
 
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:

@@ -19,6 +19,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory.statics import moduli, size
+from validation.theory.stepping import Stepping
 
 
 def coefficient(scene: Scene) -> float:
@@ -109,9 +110,13 @@ def lag(scene: Scene) -> float:
 def ringing_decay(scene: Scene) -> float:
     """Rate at which scheme and discount damp the slowest normal ringing [1/s].
 
-    w_1^2 (delta - 1/2) dt / 2 - ln(gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement.
+    w_1^2 (delta - 1/2) dt / 2 - ln(gg) / (2 dt), for w_1 dt below 1; w_1^2 = g cos(b) / settlement. Of other schemes
+    w_1 times the leading term of their damping ratio.
     """
     t = scene.time
+    if t.scheme != "newmark":
+        frequency = math.sqrt(across(scene) / settlement(scene))
+        return frequency * Stepping.of(scene).leading_damping(frequency * t.step)
     return across(scene) / settlement(scene) * (t.delta - 0.5) * t.step / 2 + drag_rate(scene) / 2
 
 

@@ -248,10 +248,15 @@ def cannot_gain(scene: Scene) -> bool:
     """Return whether opening and closing can put no energy into the block.
 
     With delta >= 1 and 2 alpha >= delta the energy E + (alpha - delta/2) dt^2 A'MA/2 cannot rise, since the springs'
-    energy is convex; the two rules beside Newmark's have no such condition.
+    energy is convex; implicit and conserving contact and the law of impact have no such condition. No other scheme has
+    such an energy, however much it damps.
     """
     t = scene.time
-    return scene.contact.rule != "newmark" or (t.delta >= 1 and 2 * t.alpha >= t.delta)
+    if t.scheme != "newmark":
+        return False
+    if scene.contact.rule in ("implicit", "energy-conserving", "impact"):
+        return True
+    return t.delta >= 1 and 2 * t.alpha >= t.delta
 
 
 def hidden_from(scene: Scene) -> float | None:
@@ -261,9 +266,12 @@ def hidden_from(scene: Scene) -> float | None:
 
         dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
 
-    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest.
+    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest, and of schemes
+    other than Newmark's.
     """
     t = scene.time
+    if t.scheme != "newmark":
+        return None
     load = scene.load
     height = statics.height(scene)
     weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0

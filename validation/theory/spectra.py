@@ -14,6 +14,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory.statics import height, moduli, size
+from validation.theory.stepping import Stepping
 
 EPS = 2.0**-52
 
@@ -40,8 +41,11 @@ def bar_frequency(scene: Scene) -> float:
 
 
 def roots(scene: Scene, frequency: float) -> tuple[complex, complex]:
-    """Eigenvalues of one Newmark step of a mode: lambda^2 - trace lambda + det = 0, (10) to (12) with gg."""
+    """Eigenvalues of one step of a mode, Newmark's by lambda^2 - trace lambda + det = 0, (10) to (12) with gg."""
     t = scene.time
+    if t.scheme != "newmark":
+        first, second = Stepping.of(scene).roots(frequency * t.step)[:2]
+        return complex(first), complex(second)
     omega2 = (frequency * t.step) ** 2
     beta = 1 + t.alpha * omega2
     trace = 1 - omega2 / (2 * beta) + t.discount * (1 - t.delta * omega2 / beta)
@@ -71,12 +75,16 @@ def critical_omega(scene: Scene) -> float:
     not positive; for delta >= 1/2 no complex pair leaves the unit circle.
     """
     t = scene.time
+    if t.scheme != "newmark":
+        return Stepping.of(scene).critical_omega
     below = 0.5 + t.discount * (2 * t.delta - 0.5) - 2 * t.alpha * (1 + t.discount)
     return math.sqrt(2 * (1 + t.discount) / below) if below > EPS else math.inf
 
 
 def spectral_radius(scene: Scene, frequency: float) -> float:
     """Largest |lambda| of one step of a mode."""
+    if scene.time.scheme != "newmark":
+        return Stepping.of(scene).spectral_radius(frequency * scene.time.step)
     return max(map(abs, roots(scene, frequency)))
 
 

@@ -15,7 +15,6 @@ from validation.gates.changes import Change
 from validation.gates.gate import Status, Verdict, value_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
-from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.runs.text import printable
 
@@ -116,7 +115,8 @@ def badly_ended(answer: RunAnswer) -> Iterator[str]:
         bad = _bad_cases(run)
         for case in answer.results.manifest(run.study.name).get("cases", []):
             if (case["scene"], case["solver"]) in bad:
-                yield how_it_ended(case["scene"], case["solver"], rows[case["key"]])
+                row = rows[case["key"]]
+                yield how_it_ended(case["scene"], case["solver"], row.outcome, row.notes)
 
 
 def _bad_cases(run: JudgedStudy) -> set[tuple[str, str]]:
@@ -127,9 +127,9 @@ def _bad_cases(run: JudgedStudy) -> set[tuple[str, str]]:
     return bad
 
 
-def how_it_ended(scene: str, solver: str, row: Row) -> str:
-    """Return the line of a case that did not complete."""
-    return printable(f"{scene} {solver}: {row.outcome}: {row.outcome.sentence} {'; '.join(row.notes)}")
+def how_it_ended(scene: str, solver: str, outcome: Outcome, notes: Sequence[str]) -> str:
+    """Return the line of a case that did not complete, or of several ones of a solver."""
+    return printable(f"{scene} {solver}: {outcome}: {outcome.sentence} {'; '.join(notes)}")
 
 
 # ---- the summary --------------------------------------------------------------------------------------------------

@@ -77,6 +77,17 @@ def keys() -> list[Line]:
     return lines
 
 
+def schemes() -> list[Line]:
+    """Return name, parameters, order, solves a step and description of every time scheme."""
+    from validation.theory.schemes import CARDS
+
+    lines: list[Line] = [("scheme", "parameters", "order", "solves", "description")]
+    for card in CARDS:
+        description = f"good: {card.good}. bad: {card.bad}. the same as: {card.aliases}"
+        lines += [BREAK, (card.name, card.parameters, card.order, str(card.solves), description)]
+    return lines
+
+
 def _studies() -> list[Study]:
     from validation.studies.catalogue import STUDIES, get_study
 
@@ -96,6 +107,7 @@ def _title(scene: Scene) -> str:
 LISTS: dict[str, Callable[[], list[Line]]] = {
     "keys": keys,
     "metrics": metrics,
+    "schemes": schemes,
     "studies": studies,
     "scenes": scenes,
     "solvers": solvers,

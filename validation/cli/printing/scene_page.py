@@ -17,6 +17,8 @@ from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.scene import Scene
+from validation.theory.schemes import aliases
+from validation.theory.stepping import Stepping
 
 INSIDE = 15  # characters of a block's width in the drawing
 NARROWEST = 5  # the same of a tall block
@@ -82,11 +84,16 @@ def _remarks(cases: Sequence[Scene], derived: Sequence[Sequence[numbers.Number]]
 def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
     """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
     t = first.time
-    scheme = SCHEMES.get((t.alpha, t.delta), "Newmark")
+    stepping = Stepping.of(first)
+    scheme = stepping.name
+    if t.scheme == "newmark":
+        scheme = f"{SCHEMES.get((t.alpha, t.delta), 'Newmark')}, alpha = {t.alpha:.4g}, delta = {t.delta:g}"
     start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
     yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
     discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
-    yield "scheme", f"{scheme}, alpha = {t.alpha:.4g}, delta = {t.delta:g}, {discount}"
+    yield "scheme", f"{scheme}, {discount}"
+    for sentence in aliases(stepping):
+        yield "", sentence
     if first.damping.present:
         yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
     if others := list(_other_keys(first)):

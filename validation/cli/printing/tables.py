@@ -182,12 +182,16 @@ def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
 
 
 def print_ends(results: Results, studies: list[str]) -> None:
-    """Name the cases that did not complete, and how they ended."""
+    """Name the cases that did not complete, and how they ended; what a solver says of several ones it says once."""
     rows = results.rows()
+    scenes: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for study in studies:
         for case in results.manifest(study)["cases"]:
-            if rows[case["key"]].outcome is not Outcome.COMPLETED:
-                echo(how_it_ended(case["scene"], case["solver"], rows[case["key"]]))
+            row = rows[case["key"]]
+            if row.outcome is not Outcome.COMPLETED:
+                scenes.setdefault((case["solver"], row.outcome, row.notes), []).append(case["scene"])
+    for (solver, outcome, notes), names in scenes.items():
+        echo(how_it_ended(names[0] if len(names) == 1 else f"{len(names)} cases", solver, outcome, notes))
 
 
 def after_run(

@@ -17,6 +17,7 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.target import ROUNDING, Target
+from validation.diagnosis.schemes import LARGEST_ALPHA_F
 from validation.diagnosis.variant import Variant
 from validation.runs.history import Array
 
@@ -34,11 +35,13 @@ NAMED: dict[str, tuple[float, float]] = {
 SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "weight": 1.0, "load": 0.1,
         "density": 0.1, "young": 0.1, "poisson": 0.1, "side": 0.1, "point": 0.1, "pressure_factor": 0.1,
         "displacement_factor": 0.1, "tall": 0.1, "viscous": 1.0, "structural": 1e-4, "ramp": 1e-2, "spectral": 0.1,
-        "inertia": 0.1, "gravity": 0.1}  # fmt: skip
+        "inertia": 0.1, "gravity": 0.1, "split": 0.1, "dashpot": 0.1, "restitution": 0.1}  # fmt: skip
 LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -15.0, "base": 0.0, "weight": 0.0, "viscous": 0.0,
-       "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0}  # fmt: skip
+       "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0, "split": 0.05, "dashpot": 0.0,
+       "restitution": 0.0}  # fmt: skip
 HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.0, "softness": 15.0, "base": 1e4, "weight": 1.1, "poisson": 0.49,
-        "point": 1.0, "viscous": 1e5, "structural": 1.0, "ramp": 1e3, "spectral": 1.0, "gravity": 50.0}  # fmt: skip
+        "point": 1.0, "viscous": 1e5, "structural": 1.0, "ramp": 1e3, "spectral": 1.0, "gravity": 50.0,
+        "split": 0.95, "dashpot": 100.0, "restitution": 1.0}  # fmt: skip
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of density, modulus, side, load and what is reported: other units
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
@@ -125,7 +128,7 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
 
 def _side(variant: Variant, name: str) -> float:
     """Return the side to which a number is nudged: away from its upper bound."""
-    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > HIGH.get(name, LARGEST_FACTOR) else 1.0
+    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > bounds(name, variant)[1] else 1.0
 
 
 def _nudged(variant: Variant, name: str) -> Variant:
@@ -141,14 +144,16 @@ def _moved(current: Fit, damping: float) -> Variant:
     scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
     step = np.linalg.solve(H + damping * np.diag(scale), J.T @ current.residual) * span
     changes = {
-        name: float(np.clip(getattr(current.variant, name) + change, *bounds(name)))
+        name: float(np.clip(getattr(current.variant, name) + change, *bounds(name, current.variant)))
         for name, change in zip(current.free, step, strict=True)
     }
     return changed(current.variant, changes)
 
 
-def bounds(name: str) -> tuple[float, float]:
-    """Return the range within sense of a free number."""
+def bounds(name: str, variant: Variant) -> tuple[float, float]:
+    """Return the range within sense of a free number of a variant."""
+    if name == "spectral" and variant.family == "hht":
+        return 0.0, LARGEST_ALPHA_F
     if name in ("point", "poisson"):
         return -HIGH[name], HIGH[name]
     return LOW.get(name, LEAST_FACTOR), HIGH.get(name, LARGEST_FACTOR)

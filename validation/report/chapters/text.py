@@ -11,7 +11,7 @@ from typing import Any
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
 from validation.runs.text import shown
-from validation.scenes.keys import keys_of
+from validation.scenes.keys import keys_of, stated_value
 from validation.scenes.scene import Scene
 
 DASH = "–"
@@ -154,7 +154,7 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
     for place, table in scene.tables().items():
         for name, field, _ in keys_of(type(table)) if place in PLACES else ():
             path = f"{place}.{name}"
-            value = getattr(table, name)
+            value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)
             if path in varied | NO_DATA or is_default:
                 continue

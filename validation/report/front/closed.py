@@ -18,7 +18,11 @@ NOISE = 1e-9  # of the load; a smaller tension is rounding
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
-    """Return a scene with other values in its table of time, which are known to be allowed."""
+    """Return a scene with other values in its table of time, which are known to be allowed; weights are Newmark's."""
+    weights = {name: values.pop(name) for name in ("alpha", "delta") if name in values}
+    if weights:
+        values |= {"scheme": "newmark", "rho_inf": None, "split": None}
+        values |= {f"stated_{name}": value for name, value in weights.items()}
     return scene.model_copy(update={"time": scene.time.model_copy(update=values)})
 
 

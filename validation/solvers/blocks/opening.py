@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,7 @@ from validation.solvers.blocks.closed import (
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
+from validation.theory.restitution import damping_ratio
 
 if TYPE_CHECKING:
     import dda
@@ -35,6 +37,7 @@ GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
 SLIDES = ("slide_m", "slide_n")  # m, along the base, less its own displacement
 STATES = ("state_m", "state_n")  # 0 open, 1 stick (closed without friction, too), 2 and -2 slip towards N and M
 COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
+PASSES = "passes"  # column: of an augmented Lagrangian, a step
 OPENING = (*GAPS, *FORCES, *SLIDES, *STATES, *COUNTS)
 
 
@@ -49,11 +52,10 @@ class OpeningBlock(Prepared):
         self.full = full
         self.result: dda.ContactResult | None = None
         b = scene.block
-        c = scene.contact
         with naming(scene):
             load = load_of(scene, motion)
             self.model = dda.UnilateralModel(block_of(scene), law_of(scene), load, b.base, b.top, velocity=b.velocity)
-            self.options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
+            self.options = options_of(scene, full)
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""
@@ -70,7 +72,8 @@ class OpeningBlock(Prepared):
         import dda
 
         no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *OPENING))
+        passes = (PASSES,) if self.options.rule == "augmented" else ()
+        check_columns(self.scene, (*dda.COLUMNS, *OPENING, *passes))
         model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
             result = self.solve(model_columns)
@@ -80,7 +83,9 @@ class OpeningBlock(Prepared):
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
-        names = [name for name in self.scene.run.columns if name in OPENING]
+        if result.step_passes is not None:
+            counts[PASSES] = "step_passes"
+        names = [name for name in self.scene.run.columns if name in (*OPENING, *counts)]
         return {name: np.asarray(getattr(result, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
@@ -96,8 +101,8 @@ class OpeningBlock(Prepared):
         """Return what the contact did in the history that was run."""
         if self.result is None:
             raise NotReported("dda: the scene was not run")
-        end_weight = {"newmark": self.scheme.delta, "implicit": 1.0}.get(self.options.rule)
-        if end_weight is None:  # the conserving rule: the force over a step is no sum of those at its ends
+        end_weight = opened.end_weight(self.scene)
+        if end_weight is None:
             impulse = opened.impulse_of_momentum(self.scene, self.result.velocity)
         else:
             impulse = opened.impulse_of_force(self.result.normal.sum(axis=0), self.scheme.step, end_weight)
@@ -111,7 +116,33 @@ def law_of(scene: Scene) -> dda.Unilateral:
     c = scene.contact
     tangent = None if c.friction is None else math.tan(math.radians(c.friction))
     cohesion = c.cohesion * scene.block.base_length / 2  # N
-    return dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, tangent, cohesion, c.rules)
+    law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, tangent, cohesion, c.rules)
+    return replace(law, damping=dashpot_of(scene)) if c.has_dashpots else law
+
+
+def dashpot_of(scene: Scene) -> float:
+    """Return the dashpot of a corner [N s/m]: half of c = 2 zeta sqrt(2 p m) of the rigid block on both."""
+    c = scene.contact
+    ratio = c.damping_ratio
+    if c.restitution is not None:
+        ratio = damping_ratio(c.restitution)
+    return ratio * math.sqrt(2 * c.stiffness * scene.block.mass)
+
+
+def options_of(scene: Scene, full: bool) -> dda.UnilateralOptions:
+    """Return how the steps of a scene take its contact, with the number that its rule needs."""
+    import dda
+
+    c = scene.contact
+    return dda.UnilateralOptions(
+        c.rule,
+        c.solve_limit,
+        c.cut,
+        energies=True,
+        full=full,
+        restitution=c.restitution if c.rule == "impact" else None,
+        penetration=c.penetration,
+    )
 
 
 def record_of_steps(

@@ -24,13 +24,17 @@ if TYPE_CHECKING:
 
 AREA = "area"  # column: of the outline, over that of the start [-]
 ROLLING_COLUMNS = (*OPENING, AREA)
-COMPATIBLE = features.LOADS | {
-    features.ROTATION,
-    features.UNILATERAL,
-    features.RIGID,
-    features.FRICTION,
-    features.SLOPE,
-}
+COMPATIBLE = (
+    features.LOADS
+    | features.SCHEMES
+    | {
+        features.ROTATION,
+        features.UNILATERAL,
+        features.RIGID,
+        features.FRICTION,
+        features.SLOPE,
+    }
+)
 
 
 class RollingBlock(Prepared):

@@ -16,7 +16,7 @@ from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.scene import Scene
 from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
-from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import KINDS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
@@ -151,11 +151,11 @@ class BarsEvents(Solver):
     """Columns whose contacts open or slip as elastic bars, exact in space and time: what `fem` tends to."""
 
     name = "bars-events"
-    handles = frozenset(
+    handles = features.SCHEMES | frozenset(
         {features.COLUMN, features.UNILATERAL_COLUMN, features.FRICTIONAL_COLUMN, features.RIGID_JOINTS}
     )
     sections = ("column", "input", "time", "run")
-    unread = ("column.solve_limit", "time.alpha", "time.delta", "time.start")
+    unread = ("column.solve_limit", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference.events", "fem_reference.problem")
     role = Role.TRUTH
     rank = 6.5

@@ -80,8 +80,8 @@ class LineColumn(Prepared):
         return StepLimit(critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
 
     def drive(self) -> Excitation:
-        """Return what drives the column at t = 0 and at every step."""
-        return excitation(self.scene, self.scheme.step * np.arange(self.scene.time.steps + 1.0))
+        """Return what drives the column at t = 0 and at the end of every stage of every step."""
+        return excitation(self.scene, self.scheme.stage_times(self.scene.time.steps))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""
@@ -164,7 +164,7 @@ class ContactLineColumn(LineColumn):
         return ContactRecord(
             time=result.time,
             force=force,
-            impulse=opened.impulse_of_force(force, self.scheme.step, self.scheme.delta),
+            impulse=opened.impulse_of_force(force, self.scheme.step, opened.end_weight_of_column(self.scene)),
             penetration=np.maximum(0.0, -openings).max(axis=0),
             gap=np.maximum(0.0, openings).max(axis=0),
             open_share=np.asarray((result.states < 0).mean(axis=0) if opens else np.zeros(len(result.time))),

@@ -17,7 +17,7 @@ from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.drive import read_record
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
-from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import Motion
 from validation.solvers.translation import naming
 
@@ -228,9 +228,9 @@ class ColumnEvents(Solver):
     """A column of blocks of one strain, or rigid, whose contacts open or slip, exact in time: `dda` as dt -> 0."""
 
     name = "column-events"
-    handles = features.OF_MOVING_COLUMN | {features.COLUMN, features.RIGID_BLOCKS}
+    handles = features.OF_MOVING_COLUMN | features.SCHEMES | {features.COLUMN, features.RIGID_BLOCKS}
     sections = ("column", "input", "time", "run")
-    unread = ("column.glue", "column.solve_limit", "time.alpha", "time.delta", "time.start")
+    unread = ("column.glue", "column.solve_limit", *OF_SCHEMES)
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
     rank = 5.6

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +12,9 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import OF_COLUMN, amplitude, column_of
-from validation.solvers.contract import LineStyle, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver
+from validation.solvers.fem import time_of
 from validation.solvers.translation import naming, no_fields, to_run
-
-if TYPE_CHECKING:
-    import fem_reference
-
 
 STILL = 1e-9  # Hz, for a frequency of zero, at which transfer matrices divide by zero
 
@@ -31,7 +27,7 @@ class ExactColumn(Prepared):
 
         self.scene = scene
         self.ground = ground_of(scene)
-        self.scheme = _scheme_of(scene)
+        self.scheme = time_of(scene)
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene."""
@@ -64,20 +60,13 @@ class ExactColumn(Prepared):
         return {name: 1j * w * under_base_motion[name] for name in names}
 
 
-def _scheme_of(scene: Scene) -> fem_reference.Scheme:
-    import fem_reference
-
-    t = scene.time
-    return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start)
-
-
 class ExactLayers(Solver):
     """A layered column by transfer matrices, exact in space and time."""
 
     name = "layers"
-    handles = frozenset({features.COLUMN})
+    handles = features.SCHEMES | {features.COLUMN}
     sections = ("column", "input", "time", "run")
-    unread = ("column.glue", "time.alpha", "time.delta", "time.start")
+    unread = ("column.glue", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference",)
     role = Role.TRUTH
     rank = 6.5
@@ -90,7 +79,7 @@ class ExactLayers(Solver):
 
         if scene.column is None:
             return "it takes columns only"
-        return applicable(_scheme_of(scene))
+        return applicable(time_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the layers."""

@@ -1,0 +1,129 @@
+r"""Roots of one step of a mode, and stability limits, of any scheme without viscous damping.
+
+For z = 1 + y a scheme of one stage has, with Omega = w dt,
+
+    y (y + 1 - gg) (1 + (1 - am) y)
+        + Omega^2 (1 + (1 - af) y) [gg d_u (g_0 + delta + delta y) + (e_0 + alpha + alpha y) (y + 1 - gg)] = 0,
+
+where g_0 + delta = 1; one root is z = 0 where am = af = 0. One of two stages maps (D, dt V) by a 2 x 2 matrix I + B,
+and y^2 - tr(B) y + det(B) = 0. Nothing is subtracted from one, so that slow modes keep their digits.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from dda.model.arrays import Array
+from dda.scheme.newmark import Scheme
+from dda.scheme.spectral import ComplexArray, critical_omega
+
+
+def state_matrix(scheme: Scheme, k: float) -> Array:
+    """Return B of a step (D, P) -> (I + B) (D, P) without load, with k = (w dt)^2; the scheme does not average."""
+    change = np.empty((2, 2))
+    for column, (D, P) in enumerate(((1.0, 0.0), (0.0, 1.0))):
+        f = -k * D
+        P1 = P
+        f1 = f
+        moved = 0.0
+        for stage in scheme.stages:
+            balance = stage.d_u * scheme.gg * P + stage.e_0 * f + stage.d_g * P1 + stage.e_g * f1
+            gained = stage.g_g * f1
+            moved += (balance - stage.alpha * k * (D + moved)) / (1 + stage.alpha * k)
+            f1 = -k * (D + moved)
+            gained += stage.g_0 * f + stage.delta * f1
+            P1 = scheme.gg * P + gained
+        change[:, column] = moved, gained - (1 - scheme.gg) * P
+    return change
+
+
+def polynomial(scheme: Scheme, omega: float) -> Array:
+    """Return the coefficients of y = z - 1, highest power first, of the roots that are not z = 0 for any w dt."""
+    k = omega * omega
+    if not scheme.averages:
+        change = state_matrix(scheme, k)
+        return np.array([1.0, -np.trace(change), change[0, 0] * change[1, 1] - change[0, 1] * change[1, 0]])
+    (stage,) = scheme.stages
+    discounted = np.array([1.0, 1 - scheme.gg])
+    free = np.polymul([1.0, 0.0], np.polymul(discounted, [1 - stage.am, 1.0]))
+    velocity = scheme.gg * stage.d_u * np.array([stage.delta, stage.g_0 + stage.delta])
+    moved = np.polyadd(velocity, np.polymul([stage.alpha, stage.e_0 + stage.alpha], discounted))
+    return np.asarray(np.polyadd(free, k * np.polymul([1 - stage.af, 1.0], moved)))
+
+
+def roots(scheme: Scheme, omega: float) -> ComplexArray:
+    """Return the roots z of a step of a mode with w dt = omega, two or three, the largest modulus first."""
+    z = 1 + increments(scheme, omega)
+    return np.asarray(z[np.argsort(-np.abs(z), kind="stable")])
+
+
+def increments(scheme: Scheme, omega: float) -> ComplexArray:
+    """Return y = z - 1 of the roots."""
+    coefficients = polynomial(scheme, omega)
+    if len(coefficients) == 3:
+        _, b, c = coefficients
+        root = cmath.sqrt(b * b / 4 - c)
+        first = -b / 2 - root if b > 0 else -b / 2 + root
+        second = c / first if first else 0j
+        return np.array([first, second]) if first.imag == 0 else np.array([first, first.conjugate()])
+    y = np.roots(coefficients).astype(complex)
+    slope = np.polyder(coefficients)
+    for _ in range(2):  # Newton's method takes back what the eigenvalues of a companion matrix lose
+        derivative = np.polyval(slope, y)
+        y = y - np.divide(np.polyval(coefficients, y), derivative, out=np.zeros_like(y), where=derivative != 0)
+    return np.asarray(y)
+
+
+def principal_pair(scheme: Scheme, omega: float) -> tuple[complex, complex]:
+    """Return y of the pair that stands for the mode: the complex one, else the two largest z."""
+    y = increments(scheme, omega)
+    complex_pair = y[np.abs(y.imag) > 0]
+    if len(complex_pair) == 2:
+        first = complex(complex_pair[np.argmax(complex_pair.imag)])
+        return first, first.conjugate()
+    ordered = y[np.argsort(-np.abs(1 + y), kind="stable")]
+    return complex(ordered[0]), complex(ordered[1])
+
+
+def eigenvalues(scheme: Scheme, omega: float) -> tuple[complex, complex]:
+    """Return z of the principal pair, the larger modulus first."""
+    first, second = principal_pair(scheme, omega)
+    return 1 + first, 1 + second
+
+
+def damping_ratio(scheme: Scheme, omega: float) -> float:
+    """Return xi = -Re(ln z)/|ln z|; at least one where overdamped, NaN where the dominant root is not positive."""
+    logs = _logarithms(scheme, omega)
+    if logs is None:
+        return math.nan
+    size = cmath.sqrt(logs[0] * logs[1]).real
+    return -(logs[0] + logs[1]).real / (2 * size) if size > 0 else math.nan
+
+
+def period_elongation(scheme: Scheme, omega: float) -> float:
+    """Return w / w' - 1, w' dt = |ln z|; NaN where the dominant root is not positive."""
+    logs = _logarithms(scheme, omega)
+    if logs is None:
+        return math.nan
+    return omega / cmath.sqrt(logs[0] * logs[1]).real - 1
+
+
+def _logarithms(scheme: Scheme, omega: float) -> tuple[complex, complex] | None:
+    """Return ln z of the principal pair, None where a root is real and not positive."""
+    pair = principal_pair(scheme, omega)
+    if pair[0].imag == 0 and not (pair[0].real > -1 and pair[1].real > -1):
+        return None
+    first, second = (complex(0.5 * math.log1p(2 * y.real + abs(y) ** 2), math.atan2(y.imag, 1 + y.real)) for y in pair)
+    return first, second
+
+
+def stability_limit(scheme: Scheme) -> float:
+    """Return w dt beyond which a step grows; inf of a scheme that never does."""
+    if scheme.table is None:
+        return critical_omega(scheme.alpha, scheme.delta, scheme.gg)
+    if not scheme.explicit:  # by their numbers, whatever rho_inf, split and gg
+        return math.inf
+    return math.sqrt(2 * (1 + scheme.gg))

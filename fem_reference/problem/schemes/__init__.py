@@ -1,0 +1,1 @@
+"""The time schemes that have a name: a file of numbers each, listed in `catalogue`."""

@@ -1,0 +1,496 @@
+"""Histories of the two-block model by other programs' time schemes and contact methods, each as its authors write it.
+
+Two unknowns, v of the centroid and the strain ey; each scheme is the recursion of its paper with matrices and a loop,
+and shares nothing with `dda`, `fem_reference` or what `compare` steps. Contact is a spring of 2 p under both corners
+that is always closed (`opens=False`) or presses only; contact methods of their own are below the schemes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Body:
+    """The block on its springs."""
+
+    a: float = 2.0  # [m], a square
+    rho: float = 2700.0
+    E: float = 1e9
+    p: float = 1e9  # per corner [N/m]
+    q: float = 5e6  # [Pa]
+    g: float = 0.0
+
+    @property
+    def M(self) -> np.ndarray:
+        m = self.rho * self.a**2
+        return np.diag([m, m * self.a**2 / 12])
+
+    @property
+    def K(self) -> np.ndarray:
+        """Of the block alone, without the springs."""
+        return np.diag([0.0, self.E * self.a**2])
+
+    @property
+    def B(self) -> np.ndarray:
+        """Row of the gap."""
+        return np.array([1.0, -self.a / 2])
+
+    @property
+    def k(self) -> float:
+        return 2 * self.p
+
+    @property
+    def F(self) -> np.ndarray:
+        load = self.q * self.a
+        return np.array([-load - self.rho * self.a**2 * self.g, -load * self.a / 2])
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is run: a method by name, with its numbers."""
+
+    method: str
+    numbers: dict[str, Any] = field(default_factory=dict)
+    body: Body = Body()
+    dt: float = 2e-3
+    steps: int = 100
+    gg: float = 1.0
+    opens: bool = False
+
+    def history(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacement and contact pressure of every step."""
+        rows = METHODS[self.method](self, **self.numbers)
+        x = np.array([row[0] for row in rows])
+        N = np.array([row[1] for row in rows])
+        return x[:, 0], N / self.body.a
+
+
+Rows = list[tuple[np.ndarray, float]]
+
+
+def spring_force(run: Run, w: float) -> float:
+    """Return the force of the springs at a gap."""
+    return -run.body.k * w if w < 0 or not run.opens else 0.0
+
+
+def is_closed(run: Run, solve: Callable[[bool], tuple[np.ndarray, float]], before: bool) -> bool:
+    """Return which state of the contact agrees with the gap that a solve with it gives, the one before first."""
+    if not run.opens:
+        return True
+    closed = before
+    for _ in range(8):
+        w = solve(closed)[1]
+        if (w < 0) == closed:
+            return closed
+        closed = not closed
+    return closed
+
+
+# ---- schemes --------------------------------------------------------------------------------------------------------
+
+
+def alpha_family(run: Run, am: float, af: float, beta: float, gamma: float, zero: bool, form: str = "force") -> Rows:
+    """(1 - am) M a1 + am M a + (1 - af) r(x1) + af r(x) = F, in the unknown x1 (Chung and Hulbert 1993)."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
+    closed = True
+    N = 0.0
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+        ahead = x + dt * u + dt * dt * (0.5 - beta) * a
+
+        def solve(on: bool, x=x, a=a, N=N, ahead=ahead) -> tuple[np.ndarray, float]:
+            springs = b.k * on * np.outer(b.B, b.B)
+            old = b.K @ x - (b.B * N if form == "force" else -springs @ x)
+            S = (1 - am) * b.M + (1 - af) * beta * dt * dt * (b.K + springs)
+            right = b.F - am * b.M @ a - af * old - (1 - af) * (b.K + springs) @ ahead
+            a1 = np.linalg.solve(S, right)
+            x1 = ahead + beta * dt * dt * a1
+            w = b.B @ ((1 - af) * x1 + af * x) if form == "state" else b.B @ x1
+            return a1, w
+
+        closed = is_closed(run, solve, closed)
+        a1, w = solve(closed)
+        x = ahead + beta * dt * dt * a1
+        v = u + dt * ((1 - gamma) * a + gamma * a1)
+        a = a1
+        N = -b.k * w * closed
+        rows.append((x, N if form == "force" else spring_force(run, b.B @ x)))
+    return rows
+
+
+def newmark(run: Run, alpha: float, delta: float, zero: bool = False) -> Rows:
+    return alpha_family(run, 0.0, 0.0, alpha, delta, zero)
+
+
+def by_weights(run: Run, am: float, af: float, zero: bool, form: str) -> Rows:
+    return alpha_family(run, am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af, zero, form)
+
+
+def chung_hulbert(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
+    return by_weights(run, (2 * r - 1) / (r + 1), r / (r + 1), zero, form)
+
+
+def hht(run: Run, e: float, zero: bool = False, form: str = "force") -> Rows:
+    return by_weights(run, 0.0, e, zero, form)
+
+
+def wbz(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
+    return by_weights(run, (r - 1) / (r + 1), 0.0, zero, form)
+
+
+def leapfrog(run: Run) -> Rows:
+    """Velocities at half steps; the first one is v_0 + dt a_0 / 2."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    half = None
+    rows = []
+    for _ in range(run.steps):
+        N = spring_force(run, b.B @ x)
+        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
+        half = dt * a / 2 if half is None else run.gg * half + dt * a
+        x = x + dt * half
+        rows.append((x, spring_force(run, b.B @ x)))
+    return rows
+
+
+def symplectic_euler(run: Run) -> Rows:
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    rows = []
+    for _ in range(run.steps):
+        N = spring_force(run, b.B @ x)
+        v = run.gg * v + dt * np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
+        x = x + dt * v
+        rows.append((x, spring_force(run, b.B @ x)))
+    return rows
+
+
+def forward_euler(run: Run) -> Rows:
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    rows = []
+    for _ in range(run.steps):
+        N = spring_force(run, b.B @ x)
+        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
+        x, v = x + dt * v, run.gg * v + dt * a
+        rows.append((x, spring_force(run, b.B @ x)))
+    return rows
+
+
+def implicit_euler(run: Run) -> Rows:
+    return theta(run, 1.0)
+
+
+def theta(run: Run, share: float) -> Rows:
+    """v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    N = 0.0
+    closed = True
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+
+        def solve(on: bool, x=x, u=u, N=N) -> tuple[np.ndarray, float]:
+            K = b.K + b.k * on * np.outer(b.B, b.B)
+            ahead = x + dt * (1 - share) * u
+            force = b.F - share * K @ ahead - (1 - share) * (b.K @ x - b.B * N)
+            v1 = np.linalg.solve(b.M + share**2 * dt * dt * K, b.M @ u + dt * force)
+            return v1, b.B @ (ahead + dt * share * v1)
+
+        closed = is_closed(run, solve, closed)
+        v, w = solve(closed)
+        x = x + dt * (share * v + (1 - share) * u)
+        N = -b.k * w * closed
+        rows.append((x, N))
+    return rows
+
+
+def composite(run: Run, split: float, r: float) -> Rows:
+    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh and Bathe 2019)."""
+    b, dt = run.body, run.dt
+    q1 = (r + 1) / (2 * split * (r - 1) + 4)
+    q0 = (split - 1) * q1 + 0.5
+    q2 = 0.5 - split * q1
+    x = np.zeros(2)
+    v = np.zeros(2)
+    a = np.linalg.solve(b.M, b.F)
+    closed = True
+    rows = []
+
+    def implicit(known: np.ndarray, rate: np.ndarray, h: float, before: bool) -> tuple[np.ndarray, ...]:
+        """Solve x1 = known + h v1, v1 = rate + h a1, M a1 + K x1 = F."""
+
+        def solve(on: bool) -> tuple[np.ndarray, float]:
+            K = b.K + b.k * on * np.outer(b.B, b.B)
+            x1 = np.linalg.solve(b.M + h * h * K, b.M @ (known + h * rate) + h * h * b.F)
+            return x1, b.B @ x1
+
+        on = is_closed(run, solve, before)
+        x1, w = solve(on)
+        v1 = (x1 - known) / h
+        return x1, v1, (v1 - rate) / h, on, -b.k * w * on
+
+    for _ in range(run.steps):
+        u = run.gg * v
+        h = split * dt / 2
+        _, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
+        x, v, a, closed, N = implicit(x + dt * (q0 * u + q1 * vg), u + dt * (q0 * a + q1 * ag), q2 * dt, closed)
+        rows.append((x, N))
+    return rows
+
+
+def tr_bdf2(run: Run) -> Rows:
+    g = 2 - math.sqrt(2)
+    b, dt = run.body, run.dt
+    K = b.K + b.k * np.outer(b.B, b.B)
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(b.M, K), np.zeros((2, 2))]])
+    f = np.concatenate([np.zeros(2), np.linalg.solve(b.M, b.F)])
+    y = np.zeros(4)
+    rows = []
+    for _ in range(run.steps):
+        yg = np.linalg.solve(np.eye(4) - g * dt / 2 * A, y + g * dt / 2 * (A @ y + 2 * f))
+        known = (yg - (1 - g) ** 2 * y) / (g * (2 - g))
+        h = (1 - g) / (2 - g) * dt
+        y = np.linalg.solve(np.eye(4) - h * A, known + h * f)
+        rows.append((y[:2], -b.k * b.B @ y[:2]))
+    return rows
+
+
+def midpoint(run: Run) -> Rows:
+    b, dt = run.body, run.dt
+    K = b.K + b.k * np.outer(b.B, b.B)
+    x = np.zeros(2)
+    v = np.zeros(2)
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+        middle = np.linalg.solve(b.M + dt * dt / 4 * K, b.M @ u + dt / 2 * (b.F - K @ x))
+        x = x + dt * middle
+        v = 2 * middle - u
+        rows.append((x, -b.k * b.B @ x))
+    return rows
+
+
+def houbolt(run: Run) -> Rows:
+    """(2 x1 - 5 x + 4 x_-1 - x_-2) / dt^2; the first two rows by average acceleration."""
+    b, dt = run.body, run.dt
+    K = b.K + b.k * np.outer(b.B, b.B)
+    first = newmark(replace(run, steps=2), 0.25, 0.5)
+    past = [np.zeros(2), first[0][0], first[1][0]]
+    while len(past) <= run.steps:
+        right = b.F + b.M @ (5 * past[-1] - 4 * past[-2] + past[-3]) / dt**2
+        past.append(np.linalg.solve(2 * b.M / dt**2 + K, right))
+    return [(x, -b.k * b.B @ x) for x in past[1 : run.steps + 1]]
+
+
+def wilson(run: Run, share: float = 1.4) -> Rows:
+    b, dt = run.body, run.dt
+    K = b.K + b.k * np.outer(b.B, b.B)
+    x = np.zeros(2)
+    v = np.zeros(2)
+    a = np.linalg.solve(b.M, b.F)
+    h = share * dt
+    rows = []
+    for _ in range(run.steps):
+        ahead = x + h * run.gg * v + h * h / 3 * a
+        at = np.linalg.solve(b.M + h * h / 6 * K, b.F - K @ ahead)
+        a1 = a + (at - a) / share
+        x = x + dt * run.gg * v + dt * dt / 6 * (2 * a + a1)
+        v = run.gg * v + dt / 2 * (a + a1)
+        a = a1
+        rows.append((x, -b.k * b.B @ x))
+    return rows
+
+
+def runge_kutta(run: Run) -> Rows:
+    """The classical one of order four."""
+    b, dt = run.body, run.dt
+
+    def rate(y: np.ndarray) -> np.ndarray:
+        N = spring_force(run, b.B @ y[:2])
+        return np.concatenate([y[2:], np.linalg.solve(b.M, b.F - b.K @ y[:2] + b.B * N)])
+
+    y = np.zeros(4)
+    rows = []
+    for _ in range(run.steps):
+        k1 = rate(y)
+        k2 = rate(y + dt / 2 * k1)
+        k3 = rate(y + dt / 2 * k2)
+        k4 = rate(y + dt * k3)
+        y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        rows.append((y[:2], spring_force(run, b.B @ y[:2])))
+    return rows
+
+
+# ---- contact methods ------------------------------------------------------------------------------------------------
+
+
+def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
+    """A contact force beside average acceleration of the block: Kane et al. 1999, or Armero and Petocz 1998."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    S = b.M + dt * dt / 4 * b.K
+    C = dt * dt / 2 * b.B @ np.linalg.solve(S, b.B)
+    rows = []
+    for _ in range(run.steps):
+        a = np.linalg.solve(b.M, b.F - b.K @ x)
+        u = run.gg * v
+        free = np.linalg.solve(S, b.M @ (x + dt * u + dt * dt / 4 * a) + dt * dt / 4 * b.F)
+        w0 = b.B @ x
+        wf = b.B @ free
+        if law == "kane":
+            N = -b.k * wf / (1 + b.k * C) if wf < 0 or not run.opens else 0.0
+        else:
+            N = _energy_conserving(b.k, C, w0, wf, run.opens)
+        # x1 = x + dt u + dt^2/4 (a + a1) + dt^2/2 M^-1 B' N,  v1 = u + dt/2 (a + a1) + dt M^-1 B' N
+        x1 = free + np.linalg.solve(S, dt * dt / 2 * b.B * N)
+        a1 = np.linalg.solve(b.M, b.F - b.K @ x1)
+        v = u + dt / 2 * (a + a1) + dt * np.linalg.solve(b.M, b.B * N)
+        x = x1
+        rows.append((x, N if law == "kane" else spring_force(run, b.B @ x)))
+    return rows
+
+
+def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) -> float:
+    if not opens:
+        return -k * (wf + w0) / (2 + k * C)
+
+    def energy(w: float) -> float:
+        return k * min(w, 0.0) ** 2 / 2
+
+    def force(w1: float) -> float:
+        if abs(w1 - w0) < 1e-14:
+            return -k * min(w0, 0.0)
+        return -(energy(w1) - energy(w0)) / (w1 - w0)
+
+    low, high = wf - 1e-9, max(wf, 0.0) + abs(w0) + 1e-9
+    while low + 1e-17 < high and high - low > 1e-16 * max(abs(low), abs(high)):
+        middle = (low + high) / 2
+        if middle in (low, high):
+            break
+        low, high = (low, middle) if middle - wf - C * force(middle) > 0 else (middle, high)
+    return force((low + high) / 2)
+
+
+def dashpot(
+    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
+) -> Rows:
+    """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
+    S = b.M + alpha * dt * dt * b.K
+    C0 = b.B @ np.linalg.solve(S, b.B)
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+        ahead = x + dt * u + dt * dt * (0.5 - alpha) * a
+        af = np.linalg.solve(S, b.F - b.K @ ahead)
+        wf = b.B @ (ahead + alpha * dt * dt * af)
+        rate = b.B @ (u + dt * ((1 - delta) * a + delta * af))
+        N = -(b.k * wf + c * rate) / (1 + C0 * (alpha * dt * dt * b.k + delta * dt * c))
+        if run.opens:
+            if wf >= 0:
+                N = 0.0
+            elif clipped:
+                N = max(N, 0.0)
+        a1 = af + np.linalg.solve(S, b.B * N)
+        x = ahead + alpha * dt * dt * a1
+        v = u + dt * ((1 - delta) * a + delta * a1)
+        a = a1
+        rows.append((x, N))
+    return rows
+
+
+def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
+    """Moreau-Jean: velocity-level contact with Newton's restitution where the forecast gap is not positive."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    S = b.M + theta**2 * dt * dt * b.K
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+        vf = np.linalg.solve(S, b.M @ u + dt * (b.F - b.K @ x - theta * (1 - theta) * dt * b.K @ u))
+        P = 0.0
+        if b.B @ x + dt / 2 * (b.B @ u) <= 0:
+            P = max(0.0, -(b.B @ vf + e * (b.B @ u)) / (b.B @ np.linalg.solve(S, b.B)))
+        v = vf + np.linalg.solve(S, b.B * P)
+        x = x + dt * (theta * v + (1 - theta) * u)
+        rows.append((x, P / dt))
+    return rows
+
+
+def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance: float = 0.0, r: float = 0.0) -> Rows:
+    """Rigid contact in displacements: complementarity, or passes of an augmented Lagrangian down to a penetration."""
+    b, dt = run.body, run.dt
+    x = np.zeros(2)
+    v = np.zeros(2)
+    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
+    S = b.M + alpha * dt * dt * b.K
+    C = alpha * dt * dt * b.B @ np.linalg.solve(S, b.B)
+    rows = []
+    for _ in range(run.steps):
+        u = run.gg * v
+        ahead = x + dt * u + dt * dt * (0.5 - alpha) * a
+        af = np.linalg.solve(S, b.F - b.K @ ahead)
+        wf = b.B @ (ahead + alpha * dt * dt * af)
+        N = max(0.0, -wf / C)
+        if tolerance:
+            N = 0.0
+            for _ in range(100000):
+                # with the penalty r of the pass: w = wf + C N', N' = max(0, N - r w)
+                N = max(0.0, (N - r * wf) / (1 + r * C))
+                if wf + C * N > -tolerance:
+                    break
+        a1 = af + np.linalg.solve(S, b.B * N)
+        x = ahead + alpha * dt * dt * a1
+        v = u + dt * ((1 - delta) * a + delta * a1)
+        a = a1
+        rows.append((x, N))
+    return rows
+
+
+METHODS: dict[str, Callable[..., Rows]] = {
+    "newmark": newmark,
+    "chung-hulbert": chung_hulbert,
+    "hht": hht,
+    "wbz": wbz,
+    "weights": by_weights,
+    "leapfrog": leapfrog,
+    "symplectic-euler": symplectic_euler,
+    "forward-euler": forward_euler,
+    "implicit-euler": implicit_euler,
+    "theta": theta,
+    "composite": composite,
+    "tr-bdf2": tr_bdf2,
+    "midpoint": midpoint,
+    "houbolt": houbolt,
+    "wilson": wilson,
+    "runge-kutta": runge_kutta,
+    "contact-split": contact_split,
+    "dashpot": dashpot,
+    "moreau": moreau,
+    "lagrange": lagrange,
+}
+
+
+def rounded(values: np.ndarray, digits: int) -> np.ndarray:
+    """Return values as a file with so many significant digits gives them."""
+    return np.array([float(f"{value:.{digits - 1}e}") for value in values]) if digits < 17 else values

@@ -1,0 +1,176 @@
+"""The rebound of a rigid mass by scheme, contact and phase, against an independent program and the closed map."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
+from validation.theory import stages
+from validation.theory.rebound import (
+    conserving_steps,
+    impact_steps,
+    midpoints,
+    mode_damping,
+    rebound_statistics,
+    rebounds,
+    spring_steps,
+)
+
+OMEGAS = (0.1, 0.3, 1.0, 1.9, 4.0, 10.0, 1000.0)
+SCHEMES = {
+    "constant": stages.newmark(0.5, 1.0),
+    "average": stages.newmark(0.25, 0.5),
+    "best-constant": stages.newmark(0.5625, 1.0),
+    "ch-0.8": stages.chung_hulbert(0.8),
+    "ch-0.5": stages.chung_hulbert(0.5),
+    "ch-0": stages.chung_hulbert(0.0),
+    "hht-0.1": stages.generalised_alpha(0.0, 0.1),
+    "wbz-0.5": stages.wbz(0.5),
+    "bathe-half": stages.composite(0.0, 0.5),
+    "bathe": stages.composite(0.0),
+    "bathe-0.5": stages.composite(0.5),
+    "leapfrog": stages.LEAPFROG,
+    "explicit-euler": stages.EXPLICIT_EULER,
+    "implicit-euler": stages.IMPLICIT_EULER,
+}
+# mean, least and greatest over 100 phases by omega, from an independent program
+TABLE = {
+    "constant": "0.9246 0.923 0.926 0.7924 0.784 0.801 0.5000 0.446 0.554 0.3391 0.302 0.376 0.4222 0.073 0.772 "
+    "0.4854 0.010 0.952 0.5000 0.010 0.990",
+    "average": "1.0000 0.999 1.001 1.0001 0.989 1.011 1.0056 0.900 1.110 1.0039 0.916 1.091 1.3272 0.456 2.184 "
+    "1.5987 0.365 2.827 1.6666 0.340 2.980",
+    "best-constant": "0.9246 0.923 0.926 0.7929 0.785 0.801 0.5088 0.456 0.562 0.3655 0.286 0.444 0.3714 0.144 0.597 "
+    "0.4124 0.081 0.741 0.4222 0.073 0.772",
+    "ch-0.8": "1.0000 0.999 1.001 1.0000 0.989 1.011 1.0041 0.899 1.109 0.9992 0.898 1.100 1.2956 0.473 2.112 "
+    "1.5507 0.366 2.724 1.6142 0.341 2.869",
+    "ch-0.5": "0.9999 0.999 1.001 0.9987 0.988 1.009 0.9788 0.879 1.079 0.9420 0.808 1.076 1.1307 0.484 1.775 "
+    "1.3166 0.387 2.248 1.3625 0.367 2.358",
+    "ch-0": "0.9986 0.997 1.000 0.9755 0.969 0.982 0.8009 0.751 0.851 0.6691 0.549 0.788 0.6162 0.456 0.776 "
+    "0.6561 0.355 0.956 0.6666 0.335 0.995",
+    "hht-0.1": "1.0000 0.999 1.001 0.9993 0.989 1.010 0.9905 0.887 1.093 0.9680 0.857 1.079 1.2230 0.469 1.972 "
+    "1.4490 0.364 2.525 1.5049 0.341 2.655",
+    "wbz-0.5": "0.9998 0.999 1.001 0.9952 0.985 1.005 0.9371 0.845 1.028 0.8671 0.729 1.005 0.9904 0.456 1.517 "
+    "1.1319 0.354 1.898 1.1666 0.335 1.985",
+    "bathe-half": "1.0000 0.999 1.000 0.9997 0.996 1.004 0.9926 0.944 1.041 0.9649 0.867 1.051 0.9339 0.580 1.184 "
+    "0.9894 0.377 1.729 1.0951 0.277 1.970",
+    "bathe": "1.0000 1.000 1.001 0.9997 0.995 1.004 0.9921 0.952 1.046 0.9617 0.850 1.040 0.9209 0.599 1.186 "
+    "0.9557 0.332 1.792 1.0463 0.221 2.116",
+    "bathe-0.5": "1.0000 1.000 1.000 0.9998 0.998 1.002 0.9959 0.963 1.035 0.9827 0.869 1.074 0.9444 0.769 1.040 "
+    "1.2158 0.351 2.210 1.3863 0.272 2.655",
+    "leapfrog": "1.0000 0.999 1.001 1.0001 0.989 1.011 1.0000 1.000 1.000 1.4965 0.390 2.592",
+    "explicit-euler": "1.1698 1.168 1.171 1.5911 1.579 1.603 4.0000 4.000 4.000 8.9862 8.145 9.819",
+    "implicit-euler": "0.8549 0.854 0.856 0.6285 0.624 0.633 0.2500 0.250 0.250 0.1123 0.102 0.123 0.0366 0.021 0.052 "
+    "0.0065 0.003 0.010 0.0000 0.000 0.000",
+}
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_rebounds_by_scheme_and_contact_frequency(name):
+    rows = np.array(TABLE[name].split(), float).reshape(-1, 3)
+    for omega, row in zip(OMEGAS, rows, strict=False):
+        statistics = rebound_statistics(spring_steps(SCHEMES[name], omega))
+        assert abs(statistics.mean - row[0]) < 6e-5, omega
+        assert abs(statistics.least - row[1]) < 6e-4 and abs(statistics.most - row[2]) < 6e-4, omega
+
+
+@pytest.mark.parametrize(
+    ("scheme", "mean", "least", "most", "mean_square"),
+    [
+        (stages.newmark(0.5, 1.0), 0.5, 0.0, 1.0, 1 / 3),
+        (stages.newmark(0.25, 0.5), 5 / 3, 1 / 3, 3.0, 91 / 27),
+        (stages.chung_hulbert(0.9), 1.6534, 0.337, 2.970, 3.312),
+        (stages.chung_hulbert(0.8), 1.6143, 0.341, 2.887, 3.147),
+        (stages.chung_hulbert(0.5), 1.3625, 0.351, 2.374, 2.198),
+        (stages.chung_hulbert(0.2), 0.9663, 0.341, 1.591, 1.064),
+        (stages.chung_hulbert(0.15), 0.8924, 0.3385, 1.446, 0.899),
+        (stages.chung_hulbert(0.0), 2 / 3, 1 / 3, 1.0, 13 / 27),
+        (stages.generalised_alpha(0.0, 0.1), 1.5050, 0.338, 2.672, 2.720),
+        (stages.wbz(0.5), 7 / 6, 1 / 3, 2.0, 43 / 27),
+        (stages.wbz(0.0), 2 / 3, 1 / 3, 1.0, 13 / 27),
+        (stages.composite(0.0, 0.5), 1.0952, 0.264, 1.999, 1.393),
+        (stages.composite(0.0), 1.0464, 0.208, 2.121, 1.320),
+        (stages.composite(0.5), 1.3862, 0.255, 2.663, 2.315),
+        (stages.IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
+    ],
+)
+def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_square):
+    statistics = rebound_statistics(spring_steps(scheme, math.inf), count=2000)
+    assert abs(statistics.mean - mean) < 6e-5
+    assert abs(statistics.least - least) < 1.3e-3 and abs(statistics.most - most) < 1.3e-3
+    assert abs(statistics.mean_square - mean_square) < 6e-4
+    stiff = rebound_statistics(spring_steps(scheme, 1e7), count=2000)
+    assert np.allclose(stiff, statistics, atol=2e-5)
+
+
+def test_the_rigid_stop_rebounds_by_two_straight_lines():
+    theta = midpoints(40)
+    average = np.where(theta < 1 / 3, 3 - 8 * theta, 4 * theta - 1)
+    assert rebounds(spring_steps(SCHEMES["constant"], math.inf), theta) == pytest.approx(np.abs(2 * theta - 1))
+    assert rebounds(spring_steps(SCHEMES["average"], math.inf), theta) == pytest.approx(average)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "delta", "gg", "omega"),
+    [(0.25, 0.5, 0.95, 1000.0), (0.3025, 0.6, 0.9, 3.0), (0.5, 1.0, 0.97, 0.4), (0.25, 0.5, 0.95, math.inf)],
+)
+def test_newmarks_rebounds_are_those_of_the_other_program_with_kinetic_damping_too(alpha, delta, gg, omega):
+    theta = midpoints(30, gg)
+    expected = [impact_restitution(alpha, delta, gg, omega, float(phase)) for phase in theta]
+    steps = spring_steps(stages.newmark(alpha, delta), omega, gg)
+    assert rebounds(steps, theta, gg) == pytest.approx(np.array(expected), abs=1e-12)
+    mean = impact_statistics(alpha, delta, gg, omega)[0]
+    assert rebound_statistics(steps, gg, 2000).mean == pytest.approx(mean, abs=1e-5)
+
+
+@pytest.mark.parametrize("omega", [0.1, 0.7, 1.9, 4.0, 1e3])
+def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
+    assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)
+    for e in (0.0, 0.37, 1.0):
+        assert rebounds(impact_steps(e, 0.75), midpoints(20)) == pytest.approx(np.full(20, e), abs=1e-12)
+
+
+def test_a_dashpots_rebound_depends_on_scheme_and_step():
+    """With zeta = 0.1, exact 0.7441: stiff contact keeps its own map."""
+    expected = {
+        "constant": (0.6886, 0.3893, 0.4491),
+        "average": (0.7444, 0.7789, 1.5206),
+        "leapfrog": (0.7431, 0.7525),
+        "implicit-euler": (0.6359, 0.1875, 0.0053),  # a soft constraint of the physics engines
+    }
+    for name, means in expected.items():
+        for omega, mean in zip((0.1, 1.0, 10.0), means, strict=False):
+            statistics = rebound_statistics(spring_steps(SCHEMES[name], omega, zeta=0.1))
+            assert abs(statistics.mean - mean) < 6e-5
+
+
+def test_the_damping_of_a_closed_contact_by_a_dashpot_depends_on_the_step():
+    omegas = (0.01, 0.1, 0.3, 1.0, 3.0)
+    average = (0.04999917, 0.04991705, 0.04926609, 0.04314700, 0.02348584)
+    constant = (0.05248601, 0.07469009, 0.12230034, 0.25635330, 0.39484612)
+    for omega, first, second in zip(omegas, average, constant, strict=True):
+        assert mode_damping(SCHEMES["average"], omega, 0.05) == pytest.approx(first, abs=6e-9)
+        assert mode_damping(SCHEMES["constant"], omega, 0.05) == pytest.approx(second, abs=6e-9)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "xi"),
+    [("ch-0.8", 0.000685871), ("ch-0.5", 0.0185185185), ("hht-0.1", 0.010125), ("wbz-0.5", 0.0740740741)],
+)
+def test_the_undamped_modes_of_the_tables_have_their_leading_damping(scheme, xi):
+    W = 0.01
+    assert mode_damping(SCHEMES[scheme], W, 0.0) == pytest.approx(xi * W**3, rel=2e-3)
+
+
+def test_numbers_out_of_range_are_named():
+    for call, message in (
+        (lambda: spring_steps(SCHEMES["average"], 0.0), "omega: must be positive"),
+        (lambda: spring_steps(stages.LEAPFROG, math.inf), "omega: must be finite in an explicit scheme"),
+        (lambda: spring_steps(SCHEMES["average"], 1.0, 0.0), "gg: must be above 0"),
+        (lambda: spring_steps(SCHEMES["average"], 1.0, zeta=-1.0), "damping_ratio: must be finite"),
+        (lambda: rebounds(spring_steps(SCHEMES["average"], 1.0), [1.2]), "theta: must be from 0 to 1"),
+        (lambda: stages.hht(0.3), "rho_inf: must be from 0.5 to 1"),
+        (lambda: stages.composite(0.0, 1.0), "split: must be between 0 and 1"),
+    ):
+        with pytest.raises(ValueError, match="^" + message):
+            call()

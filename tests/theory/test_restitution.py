@@ -1,0 +1,59 @@
+"""The restitution of a spring and a dashpot in closed form, and its inverse."""
+
+import math
+
+import mpmath
+import pytest
+from scipy.integrate import solve_ivp
+
+from validation.theory.restitution import damping_ratio, restitution
+
+ZETAS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.9, 1.5, 3.0)
+CLIPPED = (
+    0.8587581018, 0.7440793977, 0.5717400276, 0.4509754529, 0.2984360592, 0.1552827475, 0.07558830936, 0.02376951407
+)  # fmt: skip
+UNCLIPPED = (0.854467893, 0.7292476143, 0.5266205993, 0.3723261049, 0.1630335348, 0.001523755821, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("zeta", "clipped", "unclipped"), list(zip(ZETAS, CLIPPED, UNCLIPPED, strict=True)))
+def test_the_closed_forms(zeta, clipped, unclipped):
+    assert restitution(zeta) == pytest.approx(clipped, rel=1e-9)
+    assert restitution(zeta, clipped=False) == pytest.approx(unclipped, rel=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [0.13, 0.77, 1.0, 2.4])
+def test_the_closed_form_is_what_the_equation_of_motion_leaves(zeta):
+    """By x'' = -x - 2 zeta x' from x = 0, x' = -1, until the force x + 2 zeta x' vanishes."""
+
+    def force(t, y):
+        return y[0] + 2 * zeta * y[1]
+
+    force.terminal = True
+    force.direction = 1
+    run = solve_ivp(lambda t, y: (y[1], -force(t, y)), (0, 60), (0.0, -1.0), events=force, rtol=1e-12, atol=1e-14)
+    assert run.y[1, -1] == pytest.approx(restitution(zeta), rel=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 1e-9, 0.4, 0.99, 1 - 5e-5, 1 - 1e-12, 1.0, 1 + 1e-12, 1 + 5e-5, 60.0, 1e20])
+def test_it_keeps_its_digits_around_critical_damping_and_the_inverse_leads_back(zeta):
+    with mpmath.workdps(60):
+        z = mpmath.mpf(zeta)
+        s = mpmath.sqrt(1 - z * z)
+        exact = mpmath.exp(-2) if zeta == 1 else mpmath.exp(-(z / s) * 2 * mpmath.atan(s / z)).real if zeta else 1
+        assert abs(restitution(zeta) / exact - 1) < 2e-12
+    assert restitution(damping_ratio(restitution(zeta))) == pytest.approx(restitution(zeta), rel=2e-12)
+    if 1e-3 < zeta < 1e3:
+        assert damping_ratio(restitution(zeta)) == pytest.approx(zeta, rel=1e-12)
+
+
+def test_the_ends_of_the_inverse():
+    assert damping_ratio(1.0) == 0.0 and damping_ratio(1.0, clipped=False) == 0.0
+    assert damping_ratio(1e-300) == pytest.approx(0.5e150, rel=1e-9)  # 1/(2 sqrt(e))
+    assert damping_ratio(5e-324) > 1e161
+    assert restitution(math.inf) == 0.0
+    assert restitution(damping_ratio(0.37, clipped=False), clipped=False) == pytest.approx(0.37, rel=1e-14)
+    for e in (0.0, -0.1, 1.0000001, math.nan):
+        with pytest.raises(ValueError, match=r"^restitution: must be above 0 and at most 1"):
+            damping_ratio(e)
+    with pytest.raises(ValueError, match=r"^damping_ratio: must not be negative, got -1"):
+        restitution(-1)

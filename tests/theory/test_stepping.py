@@ -1,0 +1,322 @@
+"""The theory of a time step: roots, leading terms, limits and responses of every scheme."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.scenes.scene import load_scene
+from validation.theory import spectra
+from validation.theory.schemes import CARDS, aliases
+from validation.theory.stepping import Stepping
+
+NAMED = Stepping.named
+CONSTANT = Stepping(1.0, 0.5, 1.0)
+AVERAGE = Stepping(1.0, 0.25, 0.5)
+SCHEMES = {
+    "(1/2, 1)": CONSTANT,
+    "(1/4, 1/2)": AVERAGE,
+    "(9/16, 1)": Stepping(1.0, 9 / 16, 1.0),
+    "CH 0.8": NAMED("chung-hulbert", rho_inf=0.8),
+    "CH 0.5": NAMED("chung-hulbert", rho_inf=0.5),
+    "CH 0": NAMED("chung-hulbert", rho_inf=0.0),
+    "HHT -0.1": NAMED("hht", rho_inf=0.9 / 1.1),
+    "HHT -0.3": NAMED("hht", rho_inf=0.7 / 1.3),
+    "WBZ 0.5": NAMED("wbz", rho_inf=0.5),
+    "Bathe 1/2": NAMED("composite", split=0.5),
+    "TR-BDF2": NAMED("composite"),
+    "Bathe 0.5": NAMED("composite", rho_inf=0.5),
+    "implicit Euler": Stepping(1.0, 1.0, 1.5),
+    "leapfrog": NAMED("leapfrog"),
+}
+# w dt of the two-block model at p = 1E and 1 ms, at 10E and 2 ms, of the contact at 100E and 10 ms
+W1, W2, W3 = 0.344561200, 0.99762391, 86.550857
+PRINTED = {  # damping ratios at W1, W2 and W3 of an independent program; of real roots |lambda|, negative here
+    "(1/2, 1)": (0.0844901271, 0.216666168, -0.998932059),
+    "(9/16, 1)": (0.0841901253, 0.21173259, 0.335702173),
+    "CH 0.8": (2.73810453e-5, 0.000565340039, 0.0578738734),
+    "CH 0.5": (0.000711695413, 0.0118670379, 0.20045095),
+    "CH 0": (0.0146247947, 0.121031587, 0.822499917),
+    "HHT -0.1": (0.000391743272, 0.00671772707, 0.0647173095),
+    "HHT -0.3": (0.000706277078, 0.0117838742, 0.192795955),
+    "WBZ 0.5": (0.00266816741, 0.0346077496, 0.219818505),
+    "Bathe 1/2": (0.000139848418, 0.00304776546, 0.861754266),
+    "TR-BDF2": (0.000148216614, 0.00323141811, 0.864659526),
+    "Bathe 0.5": (7.80173212e-5, 0.00172221721, 0.946261112),
+    "implicit Euler": (0.166682902, 0.403064867, 0.943992667),
+}
+LEADING = {  # of xi / W^n and of the period error / W^2
+    "(1/2, 1)": (1 / 4, 1 / 12),
+    "(1/4, 1/2)": (0.0, 1 / 12),
+    "(9/16, 1)": (1 / 4, 0.114583333),
+    "CH 0.8": (0.000685871, 0.0879629630),
+    "CH 0.5": (0.0185185185, 0.125),
+    "CH 0": (0.5, 0.458333333),
+    "HHT -0.1": (0.010125, 0.104583333),
+    "HHT -0.3": (0.018375, 0.124583333),
+    "WBZ 0.5": (0.0740740741, 0.180555556),
+    "Bathe 1/2": (1 / 288, 1 / 24),
+    "TR-BDF2": (0.00367965644, 0.0404401145),
+    "Bathe 0.5": (0.00193304105, 0.029485756),
+    "implicit Euler": (1 / 2, 5 / 24),
+    "leapfrog": (0.0, -1 / 24),
+}
+DISCOUNTED = {  # xi at gg = 0.98 and W = 0.1, 0.3 and 1
+    "(1/2, 1)": (0.126054388, 0.107824075, 0.227954193),
+    "(1/4, 1/2)": (0.101095938, 0.0339216348, 0.0108931557),
+    "CH 0.5": (0.10110021, 0.0343596985, 0.0227788672),
+    "TR-BDF2": (0.101056287, 0.0338907777, 0.0137463905),
+    "leapfrog": (0.100463159, 0.033374099, 0.00959257309),
+}
+
+
+def weights(stepping: Stepping) -> tuple[float, float, float, float]:
+    """Return am, af, beta and gamma of a scheme of one stage."""
+    stage = stepping.one_stage
+    return stage.am, stage.af, stage.beta, stage.gamma
+
+
+def step_matrix(stepping: Stepping, omega: float) -> np.ndarray:
+    """Return the matrix of one step of (x, v, a) of x'' = -omega^2 x with dt = 1, line by line of the definition."""
+    gg = stepping.gg
+    square = omega**2
+    columns = []
+    for x, v, a in np.eye(3):
+        u = gg * v
+        if stepping.scheme == "leapfrog":
+            v1 = u - square * x
+            columns.append((x + v1, v1, 0.0))
+            continue
+        if stepping.scheme == "composite":
+            a = -square * x
+            g, q0, q1, q2 = stepping.composite
+            ag = -square * (x + g * u + g**2 / 4 * a) / (1 + g**2 / 4 * square)
+            xg = x + g * u + g**2 / 4 * (a + ag)
+            vg = u + g / 2 * (a + ag)
+            assert ag == pytest.approx(-square * xg)
+            known = x + (q0 + q2) * u + q1 * vg + q2 * (q0 * a + q1 * ag)
+            x1 = known / (1 + q2**2 * square)
+            columns.append((x1, u + q0 * a + q1 * ag - q2 * square * x1, 0.0))
+            continue
+        am, af, beta, gamma = weights(stepping)
+        known = x + u + (0.5 - beta) * a
+        a1 = -(am * a + square * ((1 - af) * known + af * x)) / (1 - am + square * (1 - af) * beta)
+        columns.append((known + beta * a1, u + (1 - gamma) * a + gamma * a1, a1))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@pytest.mark.parametrize("omega", [0.05, 0.7, 1.9, 12.0])
+def test_the_roots_are_the_eigenvalues_of_a_step(name: str, gg: float, omega: float) -> None:
+    stepping = replace(SCHEMES[name], gg=gg)
+    roots = stepping.roots(omega)
+    eigenvalues = np.linalg.eigvals(step_matrix(stepping, omega))
+    for root in roots:
+        assert np.abs(eigenvalues - root).min() < 1e-7 * max(1, abs(root))  # eigenvalues of defective matrices
+    assert stepping.spectral_radius(omega) == pytest.approx(np.abs(eigenvalues).max(), rel=1e-7)
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_damping_ratios_are_those_of_the_printed_table(name: str) -> None:
+    stepping = SCHEMES[name]
+    for omega, value in zip((W1, W2, W3), PRINTED[name], strict=True):
+        if value < 0:
+            assert not stepping.oscillates(omega)
+            assert stepping.roots(omega)[0].real == pytest.approx(value, rel=1e-8)
+            assert math.isnan(stepping.damping_ratio(omega))
+        else:
+            assert stepping.damping_ratio(omega) == pytest.approx(value, rel=1e-6 if value < 1e-3 else 5e-8)
+
+
+@pytest.mark.parametrize("name", DISCOUNTED)
+def test_damping_ratios_with_a_discount_are_those_of_the_printed_table(name: str) -> None:
+    stepping = replace(SCHEMES[name], gg=0.98)
+    for omega, value in zip((0.1, 0.3, 1.0), DISCOUNTED[name], strict=True):
+        assert stepping.damping_ratio(omega) == pytest.approx(value, rel=1e-8)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_leading_terms_are_the_limit_of_the_roots(name: str) -> None:
+    stepping = SCHEMES[name]
+    damping, period = LEADING[name]
+    assert stepping.leading_damping(1.0) == pytest.approx(damping, rel=1e-6)
+    assert stepping.leading_period_error(1.0) == pytest.approx(period, rel=1e-8)
+    omega = 0.02
+    assert stepping.period_error(omega) == pytest.approx(period * omega**2, rel=0.01)
+    if damping:
+        assert stepping.damping_ratio(omega) == pytest.approx(stepping.leading_damping(omega), rel=0.01)
+    else:
+        assert abs(stepping.damping_ratio(omega)) < 1e-13
+    discounted = replace(stepping, gg=1 - 1e-6)
+    kinetic = discounted.leading_damping(omega) - stepping.leading_damping(omega)
+    assert kinetic == pytest.approx(1e-6 / (2 * omega))
+
+
+@pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.5, 0.77, 1.0])
+@pytest.mark.parametrize("scheme", ["chung-hulbert", "hht", "wbz", "composite"])
+def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(scheme: str, rho_inf: float) -> None:
+    if scheme == "hht" and rho_inf < 0.5:
+        return
+    splits = (None, 0.3, 0.8) if scheme == "composite" else (None,)
+    for split in splits:
+        stepping = NAMED(scheme, rho_inf=rho_inf, split=split)
+        # a root of multiplicity three is as far from its limit as the cube root of 1 / W^2
+        assert stepping.spectral_radius(1e7) == pytest.approx(rho_inf, abs=1e-4)
+        grid = np.geomspace(1e-3, 1e4, 300)
+        for gg in (1.0, 0.9):
+            discounted = replace(stepping, gg=gg)
+            assert max(map(discounted.spectral_radius, grid)) < 1 + 1e-7  # of double roots at rho_inf = 1
+            assert discounted.critical_omega == math.inf
+
+
+@pytest.mark.parametrize(
+    "stepping",
+    [
+        NAMED("leapfrog"),
+        NAMED("leapfrog", gg=0.8),
+        Stepping(1.0, 0.0, 0.5),
+        Stepping(1.0, 0.2, 0.6, 0.9),
+        Stepping(1.0, 0.25, 0.45, 0.9),
+    ],
+)
+def test_beyond_the_limit_a_root_leaves_the_unit_circle(stepping: Stepping) -> None:
+    limit = stepping.critical_omega
+    assert stepping.spectral_radius(limit * (1 - 1e-6)) < 1 + 1e-12
+    assert stepping.spectral_radius(limit * (1 + 1e-3)) > 1 + 1e-5
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str) -> None:
+    """At z = e^{i w dt} of a free motion the stepped system answers without load: W2 is the mode's own w^2."""
+    stepping = replace(SCHEMES[name], step=0.01, gg=0.99)
+    natural = 80.0
+    complex_frequency = stepping.complex_frequency(natural)
+    root = stepping.roots(natural * stepping.step)[0]
+    assert cmath.exp(1j * complex_frequency * stepping.step) == pytest.approx(root, rel=1e-12)
+    if stepping.scheme == "composite":
+        with pytest.raises(InputError) as caught:
+            stepping.squared_frequency(1.0)
+        assert caught.value.field == "time.scheme"
+        return
+    # the formula of real frequencies continued to the complex one
+    half = stepping.step * complex_frequency / 2
+    z = complex(mpmath.exp(2j * half))
+    turn = z - 1
+    if stepping.scheme == "leapfrog":
+        squared = -turn * (z - stepping.gg) / (stepping.step**2 * z)
+    else:
+        am, af, beta, gamma = weights(stepping)
+        below = stepping.gg * (1 - gamma + gamma * z) + (0.5 - beta + beta * z) * (z - stepping.gg)
+        mean = ((1 - am) * z + am) / ((1 - af) * z + af)
+        squared = -turn * (z - stepping.gg) * mean / (stepping.step**2 * below)
+    assert squared == pytest.approx(natural**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name: str) -> None:
+    stepping = replace(SCHEMES[name], gg=0.9)
+    natural, driven = 0.8, 0.5
+    amplitude = complex(stepping.modal_response(driven, natural))
+    state = np.zeros(3, complex)
+    state[2] = 1.0
+    for n in range(600):
+        state = driven_step(stepping, natural, driven, n, state)
+    settled = state[0] * cmath.exp(-1j * driven * 600)
+    assert settled == pytest.approx(amplitude, rel=1e-9)
+
+
+def driven_step(stepping: Stepping, natural: float, driven: float, n: int, state: np.ndarray) -> np.ndarray:
+    """Return (x, v, a) after a step of x'' + natural^2 x = e^{i driven t}, dt = 1."""
+
+    def load(t: float) -> complex:
+        return cmath.exp(1j * driven * t)
+
+    x, v, a = state
+    square = natural**2
+    u = stepping.gg * v
+    if stepping.scheme == "leapfrog":
+        v1 = u + load(n) - square * x
+        return np.array([x + v1, v1, 0.0])
+    if stepping.scheme == "composite":
+        a = load(n) - square * x
+        g, q0, q1, q2 = stepping.composite
+        ag = (load(n + g) - square * (x + g * u + g**2 / 4 * a)) / (1 + g**2 / 4 * square)
+        vg = u + g / 2 * (a + ag)
+        known = x + (q0 + q2) * u + q1 * vg + q2 * (q0 * a + q1 * ag)
+        a1 = (load(n + 1) - square * known) / (1 + q2**2 * square)
+        return np.array([known + q2**2 * a1, u + q0 * a + q1 * ag + q2 * a1, a1])
+    am, af, beta, gamma = weights(stepping)
+    known = x + u + (0.5 - beta) * a
+    force = (1 - af) * (load(n + 1) - square * known) + af * (load(n) - square * x)
+    a1 = (force - am * a) / (1 - am + (1 - af) * beta * square)
+    return np.array([known + beta * a1, u + (1 - gamma) * a + gamma * a1, a1])
+
+
+def test_schemes_of_one_table_are_one_scheme() -> None:
+    pairs = [
+        (NAMED("chung-hulbert", rho_inf=0.0), NAMED("wbz", rho_inf=0.0)),
+        (NAMED("chung-hulbert", rho_inf=0.5), NAMED("hht", rho_inf=0.5)),
+        (NAMED("hht", rho_inf=1.0), AVERAGE),
+        (NAMED("wbz", rho_inf=1.0), AVERAGE),
+        (NAMED("chung-hulbert", rho_inf=1.0), AVERAGE),
+        (NAMED("composite", split=2 - math.sqrt(2)), NAMED("composite")),
+        (NAMED("leapfrog"), Stepping(1.0, 0.0, 0.5)),
+    ]
+    for first, second in pairs:
+        for omega in (0.1, 0.9, 1.8):
+            pair = [stepping.roots(omega)[0] for stepping in (first, second)]
+            assert pair[0] == pytest.approx(pair[1], rel=1e-12), (first.name, second.name)
+    # Houbolt's (2 + W^2) z^3 - 5 z^2 + 4 z - 1 has the roots of CH 0
+    for omega in (0.1, 0.9, 30.0):
+        for root in NAMED("chung-hulbert", rho_inf=0.0).roots(omega):
+            assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
+
+
+@pytest.mark.parametrize(
+    ("stepping", "words"),
+    [
+        (AVERAGE, "average acceleration"),
+        (Stepping(1.0, 1.0, 1.5), "implicit Euler"),
+        (Stepping(1.0, 0.36, 0.7), "Moreau's theta = 0.6"),
+        (Stepping(1.0, 0.0, 0.5), "central differences"),
+        (NAMED("chung-hulbert", rho_inf=0.0), "Houbolt"),
+        (NAMED("wbz", rho_inf=0.0), "chung-hulbert with rho_inf = 0"),
+        (NAMED("chung-hulbert", rho_inf=0.5), "hht with rho_inf = 1/2"),
+        (NAMED("hht", rho_inf=0.9 / 1.1), "HHT's alpha is -0.1 in papers and 0.9 in OpenSees"),
+        (NAMED("chung-hulbert", rho_inf=0.8), "alpha_M = 0.666667, alpha_F = 0.555556"),
+        (NAMED("composite"), "TR-BDF2"),
+        (NAMED("composite", split=0.5), "three-point backward Euler"),
+        (NAMED("leapfrog"), "symplectic Euler"),
+    ],
+)
+def test_aliases_are_said(stepping: Stepping, words: str) -> None:
+    assert any(words in sentence for sentence in aliases(stepping))
+    assert aliases(CONSTANT) == ()
+
+
+def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s() -> None:
+    import dda
+    import fem_reference
+
+    assert tuple(card.name for card in CARDS) == dda.SCHEMES == fem_reference.SCHEMES
+    for card in CARDS[1:]:
+        stepping = NAMED(card.name, rho_inf=None if card.name == "leapfrog" else 0.7)
+        assert (str(stepping.order), stepping.solves) == (card.order, card.solves)
+
+
+def test_spectra_of_a_scene_follow_its_scheme() -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.scheme": "wbz", "time.rho_inf": 0.5})
+    assert spectra.damping_ratio(scene, spectra.dda_frequency(scene)) == pytest.approx(0.015778184, rel=1e-7)
+    assert spectra.damping_ratio(scene, spectra.contact_frequency(scene)) == pytest.approx(0.131989534, rel=1e-7)
+    assert spectra.critical_omega(scene) == math.inf
+    explicit = scene.with_values({"time.scheme": "leapfrog", "time.start": "consistent"})
+    assert spectra.critical_omega(explicit) == 2
+    limit = spectra.critical_omega(explicit) / spectra.contact_frequency(explicit)
+    assert limit == pytest.approx(1.51920e-3, rel=1e-5)

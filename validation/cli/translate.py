@@ -1,0 +1,110 @@
+"""The command ``translate``: soft constraints of physics engines as spring and dashpot, and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.cli.app import JsonOption, app
+from validation.cli.printing.listing import in_columns
+from validation.cli.printing.output import broken, echo, echo_json, terminal_width
+
+if TYPE_CHECKING:
+    from validation.advice.engines import Translation
+
+PREFIXES = {"box2d": "Box2D", "bullet": "Bullet", "mujoco": "MuJoCo"}
+
+
+@app.command()
+def translate(
+    engine: Annotated[str, typer.Argument(help="box2d, bullet, mujoco; spring for the way back.")],
+    mass: Annotated[
+        float | None, typer.Option("--mass", help="Effective mass m: of a body, or m1 m2/(m1 + m2).", metavar="KG")
+    ] = None,
+    block_mass: Annotated[
+        float | None,
+        typer.Option("--block-mass", help="Instead: of a DDA block; the contact feels a quarter.", metavar="KG"),
+    ] = None,
+    step: Annotated[float | None, typer.Option("--step", help="Step (substep) of the engine.", metavar="S")] = None,
+    gravity: Annotated[float, typer.Option("--gravity", help="Of the weight at rest.", metavar="M/S2")] = 9.81,
+    hertz: Annotated[float | None, typer.Option("--hertz", help="Box2D: frequency.", metavar="HZ")] = None,
+    damping_ratio: Annotated[float | None, typer.Option("--damping-ratio", help="Box2D: damping ratio.")] = None,
+    erp: Annotated[float | None, typer.Option("--erp", help="Bullet: error reduction.")] = None,
+    cfm: Annotated[float | None, typer.Option("--cfm", help="Bullet: constraint force mixing.")] = None,
+    timeconst: Annotated[float | None, typer.Option("--timeconst", help="MuJoCo: solref[0].", metavar="S")] = None,
+    dampratio: Annotated[float | None, typer.Option("--dampratio", help="MuJoCo: solref[1].")] = None,
+    dmax: Annotated[float | None, typer.Option("--dmax", help="MuJoCo: constant impedance; 0.95.")] = None,
+    solimp: Annotated[
+        str | None, typer.Option("--solimp", help="MuJoCo: dmin,dmax,width,midpoint,power.", metavar="NUMBERS")
+    ] = None,
+    stiffness: Annotated[float | None, typer.Option("--stiffness", help="Spring: k.", metavar="N/M")] = None,
+    damping: Annotated[float | None, typer.Option("--damping", help="Spring: c.", metavar="NS/M")] = None,
+    restitution: Annotated[
+        float | None, typer.Option("--restitution", help="Spring: e, in place of --damping.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Translate a contact of Box2D, Bullet or MuJoCo to spring, dashpot and restitution, and into each other's words.
+
+    Example: [bold]dda-validate translate box2d --hertz 30 --damping-ratio 10 --step 0.0041666667 --mass 2700[/bold]
+
+    Example: [bold]dda-validate translate mujoco --timeconst 0.02 --dampratio 1 --mass 2700[/bold]
+
+    Back: [bold]dda-validate translate spring --stiffness 1e8 --restitution 0.5 --mass 2700 --step 0.001[/bold]
+    """
+    from validation.advice import engines
+
+    stated = {
+        "hertz": hertz,
+        "damping_ratio": damping_ratio,
+        "erp": erp,
+        "cfm": cfm,
+        "timeconst": timeconst,
+        "dampratio": dampratio,
+        "dmax": dmax,
+        "solimp": None if solimp is None else _numbers(solimp),
+        "stiffness": stiffness,
+        "damping": damping,
+        "restitution": restitution,
+    }
+    parameters = {name: value for name, value in stated.items() if value is not None}
+    translation = engines.translate(engine, mass=mass, block_mass=block_mass, step=step, gravity=gravity, **parameters)
+    if as_json:
+        echo_json(translation.as_dict())
+    else:
+        _print_translation(translation)
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    """Return the numbers of a list with commas."""
+    from validation.errors import InputError
+
+    try:
+        return tuple(float(word) for word in text.split(","))
+    except ValueError:
+        raise InputError("must be numbers with commas between", field="--solimp", value=repr(text)) from None
+
+
+def _print_translation(t: Translation) -> None:
+    """Print a translation: the spring, what it does, and the other engines' parameters."""
+    facts = [
+        ("effective mass", f"{t.mass:.6g} kg"),
+        ("stiffness", f"k = {t.stiffness:.6g} N/m, w = {t.frequency:.6g} rad/s"),
+        ("dashpot", f"c = {t.damping:.6g} N s/m, damping ratio zeta = {t.damping_ratio:.6g}"),
+        ("restitution", f"e = {t.restitution:.6g} (exact in time, unloaded, no tension)"),
+        ("penetration at rest", f"{1e3 * t.rest_penetration:.6g} mm under {t.weight:.6g} N"),
+    ]
+    if t.determinant is not None:
+        facts.append(("a closed step", f"w h = {t.omega_step:.6g}, determinant {t.determinant:.7g}"))
+    if t.rebound is not None:
+        rebound = t.rebound
+        facts.append(
+            ("rebound of the steps", f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}")
+        )
+    for name, form in t.forms.items():
+        facts.append((PREFIXES[name], ", ".join(f"{key} = {value:.6g}" for key, value in form.items())))
+    facts.append(("scene, two corners", ", ".join(f"{key} = {value:.6g}" for key, value in t.scene.items())))
+    echo(in_columns(facts, terminal_width()))
+    for note in t.notes:
+        echo(broken(f"note: {note}"))

@@ -1,0 +1,231 @@
+r"""What a time step makes of the impact of a rigid mass: its rebound by scheme, contact and phase.
+
+A mass comes down at the speed V, unloaded, on a contact that carries no tension. In units of V and of the step, with
+W = sqrt(k/m) dt and zeta = c/(2 sqrt(k m)), the contact presses at the end of a stage (`validation.theory.stages`) with
+
+    N1 = max(0, -(W^2 x1 + 2 zeta W v1)) = max(0, -(W^2 x_f + 2 zeta W v_f) / (1 + W^2 C + 2 zeta W D)) where x_f < 0,
+
+x_f and v_f those of the stage without N1, C and D what a unit of it adds. It is closed by the *free* gap x_f: by the
+gap at the end there is no answer where the dashpot alone stops the mass. W = inf is the rigid stop in displacements
+(a linear complementarity problem, LCP), N1 = max(0, -x_f / C), and the limit of augmented Lagrangian passes.
+
+The phase theta is the overshoot of the first step that would end below the contact, over V dt: uniform from 0 to gg,
+as that step covers gg V dt and starts above the contact. The rebound e is the speed after it over that before it.
+Under generalised alpha v goes on changing in flight, by the powers of am/(am - 1): it is read `FLIGHT` steps after the
+last force. With gg < 1 flight loses speed, and e is read at the end of the first step without force instead.
+
+Kane's rule is Newmark's (1/2, 1) here (a rigid mass has nothing but the contact's force), symplectic Euler is
+leapfrog, a soft constraint is implicit Euler with zeta, and the rule of impulses (Moreau and Jean) returns its own e
+at every step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from validation.runs.history import Array
+from validation.theory.stages import Stages
+
+FLIGHT = 80
+"""Steps without force after which e is read where gg = 1."""
+LONGEST = 200_000
+"""Steps after which a mass that is still pressed counts as stuck."""
+REST = 1e-18
+"""Position, speed, acceleration and force below which the mass has come to rest, in units of V and the step."""
+
+
+class Motion(NamedTuple):
+    """State of the mass in all phases at the end of a step, in units of V and the step."""
+
+    x: Array
+    v: Array
+    a: Array
+    N: Array  # contact force
+    pressed: Array  # greatest contact force at the end of any stage of the step
+
+
+class ReboundStatistics(NamedTuple):
+    """Restitution over the phases."""
+
+    mean: float
+    least: float
+    most: float
+    mean_square: float  # share of the energy that is left
+
+
+Advance = Callable[[Motion], Motion]
+
+
+def midpoints(count: int, gg: float = 1.0) -> Array:
+    """Return the phases at the middles of equal parts, (i + 1/2) gg / count."""
+    return gg * (np.arange(count) + 0.5) / count
+
+
+def spring_steps(stages: Stages, omega: float, gg: float = 1.0, zeta: float = 0.0) -> Advance:
+    """Return the step on a spring, with a dashpot if zeta > 0, or on a rigid stop if omega is infinite.
+
+    Parameters
+    ----------
+    stages
+        The scheme, of `validation.theory.stages`.
+    omega
+        W = sqrt(k/m) dt.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or an explicit stage meets the rigid stop.
+    """
+    check(omega, gg, zeta)
+    if math.isinf(omega) and any(stage.beta == 0 for stage in stages):
+        raise ValueError("omega: must be finite in an explicit scheme, got inf")
+
+    def advance(start: Motion) -> Motion:
+        u = gg * start.v
+        before = start._replace(pressed=np.zeros_like(start.N))
+        for stage in stages:
+            x = start.x + stage.d_u * u + stage.d_g * before.v + stage.e_0 * start.a + stage.e_g * before.a
+            v = u + stage.g_0 * start.a + stage.g_g * before.a
+            a = (stage.af * before.N - stage.am * before.a) / (1 - stage.am)
+            x = x + stage.beta * a
+            v = v + stage.gamma * a
+            weight = stage.equilibrium_weight
+            N = pressing_force(omega, zeta, x, v, stage.beta * weight, stage.gamma * weight)
+            x = x + stage.beta * weight * N
+            if math.isinf(omega):
+                x = np.where(N > 0, 0.0, x)  # and not the rounding of a difference, which would close it again
+            pressed = np.maximum(before.pressed, N)
+            before = Motion(x, v + stage.gamma * weight * N, a + weight * N, N, pressed)
+        return before
+
+    return advance
+
+
+def pressing_force(omega: float, zeta: float, x: Array, v: Array, C: float, D: float) -> Array:
+    """Return N1 from the free gap and rate at the end of a stage, and what a unit of force adds to both."""
+    if math.isinf(omega):
+        force = -x / C
+    else:
+        k = omega * omega
+        c = 2 * zeta * omega
+        force = -(k * x + c * v) / (1 + k * C + c * D)
+    return np.where(x < 0, np.maximum(force, 0.0), 0.0)
+
+
+def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
+    """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0)."""
+    check(omega, gg, 0.0)
+    k = omega * omega
+
+    def advance(start: Motion) -> Motion:
+        u = gg * start.v
+        w0 = start.x
+        free = w0 + u
+        # pressed before and after, then lifting off, then landing with the penetration d
+        pressed = -(free + w0) / (0.5 + 2 / k)
+        rise = free - w0
+        lifting = np.sqrt(rise**2 + k * w0**2) - rise
+        above = np.maximum(w0, 0.0)
+        half = (above + free) / (k / 2 + 2)
+        d = np.sqrt(half**2 + 2 * np.maximum(-free, 0.0) * above / (k / 2 + 2)) - half
+        way = np.where(above + d > 0, above + d, 1.0)
+        landing = k * d**2 / (2 * way)
+        N = np.where(w0 < 0, np.where(2 * pressed >= -k * w0, pressed, lifting), np.where(free < 0, landing, 0.0))
+        return Motion(free + N / 2, u + N, 0 * u, N, N)
+
+    return advance
+
+
+def impact_steps(e: float, theta_method: float = 0.5, gg: float = 1.0) -> Advance:
+    """Return the step of impulses with the restitution e (Moreau and Jean): v1 = -e u where x + u/2 <= 0 falls."""
+
+    def advance(start: Motion) -> Motion:
+        u = gg * start.v
+        P = np.where(start.x + u / 2 <= 0, np.maximum(-(1 + e) * u, 0.0), 0.0)
+        v = u + P
+        return Motion(start.x + theta_method * v + (1 - theta_method) * u, v, 0 * u, P, P)
+
+    return advance
+
+
+def rebounds(advance: Advance, theta: ArrayLike, gg: float = 1.0) -> Array:
+    """Return e at the phases theta; 0 where the mass comes to rest on the contact.
+
+    Beyond gg a phase starts below the contact, which no flight does.
+
+    Raises
+    ------
+    ValueError
+        If a phase is not from 0 to 1.
+    """
+    phases = np.atleast_1d(np.asarray(theta, float))
+    if not np.all((phases >= 0) & (phases <= 1)):
+        raise ValueError(f"theta: must be from 0 to 1, got {theta!r}")
+    e = np.zeros_like(phases)
+    index = np.arange(len(phases))
+    rest = np.zeros_like(phases)
+    motion = Motion(gg - phases, rest - 1, rest, rest, rest)
+    flight = np.full(len(phases), -1)  # steps without force since the last one with it; -1 before the first
+    for _ in range(LONGEST):
+        motion = advance(motion)
+        flight = np.where(motion.pressed > 0, 0, np.where(flight >= 0, flight + 1, -1))
+        if gg < 1:
+            released = flight == 1
+            e[index[released]] = motion.v[released]
+        over = (flight >= FLIGHT) & (motion.v >= 0)
+        if gg == 1:
+            e[index[over]] = motion.v[over]
+        over |= np.max(np.abs(motion), axis=0) < REST
+        if over.any():
+            motion = Motion(*(part[~over] for part in motion))
+            flight = flight[~over]
+            index = index[~over]
+            if not len(index):
+                break
+    return e
+
+
+def rebound_statistics(advance: Advance, gg: float = 1.0, count: int = 100) -> ReboundStatistics:
+    """Return the statistics of the rebound over `count` phases at the middles of equal parts."""
+    e = rebounds(advance, midpoints(count, gg), gg)
+    return ReboundStatistics(float(e.mean()), float(e.min()), float(e.max()), float((e * e).mean()))
+
+
+def mode_damping(stages: Stages, omega: float, zeta: float, gg: float = 1.0) -> float:
+    """Return xi = -Re ln z / |ln z| of a mode on spring and dashpot that stay closed; nan without a complex pair."""
+    check(omega, gg, zeta)
+    k = omega * omega
+    c = 2 * zeta * omega
+    state = np.eye(3)  # columns: unit x, v, a at the start of the step; the force is -(k x + c v)
+    u = gg * state[1]
+    before = state
+    for stage in stages:
+        N0 = -(k * before[0] + c * before[1])
+        x = state[0] + stage.d_u * u + stage.d_g * before[1] + stage.e_0 * state[2] + stage.e_g * before[2]
+        v = u + stage.g_0 * state[2] + stage.g_g * before[2]
+        a = (stage.af * N0 - stage.am * before[2]) / (1 - stage.am)
+        weight = stage.equilibrium_weight
+        N1 = -(k * (x + stage.beta * a) + c * (v + stage.gamma * a))
+        a = a + weight * N1 / (1 + weight * (k * stage.beta + c * stage.gamma))
+        before = np.array([x + stage.beta * a, v + stage.gamma * a, a])
+    roots = np.linalg.eigvals(before)
+    pairs = roots[roots.imag > 0]
+    if not len(pairs):
+        return math.nan
+    exponent = np.log(pairs[np.argmax(np.abs(pairs))])
+    return float(-exponent.real / abs(exponent))
+
+
+def check(omega: float, gg: float, zeta: float) -> None:
+    """Raise ValueError where a number is out of its range."""
+    if not omega > 0:
+        raise ValueError(f"omega: must be positive, got {omega!r}")
+    if not 0 < gg <= 1:
+        raise ValueError(f"gg: must be above 0 and at most 1, got {gg!r}")
+    if not (math.isfinite(zeta) and zeta >= 0):
+        raise ValueError(f"damping_ratio: must be finite and not negative, got {zeta!r}")

@@ -1,0 +1,178 @@
+r"""Soft constraints of physics engines as what they are: a spring and a dashpot on the contact's effective mass.
+
+An engine states a contact by numbers of its own; with the effective mass m of the contact, w = sqrt(k/m) and
+zeta = c / (2 sqrt(k m)) all of them are the law N = max(0, -(k x + c x')) at a penetration -x:
+
+    Box2D    (hertz, damping ratio)            w = 2 pi hertz, zeta = damping ratio (``b2MakeSoft``)
+    Bullet   (erp, cfm) at a step h            erp = h k / (h k + c), cfm = 1 / (h k + c)
+    MuJoCo   (timeconst, dampratio), impedance d   a1 + d (b v + r x) = (1 - d) a0 with
+             b = 2 / (dmax timeconst), r = d / (dmax^2 timeconst^2 dampratio^2);
+             at d = dmax: w = 1 / (timeconst dampratio), zeta = dampratio, under the share 1 - d of the load
+
+The first two step implicitly (x1 = x + h v1, force at the end of the step), the third with the force of the step's
+start. So the stiffness follows the mass: an engine's block of twice the mass stands on springs twice as stiff.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.runs.history import Array
+
+PHASES = 200
+"""Landings within a step that a rebound is taken over, any as likely as another."""
+LONGEST = 100_000
+"""Steps after which a landing counts as stuck."""
+REST = 1e-9
+"""Speed below which a landing leaves nothing, over that of the impact."""
+QUARTER = 0.25
+"""Effective over whole mass at the base of a block of one strain whose springs are much stiffer than itself."""
+
+
+def effective_mass(*inverse_masses: float) -> float:
+    """Return the mass that a contact feels, m with 1/m the sum of what resists it [kg].
+
+    Parameters
+    ----------
+    inverse_masses
+        1/m_i of each body and r_i^2/I_i of its rotation, r_i the arm of the contact's normal about the centre of mass;
+        a strain counts as a rotation does, with inertia m h^2/12 and arm h/2 for the height h.
+
+    Examples
+    --------
+    >>> m, h = 10800.0, 2.0
+    >>> effective_mass(1 / m, (h / 2) ** 2 / (m * h**2 / 12)) / m
+    0.25
+    """
+    return 1 / math.fsum(inverse_masses)
+
+
+@dataclass(frozen=True)
+class Impedance:
+    """MuJoCo's ``solimp``: the impedance d over the penetration, from dmin on the surface to dmax at the width."""
+
+    least: float = 0.9  # dmin [-]
+    greatest: float = 0.95  # dmax [-]
+    width: float = 0.001  # [m]
+    midpoint: float = 0.5  # of the width, where the curve turns [-]
+    power: float = 2.0  # [-]
+
+    def __call__(self, penetration: float) -> float:
+        """Return d at a penetration [m]."""
+        x = min(abs(penetration) / self.width, 1.0)
+        if x <= self.midpoint:
+            y = x**self.power / self.midpoint ** (self.power - 1)
+        else:
+            y = 1 - (1 - x) ** self.power / (1 - self.midpoint) ** (self.power - 1)
+        return self.least + y * (self.greatest - self.least)
+
+    def at_rest(self, frequency: float, acceleration: float) -> float:
+        """Return d where a mass stands: (d/dmax)^2 w^2 r = (1 - d) g.
+
+        Parameters
+        ----------
+        frequency
+            w = 1 / (timeconst dampratio) [rad/s].
+        acceleration
+            Weight over effective mass, g of a single body [m/s^2].
+        """
+        from scipy.optimize import brentq
+
+        def excess(penetration: float) -> float:
+            d = self(penetration)
+            return (d / self.greatest * frequency) ** 2 * penetration - (1 - d) * acceleration
+
+        deepest = (1 - self.least) * acceleration / (self.least / self.greatest * frequency) ** 2
+        return self(brentq(excess, 0.0, 1.01 * deepest, xtol=1e-15))
+
+
+@dataclass(frozen=True)
+class SoftContact:
+    """A spring and a dashpot that push only, on the effective mass of a contact, and how they are stepped."""
+
+    mass: float  # effective, m [kg]
+    stiffness: float  # k [N/m]
+    damping: float  # c [N s/m]
+    load_share: float = 1.0  # of a load that the spring carries at rest, 1 - d of MuJoCo [-]
+    implicit: bool = True  # force at the end of the step; else at its start (MuJoCo)
+
+    @classmethod
+    def of_ratio(cls, mass: float, frequency: float, ratio: float) -> SoftContact:
+        """Return the contact of a frequency w [rad/s] and a damping ratio zeta."""
+        return cls(mass, mass * frequency**2, 2 * ratio * mass * frequency)
+
+    @classmethod
+    def of_box2d(cls, mass: float, hertz: float, damping_ratio: float) -> SoftContact:
+        """Return the contact of ``b2MakeSoft(hertz, damping_ratio, h)``, which is the same at each h."""
+        return cls.of_ratio(mass, 2 * math.pi * hertz, damping_ratio)
+
+    @classmethod
+    def of_bullet(cls, mass: float, erp: float, cfm: float, step: float) -> SoftContact:
+        """Return the contact of an error reduction and a constraint force mixing [m/(N s)] at a step h [s]."""
+        return cls(mass, erp / (step * cfm), (1 - erp) / cfm)
+
+    @classmethod
+    def of_mujoco(cls, mass: float, timeconst: float, dampratio: float, impedance: float, share: float) -> SoftContact:
+        """Return the contact of ``solref = (timeconst [s], dampratio)`` at an impedance d, which is `share` of dmax."""
+        stiffness = mass * (share / (timeconst * dampratio)) ** 2
+        return cls(mass, stiffness, 2 * mass * share / timeconst, load_share=1 - impedance, implicit=False)
+
+    @property
+    def frequency(self) -> float:
+        """Undamped frequency w [rad/s]."""
+        return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def ratio(self) -> float:
+        """Damping ratio zeta [-]."""
+        return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
+
+    def rest_penetration(self, weight: float) -> float:
+        """Return how deep a weight [N] stands in the contact [m]."""
+        return self.load_share * weight / self.stiffness
+
+    def step_matrix(self, step: float) -> Array:
+        """Return the map (x, h v) -> (x1, h v1) of a closed step, shape (2, 2).
+
+        Implicit: (1 + 2 zeta W + W^2) h v1 = h v - W^2 x. Explicit: h v1 = h v - W^2 x - 2 zeta W h v. x1 = x + h v1.
+        """
+        W = self.frequency * step
+        loss = 2 * self.ratio * W
+        explicit = np.array([-(W**2), 1.0 - loss])
+        velocity = np.array([-(W**2), 1.0]) / (1 + loss + W**2) if self.implicit else explicit
+        return np.array([np.array([1.0, 0.0]) + velocity, velocity])
+
+    def determinant(self, step: float) -> float:
+        """Return det of a closed step: 1 / (1 + 2 zeta W + W^2), or 1 - 2 zeta W where it is explicit."""
+        return float(np.linalg.det(self.step_matrix(step)))
+
+    def spectral_radius(self, step: float) -> float:
+        """Return max |lambda| of a closed step."""
+        return float(np.abs(np.linalg.eigvals(self.step_matrix(step))).max())
+
+    def rebounds(self, step: float) -> Array:
+        """Return the restitution of an unloaded landing by steps, one for each phase, shape (PHASES,).
+
+        The force is clipped, N >= 0, and acts where the free step ends in the contact (implicit) or where the step
+        begins in it (explicit).
+        """
+        W2 = (self.frequency * step) ** 2
+        loss = 2 * self.ratio * self.frequency * step
+        x = (np.arange(PHASES) + 0.5) / PHASES  # in V h, before the first step that ends at or below the contact
+        v = np.full(PHASES, -1.0)
+        has_touched = np.zeros(PHASES, dtype=bool)
+        for _ in range(LONGEST):
+            end = x + v if self.implicit else x
+            is_closed = end < 0
+            has_touched |= is_closed
+            resisted = W2 * end + loss * v
+            force = np.maximum(-resisted / (1 + loss + W2) if self.implicit else -resisted, 0.0)
+            v = v + np.where(is_closed, force, 0.0)
+            x = x + v
+            is_over = has_touched & (((x >= 0) & (v >= 0)) | (np.abs(v) < REST))
+            if np.all(is_over):
+                break
+        return np.where(v < REST, 0.0, v)
