@@ -20,6 +20,7 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.blocks.opening import dashpot_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, no_fields
 
@@ -87,6 +88,8 @@ def block_of(scene: Scene) -> BlockProblem:
         cohesion=c.cohesion,
         base=base_of(scene),
         locked=c.law == "locked",
+        damping=dashpot_of(scene) if c.has_dashpots else 0.0,
+        restitution=c.restitution if c.rule == "impact" else None,
     )
 
 
@@ -159,7 +162,7 @@ class Motion(Prepared):
             closings.insert(0, 0.0)
         if not closings:
             return []
-        openings = [event.time for event in events if event.kind == "opens" and event.time > closings[0]]
+        openings = [event.time for event in events if event.kind == "opens" and event.time >= closings[0]]
         return [(closing, openings[i] if i < len(openings) else None) for i, closing in enumerate(closings)]
 
     def starts_closed(self, corner: str) -> bool:
@@ -259,6 +262,12 @@ class BlockMotion(Motion):
         yield f"proven: the displacement is off by at most {self.radius:.1e} m, of which floats round the most"
         if motion.simultaneous:
             yield f"both corners switch within one ball {len(motion.simultaneous)} times"
+        if motion.impacts:
+            impulses = ", ".join(f"{impact.impulse:.9g}" for impact in motion.impacts[:SWITCHES_LISTED])
+            yield f"{len(motion.impacts)} impacts, whose impulses are no part of the forces; the first: {impulses} N s"
+        for cascade in motion.cascades[:SWITCHES_LISTED]:
+            rest = f"accumulate at {cascade.time:.9g} s, within {cascade.radius:.1e} s, and the contact rests"
+            yield f"proven: the impacts after {cascade.start:.9g} s {rest}; their impulse is {cascade.impulse:.9g} N s"
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
@@ -281,16 +290,29 @@ class BlockMotion(Motion):
             gap=np.maximum(0.0, state.gap).max(axis=0),
             open_share=1 - state.closed.mean(axis=0),
             velocity=velocity,
-            rebounds=landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0))),
+            rebounds=landings(self._rebounds(sorted(contacts, key=operator.itemgetter(0)))),
             energies=self._energies(state),
             slip=np.abs(state.slipped).max(axis=0),
         )
 
     def _energies(self, state: block_events.BlockHistory) -> dict[str, Array]:
         """Return the energies; the work of the base is counted as that of the loads."""
-        stored = {name: getattr(state, name) for name in STORED}
-        no_loss = dict.fromkeys(LOST[:2], np.zeros_like(state.time))
-        return stored | no_loss | {"switching": state.released, "friction": state.friction}
+        energies = {name: getattr(state, name) for name in STORED}
+        energies |= dict.fromkeys(LOST[:2], np.zeros_like(state.time))
+        energies |= {"switching": state.released, "friction": state.friction}
+        if self.motion.problem.restitution is not None:
+            energies["impact"] = state.damped
+        elif self.motion.problem.damping:
+            energies["dashpot"] = state.damped
+        return energies
+
+    def _rebounds(self, contacts: list[tuple[float, float | None, int]]) -> list[Rebound]:
+        """Return the contacts of all corners, of an impact law those that its impacts are."""
+        restitution = self.motion.problem.restitution
+        if restitution is None:
+            return [self._rebound(*contact) for contact in contacts]
+        impacts = [impact for impact in self.motion.impacts if impact.time > 0]
+        return [Rebound(impact.approach, restitution * impact.approach) for impact in impacts for _ in "MN"]
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
