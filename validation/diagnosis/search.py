@@ -51,7 +51,19 @@ MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apa
 # is in no catalogue comes as near to one of them as that, but not nearer
 HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
 SCHEMES = [  # causes that are a time scheme, in the order in which one of several names is chosen
-    *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite", "symplectic-euler"),
+    *(
+        "start",
+        "velocity",
+        "substeps",
+        "leapfrog",
+        "scheme",
+        "generalised-alpha",
+        "hht",
+        "wbz",
+        "theta",
+        "composite",
+        "symplectic-euler",
+    ),
     "exact-in-time",
 ]
 PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme

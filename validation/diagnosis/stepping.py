@@ -121,7 +121,9 @@ class Stepper:
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
-        self.stages = [Stage(*(column[:, None] for column in of_stage.T)) for of_stage in np.moveaxis(numbers_of_stages, 1, 0)]
+        self.stages = [
+            Stage(*(column[:, None] for column in of_stage.T)) for of_stage in np.moveaxis(numbers_of_stages, 1, 0)
+        ]
         self.size = 4 + 3 * unknowns
         self.presses = np.array([v.contact != "mean gap" for v in variants])  # by the gap of the end of the step before
         self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
