@@ -19,8 +19,8 @@ into the displacement, with weight 1/2 for alpha, and into the momentum, with we
 at the end (Kane, Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and
 average acceleration of the block itself is then the midpoint rule, with F - K D0 for M A0.
 
-Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes of
-the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
+Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes
+of the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
 
 On a moving base unknowns count from it: x = D + R y with K0 R = 0, so that its displacement in the step enters as the
 momentum M R (y1 - y).
@@ -350,9 +350,7 @@ def solve_damped(
 ) -> tuple[int, int]:
     """Find the contacts with a dashpot beside their springs, without shear."""
     room = block.room
-    outcome, solves = damped(
-        block.law, before, room.free, room.retarded, length, length.retarded, after, block.work
-    )
+    outcome, solves = damped(block.law, before, room.free, room.retarded, length, length.retarded, after, block.work)
     set_gaps(length.numbers[3], room.free, room.retarded, length, after)
     return outcome, solves
 
@@ -487,9 +485,7 @@ def free_stage(
         slides_by(block, room.x, room.free.slide)
 
 
-def retard(
-    block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool
-) -> None:
+def retard(block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool) -> None:
     """Write w + tau w' at the end of a stage without contact forces, with w' from the base, which moves evenly."""
     room = block.room
     n = len(block.K)

@@ -68,6 +68,8 @@ class RollingModel(LoadedBlock):
                 raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
         if any(self.contact.band):
             raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
+        if self.contact.damping:
+            raise ValueError(f"damping: must be zero where the geometry is updated, got {self.contact.damping!r}")
         _ = self.body
 
     @cached_property
@@ -144,7 +146,7 @@ class RollingOptions:
         check_iteration(self.solve_limit, self.cut)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RollingResult(ContactResult):
     """Histories of a block that turns; the contacts are all corners of its outline, `base_contacts` M and N."""
 

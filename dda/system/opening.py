@@ -432,6 +432,8 @@ def solve_opening_system(
     options = options or UnilateralOptions()
     if options.rule != NEWMARK:
         raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    if opening.law.damping:
+        raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {opening.law.damping:g}")
     law = opening.law
     if law.rules == LAGGED:
         raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")

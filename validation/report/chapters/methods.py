@@ -227,8 +227,8 @@ def opening_blocks(
     text = (
         "What rebounds is decided by how a step takes the contact force in, not by the roots of a contact that stays "
         "closed: CH 0.8, HHT and Bathe's scheme damp closed contact and gain energy from one that opens. Energy "
-        "that is gained makes chaos of the motion: under CH 0.8 at p = 100E and 0.2 ms a change in digit 13 of the load "
-        "changes the peak pressure of 0.1 s by percents. With the leapfrog beyond its limit (p = 100E) the block is "
+        "that is gained makes chaos of the motion: under CH 0.8 at p = 100E and 0.2 ms digit 13 of the load changes "
+        "the peak pressure of 0.1 s by percents. With the leapfrog beyond its limit (p = 100E) the block is "
         "thrown and every number stays finite."
     )
     return [
