@@ -14,6 +14,7 @@ import dda.one_block.unilateral_step as step
 from dda import (
     BaseMotion,
     Block,
+    Load,
     Material,
     Scheme,
     Unilateral,
@@ -163,13 +164,27 @@ def test_the_papers_block_lands_on_dashpots():
             assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=51.0)
 
 
+@pytest.mark.parametrize("name", ["average", "ch-0.5", "composite"])
 @pytest.mark.parametrize("seed", [0, 1])
-def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(seed):
+def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(seed, name):
     model = damped_model(seed)
+    scheme = replace(SCHEMES[name][0], step=DT)
     speed = 0.3
-    moving = replace(model, velocity=model.velocity + speed, motion=BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, speed]]))
-    at_rest, moved = (solve_unilateral(one, average(DT), 100) for one in (model, moving))
+    motion = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, speed]])
+    moving = replace(model, velocity=model.velocity + speed, motion=motion)
+    at_rest, moved = (solve_unilateral(one, scheme, 100) for one in (model, moving))
     assert apart(moved.normal, at_rest.normal) < 1e-9
+
+
+@pytest.mark.parametrize("name", [*SCHEMES, "impulses"])
+def test_a_load_that_rises_keeps_the_balance_of_energy(name):
+    law = Unilateral(1e9, damping=1e6) if name in SCHEMES else Unilateral(math.inf)
+    scheme = replace(SCHEMES[name][0], step=1e-4, gg=0.99) if name in SCHEMES else Scheme(0.5625, 1.0, 0.99, 1e-4)
+    options = UnilateralOptions(energies=True) if name in SCHEMES else impulses(0.3)
+    model = UnilateralModel(PAPER.block, law, Load(pressure=5e6, ramp=0.004))
+    result = solve_unilateral(model, scheme, 200, options=options)
+    total, lost = balance(result)
+    assert np.max(np.abs(total + lost)) < 1e-12 * size(result)
 
 
 # ---- impulses --------------------------------------------------------------------------------------------------------
