@@ -195,6 +195,7 @@ def block_equations(
     vectors: list[Any] = zeros(n, n, n, n, n, q)
     vectors += [Free(*zeros(c, c, c)), Free(*zeros(c, c, c))]
     vectors += zeros(c, (n, n), n, 2, n)
+    between: list[Any] = [*zeros(n, n, n, n), at_rest(np.zeros(c))]
     stages = [plain_stage(stage) for stage in scheme.stages]
     rooms = [stage_room(stage, n, c, q) for stage in stages]
     rooms[-1] = rooms[-1]._replace(begin=float(stages[0].end) if len(stages) == 2 else 0.0)
@@ -221,7 +222,7 @@ def block_equations(
         inverse_mass=np.asarray(np.linalg.inv(form.M), np.float64),
         first=rooms[0],
         last=rooms[-1],
-        between=BlockState(*zeros(n, n, n, n), at_rest(np.zeros(c))),
+        between=BlockState(*between),
         made=np.zeros(1),
         passes=np.zeros(1),
         room=Room(*vectors),
@@ -248,8 +249,9 @@ def stage_room(stage: Stage, n: int, c: int, q: int) -> BlockStage:
 
 def length_room(n: int, q: int) -> StepLength:
     """Return room for what belongs to the length of a step."""
-    matrices = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
-    return StepLength(*matrices, Flexibility(*zeros((q, q), (q, q))))
+    rows: list[Any] = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
+    rows.append(Flexibility(*zeros((q, q), (q, q))))
+    return StepLength(*rows)
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
