@@ -13,6 +13,10 @@ A corner at zero gap goes the way of the first derivative of its gap that is not
 at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
 that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion. What opens with a shear force T
 releases the energy T^2 / (2 p_s) of its spring.
+
+With dashpots, or with an impact law on rigid contact, the laws of `block_model` hold, and the same proof does: a
+dashpot changes G and what is watched, an impact maps the state. Impacts that accumulate are named in `cascades`, with
+the instant at which the contact comes to rest enclosed (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -25,10 +29,10 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.block_flow import to_floats
 from fem_reference.events.block_march import March, Node
-from fem_reference.events.block_model import OPEN, RIGHT, BlockModel, BlockProblem, Course
+from fem_reference.events.block_model import OPEN, RELEASED, RIGHT, BlockModel, BlockProblem, Course
 from fem_reference.events.block_switching import Flows
 from fem_reference.events.enclosure import bits_of, check_request, precision, radius_of
-from fem_reference.events.switches import ProvenMotion, Switch, with_enough_digits
+from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -57,25 +61,26 @@ class BlockHistory:
     velocity: Array  # their rates [m/s, 1/s], shape (6, times)
     gap: Array  # gap w at M and N [m], negative when pressed, shape (2, times)
     gap_velocity: Array  # rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)
-    normal_force: Array  # N = p max(0, -w) at M and N, of locked corners -p w [N], upwards, shape (2, times)
+    normal_force: Array  # N at M and N [N], upwards, without impulses, shape (2, times)
     shear_force: Array  # T of the closed corners [N], towards +x, shape (2, times)
     slide: Array  # slide s at M and N over the base [m], shape (2, times)
     slipped: Array  # movement of the shear reference r by slipping until then, at M and N [m], shape (2, times)
-    states: Array  # 0 open, 1 sticks, 2 slips towards +x, -2 slips towards -x, at M and N, shape (2, times)
+    states: Array  # 0 open or released, 1 sticks, 2 slips towards +x, -2 slips towards -x, at M and N, shape (2, times)
     closed: Array  # 1 where a corner is closed, else 0, shape (2, times)
     contact_pressure: Array  # (N_M + N_N) / a [Pa], shape (times,)
     kinetic: Array  # kinetic energy [J], shape (times,)
     strain: Array  # strain energy [J], shape (times,)
-    springs: Array  # energy of the normal and shear springs [J], shape (times,)
+    springs: Array  # energy of the normal and shear springs, of released ones too [J], shape (times,)
     load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J], shape (times,)
     released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
     friction: Array  # energy lost by friction until then [J], shape (times,)
+    damped: Array  # energy lost in dashpots and by impacts until then [J], shape (times,)
     displacement_radius: Array  # greatest distance of each displacement from the true one, shape (6, times)
 
     @property
     def energy(self) -> Array:
         """Sum of all energies, which the motion conserves [J]."""
-        return self.kinetic + self.strain + self.springs + self.load + self.released + self.friction
+        return self.kinetic + self.strain + self.springs + self.load + self.released + self.friction + self.damped
 
 
 @dataclass(frozen=True)
@@ -90,6 +95,8 @@ class BlockMotion(ProvenMotion):
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
     flows: Flows = field(repr=False, compare=False)  # of the states of the corners
+    impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
+    cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
 
     @property
     def simultaneous(self) -> tuple[float, ...]:
@@ -110,7 +117,7 @@ class BlockMotion(ProvenMotion):
         t = instants(times, self.end)
         order = np.argsort(t, kind="stable")
         begun = np.searchsorted([float(node.start) for node in self.nodes], t, side="right") - 1
-        reports = np.empty((39, len(t)))
+        reports = np.empty((41, len(t)))
         with precision(bits_of(min(self.digits, REPORT_DIGITS))):
             last = -1
             for i in order.tolist():
@@ -123,12 +130,15 @@ class BlockMotion(ProvenMotion):
                 instant = arb(float(t[i]))
                 time, z = instant, flow.advance(z, instant - time)
                 reports[:, i] = self._report(node, time, z)
-        x, rate, _, radius, slipped, losses, states = np.split(reports, [12, 24, 26, 32, 34, 37])
-        released, friction, work = losses
-        p = self.problem.stiffness
+        x, rate, _, N, radius, slipped, losses, states = np.split(reports, [12, 24, 26, 28, 34, 36, 39])
+        released, dissipated, work = losses
+        slips = self.problem.friction is not None
+        p = 0.0 if self.problem.rigid_contact else self.problem.stiffness
         ps = self.problem.shear_stiffness
         closed = np.asarray(states != OPEN, dtype=float)
-        N = -p * x[6:8] if self.problem.locked else closed * np.maximum(0.0, -p * x[6:8])
+        if not self.problem.locked:
+            N = np.maximum(0.0, N)
+        pressed = x[6:8] if self.problem.locked else np.minimum(0.0, x[6:8])
         T = 0.0 - ps * x[8:10]
         model = self.flows.model
         mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
@@ -149,10 +159,11 @@ class BlockMotion(ProvenMotion):
             contact_pressure=N.sum(axis=0) / self.problem.width,
             kinetic=mass @ (_UNKNOWNS @ rate[:6]) ** 2 / 2,
             strain=(strains * (elastic @ strains)).sum(axis=0) / 2,
-            springs=(N**2 / p - T * x[8:10]).sum(axis=0) / 2,
+            springs=(p * pressed**2 - T * x[8:10]).sum(axis=0) / 2,
             load=-load @ (_UNKNOWNS @ x[:6]) - work,
             released=released,
-            friction=friction,
+            friction=dissipated if slips else np.zeros_like(t),
+            damped=np.zeros_like(t) if slips else dissipated,
             displacement_radius=radius,
         )
 
@@ -176,10 +187,13 @@ class BlockMotion(ProvenMotion):
         for c in (0, 1):
             if abs(node.states[c]) == RIGHT:
                 slipped[c] += outputs[24 + c] - node.z[12 + c, 0]
-        friction = node.friction + flow.energy(node.z) - flow.energy(z) if flow.dissipates else node.friction
+        dissipated = node.dissipated
+        if flow.dissipates:
+            dissipated = dissipated + flow.energy(node.z) - flow.energy(z)
+        states = [OPEN if state == RELEASED else state for state in node.states]
         work = node.work + flow.model.base_work(base, node.z, z, passed)
-        numbers = [*map(float, outputs)], radius, [*map(float, (*slipped, node.released, friction, work))]
-        return [*numbers[0], *numbers[1], *numbers[2], *node.states]
+        numbers = [*map(float, outputs)], radius, [*map(float, (*slipped, node.released, dissipated, work))]
+        return [*numbers[0], *numbers[1], *numbers[2], *states]
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
@@ -207,6 +221,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         If the motion takes more steps than are allowed; the contact oscillates too fast for its length.
     LostDigitsError
         If switches amplify what the motion may be off until nothing can be decided.
+    AccumulationError
+        If impacts follow each other ever faster, and that they accumulate is not proven.
     NoContactStateError
         If no state of the corners agrees with the motion that follows from it.
     """
@@ -220,6 +236,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
         switches = tuple(march.switches)
         touches = tuple(march.touches)
         nodes = tuple(march.nodes)
-        return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows)
+        impacts = tuple(march.impacts)
+        cascades = tuple(march.cascades)
+        return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows, impacts, cascades)
 
     return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

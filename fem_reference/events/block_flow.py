@@ -2,7 +2,10 @@
 
 z = (x, x', r, 1) holds the six unknowns, their rates, the references of both corners and a one, so that every function
 that is watched or reported is a row over z, and its rate is that row times G. G may have any eigenvalues where a corner
-slips: a power series does not care. A step has at most `ANGLE` radians of the greatest rate that G can give.
+slips or has a dashpot, real and equal ones too: a power series does not care. A step has at most `ANGLE` radians of the
+greatest rate that G can give. With x in units of 1/omega, omega^2 the norm of the scaled stiffness, the four blocks of
+G have the norms 0, omega, omega and d, that of the scaled dashpots, so that G has at most the norm
+d/2 + sqrt(d^2/4 + omega^2).
 
 Floats prove for most steps that nothing switches: the Bernstein forms of the watched functions bound them from below.
 """
@@ -16,7 +19,17 @@ from functools import cache, cached_property
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from fem_reference.events.block_model import OPEN, RIGHT, STICKS, BlockModel, States, row, sigma
+from fem_reference.events.block_model import (
+    CARRIES_NOTHING,
+    OPEN,
+    RELEASED,
+    RIGHT,
+    STICKS,
+    BlockModel,
+    States,
+    row,
+    sigma,
+)
 from fem_reference.events.enclosure import ball, precision, radius_of
 from fem_reference.problem.problem import Array
 
@@ -38,9 +51,13 @@ ROUNDING = 400 * np.finfo(float).eps
 """Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms of 15 products may be wrong after all cuts."""
 DERIVATIVES = 10
 """Terms of a function's series after which it counts as zero for ever."""
+LEAST_TERMS = 12
+"""Terms of a watched function's series, at least."""
 FEW = 4
 """Terms that are looked at first: most functions show at once where they go."""
 UNIT = np.eye(SIZE)
+LEAST_RATE = 1.0
+"""Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
 FREQUENT = 20
 """Times that a time is passed before its exp(G s) is kept, which costs as much as twenty series."""
 EXPONENTIAL_ERROR = 1e-13
@@ -59,14 +76,18 @@ class Flow:
         self.G_floats = to_floats(self.G)
         B = -self.G_floats[6:12, :6]
         scale = np.sqrt([float(m) for m in model.mass])
-        scaled = scale[:, None] * B / scale
-        self.rate = math.sqrt(float(np.linalg.norm(scaled, 2))) * (1 + 1e-9)  # bound of the rates of the motion [rad/s]
+        omega = math.sqrt(float(np.linalg.norm(scale[:, None] * B / scale, 2))) or LEAST_RATE
+        dashpots = float(np.linalg.norm(scale[:, None] * self.G_floats[6:12, 6:12] / scale, 2)) / 2
+        # bound of the rates of the motion [rad/s]
+        self.rate = (dashpots + math.hypot(dashpots, omega)) * (1 + 1e-9)
         # unknowns and rates of norm one, in which G has the norm `rate`; references and the one change them as slowly
-        self.units = np.array([*(1 / (scale * self.rate)), *(1 / scale), *[1 / (scale[0] * self.rate)] * 2, 1.0])
+        omega *= 1 + 1e-9
+        self.units = np.array([*(1 / (scale * omega)), *(1 / scale), *[1 / (scale[0] * omega)] * 2, 1.0])
         load = np.abs(self.G_floats[6:12, 14] * scale).max() / self.rate
         self.units[14] = 1 / load if load else 1.0
         self.stretches: list[arb_mat] = []  # s - r of each corner, which is -T / p_s [m]
         self.references: list[arb_mat] = []  # r of each corner that does not stick [m]
+        self.forces: list[arb_mat] = []  # N of each corner [N]
         self.watched: list[arb_mat] = []  # positive, or zero for ever, as long as both corners stay in their states
         for corner in (0, 1):
             self._add_corner(corner)
@@ -83,12 +104,17 @@ class Flow:
         slide = model.slides[c]
         stuck = model.stuck[c]
         limit = gap * (-model.friction * model.p) + row(one=model.cohesion)  # tan(phi) N + C
-        if state == OPEN:
+        force = gap * -model.p - model.gap_rates[c] * model.damping  # N of a corner that presses
+        if state in CARRIES_NOTHING:
             stretch = row()
             watched = [gap]
+            if state == RELEASED:
+                watched = [gap * -1, force * -1]
+            force = row()
         elif state == STICKS:
             stretch = stuck
-            watched = [gap * -1]
+            # without a dashpot the gap falls with the force
+            watched = [force if model.damping != 0 else gap * -1]
             if model.tan is not None:
                 watched += [model.reserves[c, sign] for sign in (1, -1)]
         else:
@@ -96,14 +122,25 @@ class Flow:
             watched = [gap * -1]
             # one that slips moves its reference in the direction of its slip
             watched.append((slide - stretch) * self.G * -sigma(state))
+        if model.contact is not None:  # both corners of a rigid contact are one
+            watched = [model.contact.gap if state == OPEN else model.contact.force] if c == 0 else []
+            force = row() if state == OPEN else model.contact.force * (arb(1) / 2)
         self.stretches.append(stretch)
         self.references.append(slide - stretch)
+        self.forces.append(force)
         if not model.locked:
             self.watched += watched
 
     @cached_property
+    def unit_balls(self) -> list[arb]:
+        """Units of the unknowns and their rates as balls."""
+        return [arb(unit) for unit in self.units[:12].tolist()]
+
+    @cached_property
     def dissipates(self) -> bool:
-        """Whether a corner slips against friction."""
+        """Whether a corner slips against friction, or has a dashpot and is not open."""
+        if self.model.damping != 0:
+            return any(state != OPEN for state in self.states)
         rough = self.model.friction != 0 or self.model.cohesion != 0
         return bool(rough) and any(abs(state) == RIGHT for state in self.states)
 
@@ -124,14 +161,17 @@ class Flow:
         return total
 
     def energy(self, z: arb_mat) -> arb:
-        """Kinetic energy, that of the strain and of the springs, and the loads' as seen from the base [J]."""
+        """Kinetic energy, that of the strain and of the springs, and the loads' as seen from the base [J].
+
+        A released spring has what its stretch says: it gives it to its dashpot, and nothing to the block.
+        """
         return (z.transpose() * (self._hessian * z))[0, 0] / 2
 
     @cached_property
     def outputs(self) -> arb_mat:
-        """Rows over z of what is reported, shape (26, 15).
+        """Rows over z of what is reported, shape (28, 15).
 
-        (u, v, r, ex, ey, gxy), gaps, stretches and slides, the rates of these, and the references.
+        (u, v, r, ex, ey, gxy), gaps, stretches and slides, the rates of these, the references, and the normal forces.
         """
         half = arb(1) / 2
         zero = arb(0)
@@ -145,7 +185,8 @@ class Flow:
             row([zero, zero, zero, one, one, zero]),
         ]
         rows += [*self.model.gaps, *self.stretches, *self.model.slides]
-        return arb_mat([part.entries() for part in (*rows, *(part * self.G for part in rows), *self.references)])
+        rows += [part * self.G for part in rows]
+        return arb_mat([part.entries() for part in (*rows, *self.references, *self.forces)])
 
     def step_length(self, span: float) -> float:
         """The longest step of at most `ANGLE` radians that divides a span [s]."""
@@ -180,12 +221,14 @@ class Flow:
         sums = (self.derivatives(count) * z).entries()
         return [sums[i :: len(self.watched)] for i in range(len(self.watched))]
 
-    def coefficients(self, which: int, z: arb_mat, radius: arb_mat, angle: float) -> list[arb]:
+    def coefficients(
+        self, which: int, z: arb_mat, radius: arb_mat, angle: float, least: int = LEAST_TERMS
+    ) -> list[arb]:
         """As many of one watched function as an angle needs, the last one enclosing all further terms.
 
         A z and what it may be off are taken apart, so that neither blurs the other.
         """
-        n = max(12, term_count(angle))
+        n = max(least, term_count(angle))
         columns = self.derivatives(n, which) * arb_mat([*zip(z.entries(), radius.entries(), strict=True)])
         weights = self.watched[which].entries()[:12]
         size = sum(float(w.abs_upper()) * unit for w, unit in zip(weights, self.units, strict=False))

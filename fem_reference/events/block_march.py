@@ -2,6 +2,10 @@
 
 The centre of the motion is computed in so many digits, without radii; `Spread` holds what separates it from the true
 motion: rounding, and the radii of the instants of the switches.
+
+An impact on a rigid contact is a linear map of the state, `RigidContact.impact`, at an instant that is enclosed like
+that of a switch. Where impacts follow each other as short hops they are followed in balls, without `Spread`, until they
+are over or until infinitely many of them are proven to accumulate (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -12,10 +16,25 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 
 from fem_reference.events.block_flow import ANGLE, CELLS, CUTS, SIZE, UNIT, Flow, to_floats
-from fem_reference.events.block_model import CORNERS, OPEN, STICKS, Base, BlockModel, Course, States
+from fem_reference.events.block_impacts import Accumulation, Hops, box, norm
+from fem_reference.events.block_model import (
+    CARRIES_NOTHING,
+    CORNERS,
+    OPEN,
+    RELEASED,
+    STICKS,
+    Base,
+    BlockModel,
+    Course,
+    RigidContact,
+    States,
+)
 from fem_reference.events.block_switching import Flows, agreeing, lead, settled
-from fem_reference.events.enclosure import Fall, ball, first_fall, polynomial, precision, radius_of
+from fem_reference.events.enclosure import Fall, ball, first_fall, is_blank, polynomial, precision, radius_of
 from fem_reference.events.switches import (
+    AccumulationError,
+    Cascade,
+    Impact,
     LostDigitsError,
     NoContactStateError,
     Switch,
@@ -32,6 +51,10 @@ REGULAR = 8
 """Moves after which the axes of the box of a `Spread` are made orthogonal again."""
 REACH = 1 + 1e-6
 """Part of a step over which no further one is begun: the last step to a row is longer than others by rounding."""
+TAIL_BITS = 0.3
+"""Part of the working bits to which hops are followed before the rest of them is enclosed at once."""
+INSTANT = 1e-18
+"""Part of the end of the motion below which a hop has no node of its own: no float tells its instants apart."""
 INFLATION = 1 + 1e-9
 """What covers the rounding of the floats that bound radii."""
 
@@ -48,11 +71,14 @@ class Spread:
         model = flows.model
         closed = flows[STICKS, STICKS]
         mass = np.array([float(m) for m in model.mass])
-        stiffness = mass[:, None] * (1e-4 * closed.rate**2 * np.eye(6) - closed.G_floats[6:12, :6])
+        normal = np.array(model.normal, dtype=float)
+        shear = np.array(model.shear, dtype=float)
+        stiffness = to_floats(arb_mat(model.elastic)) + 1e-4 * closed.rate**2 * np.diag(mass)
+        stiffness += float(model.p) * normal.T @ normal + float(model.ps) * shear.T @ shear
         self.metric = np.eye(SIZE)
         self.metric[:6, :6] = np.linalg.cholesky((stiffness + stiffness.T) / 2).T
         self.metric[6:12, 6:12] = np.diag(np.sqrt(mass))
-        self.metric[12:14, 12:14] *= np.sqrt(float(model.ps) + float(model.p) * 1e-4)
+        self.metric[12:14, 12:14] *= np.sqrt(float(model.ps) + float(model.p) * 1e-4) or 1.0
         self.inverse = np.linalg.inv(self.metric)
         self.axes = self.inverse.copy()
         self.radii = np.zeros(SIZE)
@@ -62,6 +88,16 @@ class Spread:
     def hull(self) -> Array:
         """Greatest distances from the centre, shape (15,)."""
         return np.asarray((np.abs(self.axes) @ self.radii + self.box) * INFLATION)
+
+    def radius(self, row: Array) -> float:
+        """Greatest value of a row over z, less that at the centre."""
+        return float((np.abs(row @ self.axes) @ self.radii + np.abs(row) @ self.box) * INFLATION)
+
+    def restart(self, radii: Array) -> None:
+        """Make the set a box."""
+        self.axes = UNIT.copy()
+        self.radii = radii
+        self.box = np.zeros(SIZE)
 
     def transport(self, J: Array, added: Array) -> None:
         """Turn the set by a matrix, and add a box that holds what its floats may be wrong by."""
@@ -98,7 +134,7 @@ class Node:
     row_time: arb  # and the instant of that row [s]
     slipped: tuple[arb, arb]  # movement of each reference by slipping until now [m]
     released: arb  # energy of the shear springs lost by opening until now [J]
-    friction: arb  # energy lost by friction until now [J]
+    dissipated: arb  # energy lost by friction, in dashpots or by impacts until now [J]
     work: arb  # work of the base until now [J]
 
 
@@ -114,6 +150,8 @@ class March:
         self.flows = Flows(model)
         self.nodes: list[Node] = []
         self.switches: list[Switch] = []
+        self.impacts: list[Impact] = []
+        self.cascades: list[Cascade] = []
         self.leads: list[int | None] = []  # zeros with which the watched functions begin, see `Step.clear`
         self.last_switch = 0  # nodes before the last switch
         self.touches: list[float] = []  # instants at which a crossing is neither proven nor excluded [s]
@@ -121,7 +159,7 @@ class March:
         self.time = arb(0)
         self.slipped = [arb(0), arb(0)]
         self.released = arb(0)
-        self.friction = arb(0)
+        self.dissipated = arb(0)
         self.work = arb(0)
 
     def run(self, velocity: float | arb) -> None:
@@ -141,13 +179,16 @@ class March:
         self.spread = Spread(self.flows)
         self._place(arb_mat(SIZE, 1, [*x, *v, slide, slide, arb(1)]))
         is_open = x[1] > 0 and not self.model.locked  # a base that begins below the block pulls at a locked one
-        self.states: States = (OPEN, OPEN) if is_open else (STICKS, STICKS)
+        self.states: States = (OPEN, OPEN) if is_open or self.model.contact else (STICKS, STICKS)
         if self.model.locked and self._steps_left() > STEPS:
             self._stop_for_work()  # before the first step: corners that never change cannot shorten the work
-        if not self.model.locked:
+        if self._strikes(self._balls(self.spread.hull())):
+            self._switch(self.flows[self.states], None)
+        elif not self.model.locked:
             self._settle(self.flows[self.states], self.spread.hull(), 0.0)
-        self.switches.clear()
-        self.closed_at_start = tuple(state != OPEN for state in self.states)
+        self.switches = [switch for switch in self.switches if switch.time > 0]
+        first_states = self.nodes[0].states if self.nodes else self.states  # impacts at t = 0 may have led on by hops
+        self.closed_at_start = tuple(state != OPEN for state in first_states)
         times = self.course.motion.time
         while True:
             following = row + 1
@@ -220,7 +261,7 @@ class March:
 
     def _add_node(self, radius: Array) -> None:
         slipped = self.slipped[0], self.slipped[1]
-        losses = self.released, self.friction, self.work
+        losses = self.released, self.dissipated, self.work
         self.nodes.append(Node(self.time, self.states, self.z, radius, self.base, self.row_time, slipped, *losses))
 
     def _advance(self, flow: Flow, end: arb) -> None:
@@ -229,7 +270,7 @@ class March:
         moved = flow.advance(self.z, length)
         self.work = (self.work + self.model.base_work(self.base, self.z, moved, length)).mid()
         if flow.dissipates:
-            self.friction = (self.friction + flow.energy(self.z) - flow.energy(moved)).mid()
+            self.dissipated = (self.dissipated + flow.energy(self.z) - flow.energy(moved)).mid()
         J = flow.sensitivity(length)
         self.spread.transport(J, radii_of(moved) + flow.exponential_error(J, self.spread.hull()))
         self.z = moved.mid()
@@ -300,23 +341,37 @@ class March:
         before = self.z
         states = self.states
         hull = self.spread.hull()
-        self._place(arb_mat(SIZE, 1, entries))
         rates = np.array([float(x.abs_upper()) for x in (flow.G * before).entries()])
-        self._settle(flow, np.abs(P) @ (hull + rates * offset * INFLATION) + self.spread.box, offset)
-        if self.states == states and (first is None or moved < self.end * 2.0 ** (-ctx.prec // 2)):
+        uncertain = hull + rates * offset * INFLATION
+        z = arb_mat(SIZE, 1, entries)
+        contact = self.model.contact
+        strikes = self._strikes(self._balls(uncertain))
+        if strikes and contact is not None:
+            self._add_impact(contact, -(contact.rate * z)[0, 0], offset)
+            impact = contact.impact()
+            z = impact * z
+            P = to_floats(impact) @ P
+        self._place(z)
+        self._settle(flow, np.abs(P) @ uncertain + self.spread.box, offset)
+        if strikes:
+            if self.states == (OPEN, OPEN):
+                self._add_rebound(offset)
+        elif self.states == states and (first is None or moved < self.end * 2.0 ** (-ctx.prec // 2)):
             raise NoContactStateError(f"the state of the corners contradicts the motion at {float(self.time)!r} s")
         if all(was != now for was, now in zip(states, self.states, strict=True)):
             timing = None  # the two need not switch at one instant of the ball
-        change = np.array([float(x) for x in (flow.G * before - self.flows[self.states].G * self.z).entries()])
-        change[12:14] = P[12:14] @ np.array([float(x) for x in (flow.G * before).entries()])
+        change = P @ np.array([float(x) for x in (flow.G * before).entries()])
+        change -= np.array([float(x) for x in (self.flows[self.states].G * self.z).entries()])
         self._blur(flow, P, timing, change, offset, np.abs([float(x) for x in before.entries()]) + hull)
+        if strikes and contact is not None and 0 < contact.restitution < 1:
+            self._follow_hops(contact, offset)
 
     def _blur(self, flow: Flow, P: Array, timing: arb_mat | None, change: Array, offset: float, size: Array) -> None:
         """Move the spread over a switch, whose instant depends on where in it the motion is.
 
         The function that falls does so after -g z, `timing` being the row g, and until then z' is that of the former
         flow, which changes z by `change` times this time; terms of second order in the time are bounded by the sizes
-        of z.
+        of z. P is what the switch itself makes of z.
         """
         before = np.abs(flow.G_floats)
         after = np.abs(self.flows[self.states].G_floats)
@@ -344,18 +399,134 @@ class March:
             was = self.states[c]
             if was == now[c]:
                 continue
-            if now[c] == OPEN:
+            if {was, now[c]} == {OPEN, RELEASED}:
+                continue  # a released corner carries as little as an open one
+            if now[c] in CARRIES_NOTHING:
                 stretch = (flow.stretches[c] * self.z)[0, 0]
                 self.released = (self.released + self.model.ps * stretch * stretch / 2).mid()
             kind = "sticks" if now[c] == STICKS else "slips"
-            if OPEN in (was, now[c]):
-                kind = "opens" if now[c] == OPEN else "closes"
-            midpoint = self.time.str(40, radius=False)
-            self.switches.append(Switch(float(self.time), CORNERS[c], kind, midpoint, offset))
+            if was in CARRIES_NOTHING:
+                kind = "closes"
+            elif now[c] in CARRIES_NOTHING:
+                kind = "opens"
+            self._add_switch(CORNERS[c], kind, offset)
         self.states = now
         self.last_switch = len(self.nodes)
+
+    def _add_switch(self, corner: str, kind: str, offset: float) -> None:
+        midpoint = self.time.str(40, radius=False)
+        self.switches.append(Switch(float(self.time), corner, kind, midpoint, offset))
         if len(self.switches) > self.limit:
             raise TooManySwitchesError(float(self.time), f"more than {self.limit} switches")
+
+    def _strikes(self, z: arb_mat) -> bool:
+        """Whether the gap of a rigid contact is zero and closes."""
+        contact = self.model.contact
+        if contact is None or self.states != (OPEN, OPEN) or not is_blank((contact.gap * z)[0, 0]):
+            return False
+        rate = (contact.rate * z)[0, 0]
+        return bool(rate < 0) and not is_blank(rate)
+
+    def _add_impact(self, contact: RigidContact, approach: arb, offset: float) -> None:
+        """Record an impact at this instant, and what it loses."""
+        midpoint = self.time.str(40, radius=False)
+        impulse = float(contact.impulse(approach))
+        self.impacts.append(Impact(float(self.time), float(approach), impulse, midpoint, offset))
+        self.dissipated = (self.dissipated + contact.loss(approach)).mid()
+
+    def _add_rebound(self, offset: float) -> None:
+        """Record that both corners touch for an instant."""
+        for kind in ("closes", "opens"):
+            for corner in CORNERS:
+                self._add_switch(corner, kind, offset)
+
+    def _follow_hops(self, contact: RigidContact, offset: float) -> None:
+        """Follow impacts that hops lie between, from right after one on.
+
+        It ends where a hop is long, or not proven to be concave, or leads beyond the end, or where all hops that are
+        left are shorter together than the digits can tell: these are enclosed, and the contact rests after them.
+        """
+        flow = self.flows[OPEN, OPEN]
+        hops = Hops(flow, contact)
+        e = contact.restitution
+        time = self.time + ball(offset)
+        z = self._balls(self.spread.hull())
+        speed = (contact.rate * self.z)[0, 0] + ball(self.spread.radius(to_floats(contact.rate)[0]))
+        speed = speed + (contact.rate * flow.G * z)[0, 0] * ball(offset)
+        cascade_start: float | None = None
+        impulse = arb(0)
+        finest = arb(2) ** (-TAIL_BITS * ctx.prec) / flow.rate
+        length = arb(self.end)
+        while True:
+            if is_blank(speed):
+                raise LostDigitsError(float(time), "impacts have cost most of the digits")
+            landed = z + flow.G * z * ball(radius_of(time))  # at the instant of the impact, no longer at its midpoint
+            if cascade_start is None or length < finest:
+                rest = hops.find_accumulation(landed, speed)
+                if rest is not None and time + rest.length < self.end:
+                    if cascade_start is None:
+                        cascade_start = float(time)
+                    if rest.length < finest:
+                        impulse = impulse + contact.impulse(rest.speeds)
+                        self._rest_after(hops, rest, z, time)
+                        midpoint = self.time.str(40, radius=False)
+                        enclosure = midpoint, self.switches[-1].radius
+                        self.cascades.append(Cascade(cascade_start, float(self.time), float(impulse), *enclosure))
+                        return
+            hop = hops.find_hop(landed, speed)
+            if hop is None or not time + hop.length < self.end:
+                return
+            length = hop.length
+            if cascade_start is None and length < self.end * 2.0 ** (-ctx.prec // 2):
+                reason = "impacts follow each other ever faster, and that they accumulate is not proven"
+                raise AccumulationError(float(time), f"{reason}; another restitution or load, however near, may do")
+            if length > self.end * INSTANT:
+                self._add_node(self.spread.hull())
+            time = time + length
+            moved = flow.series(z, difference(time.mid(), self.time))
+            z = hops.pushed(moved, hop.approach, time.rad())
+            speed = e * hop.approach
+            self.spread.restart(radii_of(z))
+            self.z = z.mid()
+            self.time = time.mid()
+            self.leads = [1]
+            self.last_switch = len(self.nodes)
+            if cascade_start is None:
+                self._add_impact(contact, hop.approach, radius_of(time))
+                self._add_rebound(radius_of(time))
+            else:
+                impulse = impulse + contact.impulse(hop.approach)
+                self.dissipated = (self.dissipated + contact.loss(hop.approach)).mid()
+
+    def _rest_after(self, hops: Hops, rest: Accumulation, z: arb_mat, time: arb) -> None:
+        """Take the state in which the impacts that are left accumulate, and let the contact rest.
+
+        Parameters
+        ----------
+        hops, rest
+            What they come to.
+        z
+            Balls for the state after the last impact that was followed, at the present midpoint of its instant.
+        time
+            That instant [s].
+        """
+        flow = hops.flow
+        self._add_node(self.spread.hull() + radii_of(box(flow, rest.reach)) * INFLATION)
+        time = time + rest.length
+        offset = radius_of(time)
+        z = flow.series(z, difference(time.mid(), self.time))
+        z = hops.pushed(z, rest.speeds, rest.length.upper() + 2 * time.rad())
+        second_order = 2 * (hops.rate * time.rad()) ** 2 * norm(flow, flow.G * z) / hops.rate
+        z = z + box(flow, second_order.upper())
+        self.spread.restart(radii_of(z))
+        projection = hops.contact.rest()
+        self.z = z.mid()
+        self.spread.transport(to_floats(projection), np.zeros(SIZE))
+        self._place(projection * self.z)
+        self.time = time.mid()
+        self._settle(flow, self.spread.hull(), offset)
+        if self.states != (STICKS, STICKS):
+            raise NoContactStateError(f"the contact does not rest after the impacts at {float(self.time)!r} s")
 
 
 def radii_of(vector: arb_mat) -> Array:

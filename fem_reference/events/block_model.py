@@ -13,6 +13,23 @@ normal gap w = v(X, -b/2), positive when open, and slide by s = u(X, -b/2).
 
 On the block act N = -p w upwards and T towards +x. A corner that sticks has T = -p_s (s - r); one that slips has
 T = sigma (tan(phi) N + C), with sigma against the direction of its sliding, and moves its reference, r = s + T / p_s.
+
+**Dashpots.** A corner with a dashpot c beside its spring presses with N = max(0, -(p w + c w')) while w < 0, and with
+nothing above. So the force jumps to -c w' as the gap closes, and it reaches zero on the way back while w is still
+negative: the spring has not come back, and from there on the corner is *released*. A released corner carries nothing.
+It presses again if p w + c w' falls to zero, which is at the rate w' = -p w / c > 0 and not at w' = 0, and it
+is open once its gap is positive.
+
+**Rigid contact** (p infinite) has an impact law: a gap of both corners that closes at the rate w' < 0 has the rate
+-e w' right after. The impulse of both corners together is::
+
+    J = -(1 + e) w' / C,    C = n M^-1 n',    n x = v - (b/2) vy the gap of both corners
+
+with C = 4/m for a block of one strain and 1/m for a rigid one, and the energy (1 - e^2) w'^2 / (2 C) is lost. What
+rests on a rigid contact keeps w'' = 0 by the force N = -n M^-1 (F - K x) / C >= 0 until this would have to pull.
+
+**A rigid block** (E infinite) has no strain: forces change only its velocities of translation and its rotation, so that
+M^-1 becomes the sum of d d' / (d' M d) over its three rigid motions d.
 """
 
 from __future__ import annotations
@@ -31,12 +48,16 @@ from fem_reference.problem.motion import Motion
 CORNERS = ("M", "N")
 HYPOTHESES = ("plane stress", "plane strain")
 POSITIVE = ("width", "height", "density", "young", "stiffness")
-UNSIGNED = ("shear_stiffness", "gap", "cohesion")
+UNSIGNED = ("shear_stiffness", "gap", "cohesion", "damping")
+INFINITE = ("young", "stiffness")
+"""Fields that may be infinite: of a rigid block and of a rigid contact."""
 OPEN = 0
 STICKS = 1
 RIGHT = 2
 LEFT = -2
-"""States of a corner; `RIGHT` and `LEFT` slip towards +x and -x."""
+RELEASED = 3
+"""States of a corner; `RIGHT` and `LEFT` slip towards +x and -x; see above on a released one, which carries nothing."""
+CARRIES_NOTHING = (OPEN, RELEASED)
 States = tuple[int, int]
 Vector = list[arb]
 
@@ -65,8 +86,8 @@ class BlockProblem:
     width: float  # width a of the block [m], unit thickness
     height: float  # height b [m]
     density: float  # mass density rho [kg/m3]
-    young: float  # Young's modulus E [Pa]
-    stiffness: float  # normal stiffness p of one corner [N/m]
+    young: float  # Young's modulus E [Pa]; `math.inf`: a rigid block
+    stiffness: float  # normal stiffness p of one corner [N/m]; `math.inf`: rigid contact, which needs `restitution`
     pressure: float = 0.0  # pressure q on the top edge [Pa], downwards, from t = 0 on
     shear_stiffness: float = 0.0  # shear stiffness p_s of a closed corner [N/m]; 0: frictionless, else glued in shear
     poisson: float = 0.0  # Poisson's ratio mu [-]
@@ -81,10 +102,14 @@ class BlockProblem:
     cohesion: float = 0.0  # shear strength without normal force over the whole base [Pa]
     base: Motion | None = None  # motion of the base; None: at rest
     locked: bool = False  # whether the springs of the corners also pull and nothing opens or slips
+    damping: float = 0.0  # dashpot c beside the normal spring of one corner, which never pulls [N s/m]
+    restitution: float | None = None  # e of the impact law of rigid contact [-], from 0, plastic, to 1, elastic
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
+            if value == math.inf and field.name in INFINITE:
+                continue
             if isinstance(value, int | float) and not math.isfinite(value):
                 raise ValueError(f"{field.name}: must be a finite number, got {value!r}")
         for name in POSITIVE:
@@ -95,6 +120,8 @@ class BlockProblem:
                 raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
         self._check_material()
         self._check_friction()
+        self._check_damping()
+        self._check_impact_law()
         if self.locked and (self.friction is not None or self.gap or self.velocity):
             raise ValueError("locked: must be without friction, gap and velocity, got one of them")
         if 2 * abs(self.eccentricity) >= self.width:
@@ -110,6 +137,40 @@ class BlockProblem:
             raise ValueError(f"friction: must be at least 0 and below 90, got {self.friction!r}")
         if self.friction is not None and self.shear_stiffness == 0:
             raise ValueError("shear_stiffness: must be positive with friction, got 0.0")
+
+    def _check_damping(self) -> None:
+        """Raise for what a contact with dashpots cannot be combined with."""
+        if self.damping == 0:
+            return
+        if self.friction is not None or self.locked or self.rigid_contact:
+            rule = "must be 0 with friction, locked contact or rigid contact, whose loss is set by restitution"
+            raise ValueError(f"damping: {rule}, got {self.damping!r}")
+
+    def _check_impact_law(self) -> None:
+        """Raise for what rigid contact is not solved for: both its corners do the same, and nothing acts sideways."""
+        if self.restitution is None:
+            if self.rigid_contact:
+                raise ValueError("stiffness: must be finite, or rigid contact needs a restitution, got inf")
+            return
+        if not 0 <= self.restitution <= 1:
+            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
+        if not self.rigid_contact:
+            raise ValueError(f"stiffness: must be infinite with restitution, got {self.stiffness!r}")
+        if self.friction is not None or self.shear_stiffness or self.locked:
+            raise ValueError("restitution: must be without friction, shear_stiffness and locked, got one of them")
+        if self.eccentricity or self.traction or self.slope or self.base is not None:
+            rule = "must be without eccentricity, traction, slope and base, so that both corners do the same"
+            raise ValueError(f"restitution: {rule}, got one of them")
+
+    @property
+    def rigid_contact(self) -> bool:
+        """Whether the contact has no springs."""
+        return math.isinf(self.stiffness)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the block has no strain."""
+        return math.isinf(self.young)
 
     def _check_material(self) -> None:
         if self.hypothesis not in HYPOTHESES:
@@ -160,6 +221,11 @@ def row(x: Sequence[arb | int] = (0,) * 6, one: arb | int = 0) -> arb_mat:
     return arb_mat([[arb(entry) for entry in (*x, *[0] * 8, one)]])
 
 
+def rate_row(x: Sequence[arb | int]) -> arb_mat:
+    """A function of z from its weights over the rates of the unknowns."""
+    return arb_mat([[arb(entry) for entry in (*[0] * 6, *x, *[0] * 3)]])
+
+
 class BlockModel:
     """A block in the unknowns x = (u, v, ux, uy, vx, vy), in the precision of the current context.
 
@@ -176,16 +242,21 @@ class BlockModel:
         self.normal = [[arb(0), arb(1), arb(0), arb(0), x, -b / 2] for x in (-a / 2, a / 2)]
         self.shear = [[arb(1), arb(0), x, -b / 2, arb(0), arb(0)] for x in (-a / 2, a / 2)]
         self.gaps = [row(weights) for weights in self.normal]  # w [m]
+        self.gap_rates = [rate_row(weights) for weights in self.normal]  # w' [m/s]
         self.slides = [row(weights) for weights in self.shear]  # s [m]
         references = [arb_mat([[arb(int(j == 12 + c)) for j in range(15)]]) for c in (0, 1)]
         self.stuck = [slide - r for slide, r in zip(self.slides, references, strict=True)]  # s - r [m]
-        self.p = arb(problem.stiffness)  # normal stiffness of a corner [N/m]
+        # normal stiffness of a corner [N/m]; a rigid contact has no springs, and its force is that of its constraint
+        self.p = arb(0) if problem.rigid_contact else arb(problem.stiffness)
+        self.damping = arb(problem.damping)  # of the dashpot of a corner [N s/m]
         self.ps = arb(problem.shear_stiffness)  # shear stiffness of a corner [N/m]
         # tan(phi) of the doubles that DDA computes with too; None: a closed corner never slips
         self.tan = None if problem.friction is None else arb(math.tan(math.radians(problem.friction)))
         self.cohesion = a * arb(problem.cohesion) / 2  # of a corner [N]
         self.elastic = _elastic(problem, a * b)  # stiffness of the strained block [N/m, N m]
         self.load = _load(problem, a, b, m)  # loads of pressure, traction and weight [N, N m]
+        self.mobility = self._mobility(problem.rigid)  # M^-1, of a rigid block over its rigid motions [1/kg, 1/(kg m2)]
+        self.contact = None if problem.restitution is None else RigidContact(self, arb(problem.restitution))
         self.readings, self.readings_inverse = self._readings()
         self.reading_sizes = np.array([[float(abs(entry)) for entry in line] for line in self.readings.tolist()])
         self.reading_sizes *= 1 + 1e-9
@@ -211,30 +282,52 @@ class BlockModel:
         return base.vx * along + base.vy * upwards
 
     def generator(self, states: States) -> arb_mat:
-        """The G of z' = G z with the springs of the closed corners, shape (15, 15).
+        """The G of z' = G z with the springs and dashpots of the closed corners, shape (15, 15).
 
-        x'' = f + R r - B x, where B need not be symmetric; the reference of a corner counts where it sticks.
+        x'' = W (f + R r - B x - D x') with W the mobility, where B need not be symmetric; the reference of a corner
+        counts where it sticks.
         """
-        K = [list(line) for line in self.elastic]
-        F = list(self.load)
-        R = [[arb(0), arb(0)] for _ in range(6)]
+        zero = arb(0)
+        B = [list(line) for line in self.elastic]
+        D = [[zero] * 6 for _ in range(6)]
+        f = list(self.load)
+        R = [[zero, zero] for _ in range(6)]
         for c, state in enumerate(states):
             n = self.normal[c]
             s = self.shear[c]
             for i in range(6):
                 if state == STICKS:
-                    K[i] = [K[i][j] + self.p * n[i] * n[j] + self.ps * s[i] * s[j] for j in range(6)]
+                    B[i] = [B[i][j] + self.p * n[i] * n[j] + self.ps * s[i] * s[j] for j in range(6)]
+                    D[i] = [D[i][j] + self.damping * n[i] * n[j] for j in range(6)]
                     R[i][c] = self.ps * s[i]
-                elif state != OPEN:
+                elif state not in CARRIES_NOTHING:
                     direction = n[i] + sigma(state) * self.friction * s[i]
-                    K[i] = [K[i][j] + self.p * direction * n[j] for j in range(6)]
-                    F[i] = F[i] + sigma(state) * self.cohesion * s[i]
-        zero = arb(0)
+                    B[i] = [B[i][j] + self.p * direction * n[j] for j in range(6)]
+                    f[i] = f[i] + sigma(state) * self.cohesion * s[i]
+        forces = [[-x for x in B[i]] + [-x for x in D[i]] + [*R[i], f[i]] for i in range(6)]
+        accelerations = self.mobility * arb_mat(forces)
+        if self.contact is not None and states[0] == STICKS:
+            accelerations = accelerations + self.contact.acceleration * self.contact.force
         G = [[zero] * 15 for _ in range(15)]
-        for i, m in enumerate(self.mass):
+        for i, line in enumerate(accelerations.tolist()):
             G[i][6 + i] = arb(1)
-            G[6 + i] = [-K[i][j] / m for j in range(6)] + [zero] * 6 + [R[i][0] / m, R[i][1] / m, F[i] / m]
+            G[6 + i] = line
         return arb_mat(G)
+
+    def _mobility(self, rigid: bool) -> arb_mat:
+        """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
+        zero = arb(0)
+        W = [[zero] * 6 for _ in range(6)]
+        if not rigid:
+            for i, m in enumerate(self.mass):
+                W[i][i] = 1 / m
+            return arb_mat(W)
+        W[0][0] = W[1][1] = 1 / self.mass[0]
+        # a rotation has uy = -r and vx = r
+        turning = 1 / (self.mass[3] + self.mass[4])
+        W[3][3] = W[4][4] = turning
+        W[3][4] = W[4][3] = -turning
+        return arb_mat(W)
 
     def _readings(self) -> tuple[arb_mat, arb_mat]:
         """Z as gaps, stretches s - r, uy, vy, the rates of these, r and 1, and back.
@@ -250,8 +343,55 @@ class BlockModel:
         return readings, readings.inv()
 
 
+class RigidContact:
+    """The contact of both corners with a rigid base, and its impact law; rows and columns are over z.
+
+    With n the row of the gap of both corners and W the mobility: an impulse J on both corners changes x' by W n' J, and
+    the gap's rate by C J.
+    """
+
+    def __init__(self, model: BlockModel, restitution: arb) -> None:
+        self.restitution = restitution  # e [-]
+        n = [(one + other) / 2 for one, other in zip(*model.normal, strict=True)]
+        self.gap = row(n)  # w [m]
+        self.rate = rate_row(n)  # w' [m/s]
+        self.acceleration = model.mobility * arb_mat([n]).transpose()  # W n', shape (6, 1) [1/kg]
+        self.compliance = (arb_mat([n]) * self.acceleration)[0, 0]  # C [1/kg]
+        # the force of both corners that keeps w'' = 0 over z: -n W (F - K x) / C [N]
+        loads = [[-x for x in line] + [arb(0)] * 8 + [f] for line, f in zip(model.elastic, model.load, strict=True)]
+        self.force = self.acceleration.transpose() * arb_mat(loads) * (-1 / self.compliance)
+        # what changes the gap's rate by one [-]
+        direction = [entry / self.compliance for entry in self.acceleration.entries()]
+        self.direction = arb_mat(15, 1, [*[arb(0)] * 6, *direction, *[arb(0)] * 3])
+
+        # what changes the gap by one
+        self.lift = arb_mat(15, 1, [*direction, *[arb(0)] * 9])
+
+    def impulse(self, approach: arb) -> arb:
+        """Impulse on both corners of an impact at which the gap closes at a speed, (1 + e) |w'| / C [N s]."""
+        return (1 + self.restitution) * approach / self.compliance
+
+    def loss(self, approach: arb) -> arb:
+        """Energy that an impact loses, (1 - e^2) w'^2 / (2 C) [J]."""
+        return (1 - self.restitution * self.restitution) * approach * approach / (2 * self.compliance)
+
+    def impact(self) -> arb_mat:
+        """From z before an impact to z after it, shape (15, 15)."""
+        return _identity() - self.direction * self.rate * (1 + self.restitution)
+
+    def rest(self) -> arb_mat:
+        """The projection of z to no gap and no rate of it, along the direction of impulses, shape (15, 15)."""
+        return _identity() - self.direction * self.rate - self.lift * self.gap
+
+
+def _identity() -> arb_mat:
+    return arb_mat(15, 15, [int(i == j) for i in range(15) for j in range(15)])
+
+
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
-    """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4)."""
+    """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4); zero if there is no strain."""
+    if problem.rigid:
+        return [[arb(0)] * 6 for _ in range(6)]
     E = arb(problem.young)
     mu = arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))

@@ -3,6 +3,7 @@
 A watched function (`Flow.watched`) that is zero goes the way of its first derivative that is not: an open corner
 needs a gap that rises, a corner that slips a reference that moves with it, and so on. Forces depend on displacements
 alone, and what a corner does right after an instant shows in the derivative in which stick and slip first differ.
+Forces of dashpots depend on rates too, and jump where a gap closes: that its rate falls then decides at once.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from itertools import product
 from flint import arb, arb_mat
 
 from fem_reference.events.block_flow import DERIVATIVES, FEW, Flow
-from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, States, sigma
+from fem_reference.events.block_model import LEFT, OPEN, RELEASED, RIGHT, STICKS, BlockModel, States, sigma
 from fem_reference.events.enclosure import is_blank
 from fem_reference.events.switches import NoContactStateError
 
@@ -60,8 +61,7 @@ def settled(flows: Flows, states: States, z: arb_mat, time: float) -> tuple[Stat
     NoContactStateError
         If no choice agrees.
     """
-    first, second = (_choices(flows.model, c, states[c], z) for c in (0, 1))
-    for choice in product(first, second):
+    for choice in _choices(flows.model, states, z):
         leads = agreeing(flows[choice], z)
         if leads is not None:
             return choice, leads
@@ -82,12 +82,26 @@ def agreeing(flow: Flow, z: arb_mat) -> list[int | None] | None:
     return leads
 
 
-def _choices(model: BlockModel, c: int, state: int, z: arb_mat) -> list[int]:
-    """States that a corner may take without a jump of its forces other than those that opening releases."""
+def _choices(model: BlockModel, states: States, z: arb_mat) -> list[States]:
+    """States that both corners may take without a jump of what an instant cannot change."""
+    if model.contact is None:
+        return list(product(*(_corner_choices(model, c, states[c], z) for c in (0, 1))))
+    touching = is_blank((model.contact.gap * z)[0, 0])
+    resting = touching and is_blank((model.contact.rate * z)[0, 0])
+    return [(STICKS, STICKS), (OPEN, OPEN)] if resting else [(OPEN, OPEN)]
+
+
+def _corner_choices(model: BlockModel, c: int, state: int, z: arb_mat) -> list[int]:
+    """States that a corner may take; of its forces only shear may jump where it opens, and a dashpot's where it closes.
+
+    A dashpot that is not open has no choice but by the sign of its force, and it is open as soon as its gap rises.
+    """
     touching = is_blank((model.gaps[c] * z)[0, 0])
     if state == OPEN and not touching:
         return [OPEN]
     closed = [STICKS]
+    if model.damping != 0 and not touching:
+        closed.append(RELEASED)
     if model.tan is not None:
         closed += [
             direction for direction in (RIGHT, LEFT) if is_blank((model.reserves[c, sigma(direction)] * z)[0, 0])

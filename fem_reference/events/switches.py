@@ -24,6 +24,28 @@ class Switch:
     radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
 
 
+@dataclass(frozen=True)
+class Impact:
+    """An impact of a block on a rigid contact, its instant enclosed."""
+
+    time: float  # the midpoint as a float [s]
+    approach: float  # speed at which the gap closed [m/s]; it opens at e times this
+    impulse: float  # of both corners together, upwards [N s]
+    midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
+    radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
+
+
+@dataclass(frozen=True)
+class Cascade:
+    """Infinitely many impacts that are proven to accumulate at an instant, after which the contact rests."""
+
+    start: float  # the last impact that is listed one by one; it is of all after it that accumulation is proven [s]
+    time: float  # the instant of accumulation, the midpoint as a float [s]
+    impulse: float  # of both corners together, of all impacts after `start`, upwards [N s]
+    midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
+    radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
+
+
 class ProvenMotion:
     """A motion whose switches are enclosed."""
 
@@ -57,6 +79,10 @@ class TooManySwitchesError(HorizonError):
 
 class TooMuchWorkError(HorizonError):
     """The motion takes more steps or pieces than was allowed."""
+
+
+class AccumulationError(HorizonError):
+    """Impacts follow each other ever faster, and whether they accumulate is not proven."""
 
 
 class LostDigitsError(HorizonError):

@@ -1,0 +1,182 @@
+"""A block that hops on a rigid contact, and the instant at which infinitely many impacts accumulate, in balls.
+
+Between two impacts the gap w of both corners is a power series that begins with w = 0 and w' = s > 0. Where its second
+derivative is proven to be negative throughout, the gap is concave, so that it has one more root t. With
+w = s t + a_2 t^2 + a_3 t^3 + ... this root and the speed of the landing are::
+
+    0 = s + a_2 t + a_3 t^2 + ...,    -w'(t) = s - a_3 t^2 - 2 a_4 t^3 - ...
+
+The second series is -w' and twice the first one. It is without a_2, whose ball would widen that of the speed at every
+impact: a gap that falls evenly closes as fast as it opened.
+
+An impact adds (1 + e) |w'| d to z, d what changes the gap's rate by one, and the flow before and after it is the same,
+z' = G z. So at an instant t after impacts at t_k ::
+
+    z(t) = exp(G (t - t_0)) z(t_0) + (1 + e) sum |w'_k| exp(G (t - t_k)) d
+
+holds z at the midpoints of the balls of the t_k, and what is not known of t_k enters by its impulse alone.
+
+**Accumulation.** Let -A <= w'' <= -B < 0 in every flight after an impact that leaves the gap with the rate s. A flight
+with the rate s lasts from 2 s/A to 2 s/B and lands at a speed from s/r to r s, r = sqrt(A/B), since the height h of the
+gap obeys s^2/(2A) <= h <= s^2/(2B). So the next rate is from e s/r to e r s. With rho = e r < 1 and R = e/r all flights
+together last, and all landing speeds together are::
+
+    2 s/(A (1 - R)) <= T <= 2 s/(B (1 - rho)),    (s/r)/(1 - R) <= sum |w'| <= r s/(1 - rho)
+
+Infinitely many impacts take a finite time, after which the gap is zero and at rest. A and B follow from what they
+imply: in a norm in which G has the norm lambda, z moves within T by no more than
+Y = exp(lambda T) (T |G z| + (1 + e) |d| sum |w'|), and therefore w'' by no more than T (|g_3 z| + |g_3| Y), g_3 the row
+of the third derivative. If this is at most what A and B allow for, both hold up to the accumulation, for a first
+instant at which one of them failed would contradict it. The contact then rests and presses, for w'' <= -B of the free
+block means a force of at least B/C.
+
+The state from then on is that of the closed contact. Continued to the midpoint of the ball of the accumulation, it
+differs from that of the free block by a force along d for as long as this ball is wide, and by second orders of this
+time. With w = w' = 0 it is thus the free block's state, projected along d.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flint import arb, arb_mat, arb_poly, ctx
+
+from fem_reference.events.block_flow import SIZE, Flow
+from fem_reference.events.block_model import RigidContact
+from fem_reference.events.enclosure import NEWTON_STEPS, ball
+
+LONGEST_HOP = 0.03
+"""Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short."""
+LEAST_TERMS = 4
+"""Terms of the series of a hop, at least."""
+ATTEMPTS = 8
+"""Times that bounds of w'' are widened before accumulation counts as not proven."""
+WIDENING = 1.2
+"""Factor by which they are widened beyond what they imply."""
+
+
+@dataclass(frozen=True)
+class Hop:
+    """A flight from one impact to the next."""
+
+    length: arb  # [s]
+    approach: arb  # speed at which the gap closes at its end [m/s]
+
+
+@dataclass(frozen=True)
+class Accumulation:
+    """What infinitely many impacts come to."""
+
+    length: arb  # time from the last impact that was followed to the end of all [s]
+    speeds: arb  # sum of the speeds of all landings [m/s]
+    reach: arb  # greatest change of z until then, in the units of the flow
+
+
+def norm(flow: Flow, vector: arb_mat) -> arb:
+    """Norm of the first twelve entries of a z in the units of the flow, in which G has at most the norm `rate`."""
+    return sum((abs(x) / unit for x, unit in zip(vector.entries(), flow.unit_balls, strict=False)), arb(0)).upper()
+
+
+def box(flow: Flow, size: arb) -> arb_mat:
+    """Balls that hold each change of z of at most a norm."""
+    return arb_mat(SIZE, 1, [*(ball(size * unit) for unit in flow.unit_balls), *[arb(0)] * 3])
+
+
+class Hops:
+    """Hops of the open contact, and what they come to."""
+
+    def __init__(self, flow: Flow, contact: RigidContact) -> None:
+        self.flow = flow
+        self.contact = contact
+        self.e = contact.restitution
+        self.rate = arb(flow.rate)
+        self.second = contact.gap * flow.G * flow.G  # the gap's second derivative over z
+        self.third = self.second * flow.G
+        weights = zip(self.third.entries(), flow.unit_balls, strict=False)
+        self.third_norm = max(abs(x) * unit for x, unit in weights).upper()
+        self.direction_norm = norm(flow, contact.direction)
+
+    def pushed(self, z: arb_mat, speeds: arb, spread: arb) -> arb_mat:
+        """The state after impacts.
+
+        Parameters
+        ----------
+        z
+            The state without them.
+        speeds
+            Sum of the speeds at which the gap closes [m/s].
+        spread
+            Time within which all of them are around the present instant [s].
+        """
+        angle = self.rate * spread
+        late = box(self.flow, (angle * angle.exp() * self.direction_norm).upper())
+        return z + (self.contact.direction + late) * ((1 + self.e) * speeds)
+
+    def find_hop(self, z: arb_mat, speed: arb) -> Hop | None:
+        """The flight that begins with an impact, None if it is not proven to be short and concave.
+
+        Parameters
+        ----------
+        z
+            Balls for the state right after the impact.
+        speed
+            Rate at which the gap opens [m/s], positive.
+        """
+        start = speed / self.rate
+        bend = (self.flow.derivatives(3, 0) * z)[2, 0]
+        if not bend < 0:
+            return None
+        angle = 2 * (start / -bend).upper()
+        if not angle < LONGEST_HOP:
+            return None
+        middle = z.mid()
+        a = self.flow.coefficients(0, middle, z - middle, float(angle), LEAST_TERMS)
+        height = arb_poly([start, *a[2:]])  # the gap over the angle
+        rise = height.derivative()
+        # bounds of how far slope and curvature of the gap over the angle move from a_2 and from 2 a_2
+        moved = arb_poly([0, *((k - 1) * abs(a[k]) for k in range(3, len(a)))])
+        slope = a[2] + ball(moved(angle).upper())
+        curvature = 2 * a[2] + ball((2 * moved(angle) + angle * moved.derivative()(angle)).upper())
+        if not (curvature < 0 and height(angle) < 0):
+            return None
+        x = (start / -a[2]).mid()
+        for _ in range(NEWTON_STEPS):
+            following = (x - height(x) / rise(x)).mid()
+            finished = abs(following - x) <= x * arb(2) ** (8 - ctx.prec)
+            x = following
+            if finished:
+                break
+        # the mean value theorem: a slope in between leads from the root to x
+        root = x - height(x) / slope
+        lost = root * root * arb_poly([(k - 2) * a[k] for k in range(3, len(a))])(root)
+        return Hop(root / self.rate, speed - self.rate * lost)
+
+    def find_accumulation(self, z: arb_mat, speed: arb) -> Accumulation | None:
+        """Where the impacts after one accumulate, None if that is not proven; arguments as those of `find_hop`."""
+        e = self.e
+        now = -(self.second * z)[0, 0]
+        third_now = abs((self.third * z)[0, 0]).upper()
+        change_norm = norm(self.flow, self.flow.G * z)
+        fastest = speed.upper()
+        slowest = speed.lower()
+        margin = arb(0)
+        for _ in range(ATTEMPTS):
+            A = now.upper() + margin
+            B = now.lower() - margin
+            if not B > 0:
+                return None
+            ratio = (A / B).sqrt()
+            rho = e * ratio
+            if not rho < 1:
+                return None
+            longest = (2 * fastest / B / (1 - rho)).upper()
+            most = (ratio * fastest / (1 - rho)).upper()
+            reach = longest * change_norm + (1 + e) * self.direction_norm * most
+            reach = ((self.rate * longest).exp() * reach).upper()
+            implied = (longest * (third_now + self.third_norm * reach)).upper()
+            if implied <= margin:
+                least = slowest / ratio / (1 - e / ratio)
+                length = (2 * slowest / A / (1 - e / ratio)).union(longest)
+                return Accumulation(length, least.union(most), reach)
+            margin = (implied * WIDENING).upper()
+        return None

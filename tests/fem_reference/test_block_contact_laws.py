@@ -1,0 +1,381 @@
+"""The exact block on dashpots and under an impact law: an independent program, closed forms, balances, refusals."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+from conftest import thinned
+from flint import arb, arb_mat
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracles.block_oracle import random_problem
+from oracles.contact_laws import IntegratedDashpots, PhasedBlock
+
+from fem_reference.events import block_march
+from fem_reference.events.block_events import BlockHistory, BlockMotion, solve
+from fem_reference.events.block_flow import EXPONENTIAL_ERROR, SIZE, Flow, to_floats
+from fem_reference.events.block_impacts import Hops
+from fem_reference.events.block_model import OPEN, RELEASED, STICKS, BlockModel, BlockProblem
+from fem_reference.events.enclosure import bits_of, precision
+from fem_reference.events.switches import AccumulationError
+from fem_reference.problem.motion import Motion
+
+PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
+RIGID = replace(PAPER, stiffness=math.inf, restitution=0.0)
+W0 = 5e4  # half of the pressure's force times 10 mm [J]
+
+
+def dashpot(problem: BlockProblem, zeta: float, mass_share: float = 1.0) -> BlockProblem:
+    """With the dashpot of each corner for c = 2 zeta sqrt(k m) of both, k = 2p and m a share of the mass."""
+    m = mass_share * problem.density * problem.width * problem.height
+    return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
+
+
+def centred(seed: int) -> BlockProblem:
+    """A random block whose corners do the same."""
+    return replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=0.0)
+
+
+def falling(seed: int, e: float) -> BlockProblem:
+    """A random block that falls on rigid contact."""
+    problem = centred(seed)
+    return replace(problem, stiffness=math.inf, restitution=e, velocity=-1.0, gap=1e-3 * problem.height)
+
+
+def transit(problem: BlockProblem) -> float:
+    return problem.height * math.sqrt(problem.density / problem.young)
+
+
+def at_events(motion: BlockMotion, corner: str = "M") -> list[tuple[float, str]]:
+    return [(switch.time, switch.kind) for switch in motion.switches if switch.corner == corner]
+
+
+# -- numbers computed elsewhere: piecewise closed forms
+
+
+def test_the_plastic_block() -> None:
+    motion = solve(RIGID, 0.05)
+    displacement = motion.at([0.01, 0.02, 0.05]).displacement[1]
+    assert displacement == pytest.approx([-0.00350963748, -0.00744841152, -0.00275254957], rel=2e-9)
+    times = [time for time, _ in at_events(motion)]
+    assert times[:3] == pytest.approx([3.2525750597e-3, 11.1812975e-3, 14.8279748e-3], rel=1e-8)
+    assert [kind for _, kind in at_events(motion)][:3] == ["closes", "opens", "closes"]
+    assert motion.impacts[0].impulse == pytest.approx(10145.031, abs=1e-3)
+    assert motion.impacts[0].impulse == pytest.approx(10800 / 4 * motion.impacts[0].approach, rel=1e-15)
+    assert not motion.cascades
+
+
+def test_the_elastic_block() -> None:
+    motion = solve(replace(RIGID, restitution=1.0), 0.05)
+    displacement = motion.at([0.01, 0.02, 0.05]).displacement[1]
+    assert displacement == pytest.approx([-0.00190036516, -0.00664642490, -0.000132866069], rel=2e-9)
+    times = [impact.time for impact in motion.impacts[:4]]
+    assert times == pytest.approx([3.25257506e-3, 4.64240228e-3, 5.81387113e-3, 6.96803497e-3], abs=1e-11)
+    assert not motion.cascades
+
+
+def test_a_dashpot_of_the_pressed_block() -> None:
+    """Peak and energy to which stepped answers tend: zeta 0.2 of k = 2p and the mass m/4 that the contact moves."""
+    motion = solve(dashpot(PAPER, 0.2, 0.25), 0.1)
+    history = motion.at(np.linspace(0, 0.1, 10_001))
+    assert history.contact_pressure.max() == pytest.approx(11.1672e6, rel=1e-5)  # 11.1656 in steps of 0.02 ms
+    stored = history.kinetic + history.strain + history.springs + history.load
+    assert stored[-1] / W0 == pytest.approx(-1.4593, abs=1e-4)
+    assert at_events(motion) == [(pytest.approx(3.2525750597e-3, rel=1e-10), "closes")]
+
+
+# -- closed forms
+
+
+def closed_restitution(zeta: float) -> float:
+    """e(zeta) of a rigid mass on a spring and dashpot that never pull."""
+    if zeta < 1:
+        s = math.sqrt(1 - zeta**2)
+        return math.exp(-zeta / s * math.atan2(2 * zeta * s, 2 * zeta**2 - 1))
+    if zeta == 1:
+        return math.exp(-2)
+    s = math.sqrt(zeta**2 - 1)
+    return math.exp(-zeta / s * math.log((zeta + s) / (zeta - s)))
+
+
+@pytest.mark.parametrize("zeta", [0.05, 0.1, 0.3, 0.9, 0.999999999, 1.0, 1.5, 3.0])
+def test_a_rigid_block_rebounds_with_the_closed_form(zeta: float) -> None:
+    """A clipped dashpot lets go at any zeta; equal and nearly equal roots are no case of their own."""
+    problem = dashpot(replace(PAPER, young=math.inf, pressure=0.0, velocity=-1.3), zeta)
+    motion = solve(problem, 0.05)
+    assert [kind for _, kind in at_events(motion)] == ["opens"]
+    history = motion.at(np.linspace(0, 0.05, 500))
+    assert history.velocity[1, -1] / 1.3 == pytest.approx(closed_restitution(zeta), rel=1e-13)
+    assert np.all(history.normal_force >= 0)
+    released = history.gap[0, np.flatnonzero(history.closed[0] == 0)[0]]
+    assert released < 0  # it lets go before the spring has come back
+
+
+@settings(max_examples=25, deadline=None)
+@given(e=st.floats(0.02, 0.97), height=st.floats(1e-3, 2.0), gravity=st.floats(0.5, 50.0))
+def test_a_rigid_ball_comes_to_rest_when_its_series_ends(e: float, height: float, gravity: float) -> None:
+    """Flights of t_1 2 e^k after a fall of t_1: T = t_1 (1 + e)/(1 - e), and impulses of m g T in all."""
+    problem = replace(RIGID, young=math.inf, pressure=0.0, gravity=gravity, gap=height, restitution=e)
+    fall = math.sqrt(2 * height / gravity)
+    last = fall * (1 + e) / (1 - e)
+    motion = solve(problem, 1.5 * last)
+    (cascade,) = motion.cascades
+    assert cascade.time == pytest.approx(last, rel=1e-14)
+    assert cascade.radius < 1e-20 * last
+    total = cascade.impulse + sum(impact.impulse for impact in motion.impacts)
+    assert total == pytest.approx(10800 * gravity * last, rel=1e-13)
+    with precision(bits_of(60)):
+        exact = (2 * arb(height) / arb(gravity)).sqrt() * (1 + arb(e)) / (1 - arb(e))
+        assert abs(arb(cascade.midpoint) - exact) < arb(cascade.radius) + exact * arb("1e-39")
+    history = motion.at([0.5 * (last + 1.5 * last)])
+    assert history.contact_pressure[0] * 2 == pytest.approx(10800 * gravity, rel=1e-14)
+    assert history.damped[0] == pytest.approx(10800 * gravity * height, rel=1e-12)
+
+
+# -- an independent program
+
+
+@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (32, 1.0), (33, 0.1), (34, 2.5)], 2))
+def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
+    problem = dashpot(centred(seed), zeta)
+    end = 12 * transit(problem)
+    motion = solve(problem, end)
+    with mp.workdps(25):
+        answer = PhasedBlock(problem).run(end)
+    assert [kind for _, kind in at_events(motion)] == [kind for _, kind in answer.events]
+    assert [time for time, _ in at_events(motion)] == pytest.approx([time for time, _ in answer.events], rel=1e-12)
+    history = motion.at([end])
+    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-11)
+    assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
+
+
+@pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (31, 1.0), (32, 0.0), (33, 1.0), (34, 0.0), (35, 1.0)], 3))
+def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
+    problem = falling(seed, e)
+    end = 8 * transit(problem)
+    motion = solve(problem, end)
+    with mp.workdps(25):
+        answer = PhasedBlock(problem).run(end)
+    impacts = [time for time, kind in answer.events if kind == "impact"]
+    assert impacts
+    assert [impact.time for impact in motion.impacts] == pytest.approx(impacts, rel=1e-11)
+    impulses = [impact.impulse for impact in motion.impacts]
+    assert impulses == pytest.approx(answer.impulses, rel=1e-9)
+    history = motion.at([end])
+    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
+
+
+@pytest.mark.parametrize(("seed", "e"), thinned([(40, 0.4), (41, 0.6), (42, 0.15), (43, 0.8), (44, 0.3)], 3))
+def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
+    """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
+    problem = falling(seed, e)
+    motion = solve(problem, 8 * transit(problem))
+    first = motion.cascades[0]
+    listed = [impact.time for impact in motion.impacts if impact.time <= first.start]
+    with mp.workdps(25):
+        answer = PhasedBlock(problem, grid=40).run(first.time, most=len(listed) + 10)
+    times = [time for time, _ in answer.events]
+    assert times[: len(listed)] == pytest.approx(listed, rel=1e-12)
+    assert len(times) == len(listed) + 10
+    flight = times[-1] - times[-2]
+    rest = flight * e / (1 - e)
+    assert first.time > times[-1]
+    assert first.time == pytest.approx(times[-1] + rest, abs=3 * rest**2 / transit(problem) + 1e-13 * first.time)
+
+
+@pytest.mark.parametrize(("seed", "zeta"), thinned([(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)], 2))
+def test_rocking_on_dashpots_agrees_with_an_integration(seed: int, zeta: float) -> None:
+    problem = dashpot(replace(random_problem(seed), shear_stiffness=0.0), zeta)
+    end = 8 * transit(problem)
+    motion = solve(problem, end)
+    states = ["pressed" if closed else "open" for closed in motion.closed_at_start]
+    events, y = IntegratedDashpots(problem).run_laws(states, end)
+    assert events
+    assert [f"{switch.corner} {switch.kind}" for switch in motion.switches] == [kind for _, kind in events]
+    assert [switch.time for switch in motion.switches] == pytest.approx([time for time, _ in events], rel=1e-8)
+    history = motion.at([end])
+    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-7 * np.abs(y[:6]).max())
+
+
+# -- identities
+
+
+def weighted(motion: BlockMotion) -> tuple[BlockHistory, np.ndarray]:
+    """The motion at Gauss points between its switches, and their weights [s]."""
+    x, w = np.polynomial.legendre.leggauss(24)
+    ends = sorted({0.0, motion.end, *(float(node.start) for node in motion.nodes)})
+    ends = np.unique(np.concatenate([np.linspace(a, b, 6) for a, b in itertools.pairwise(ends)]))
+    half = np.diff(ends) / 2
+    t = (ends[:-1, None] + half[:, None] * (1 + x)).ravel()
+    return motion.at(t), (half[:, None] * w).ravel()
+
+
+@pytest.mark.parametrize("zeta", [0.02, 0.2, 1.7])
+def test_dashpots_balance_momentum_and_energy(zeta: float) -> None:
+    problem = dashpot(replace(PAPER, stiffness=1e10, gravity=9.81), zeta)
+    motion = solve(problem, 0.03)
+    history, weight = weighted(motion)
+    last = motion.at([motion.end])
+    impulse = (history.normal_force.sum(axis=0) * weight).sum()
+    load = 1e7 + 10800 * 9.81
+    assert impulse == pytest.approx(10800 * last.velocity[1, 0] + load * 0.03, rel=1e-12)
+    power = problem.damping * history.gap_velocity**2 * history.closed
+    pressed = np.minimum(history.gap, 0)
+    power -= (1 - history.closed) * problem.stiffness * pressed * history.gap_velocity
+    assert last.damped[0] == pytest.approx((power.sum(axis=0) * weight).sum(), rel=1e-12)
+    assert np.ptp(history.energy) < 1e-12 * np.abs(history.load).max()
+    assert np.all(np.diff(history.damped) > -1e-12 * last.damped[0])
+    assert np.all(history.normal_force >= 0)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 1.0])
+def test_impacts_balance_momentum_and_energy(e: float) -> None:
+    motion = solve(replace(RIGID, restitution=e, gravity=9.81), 0.02)
+    history, weight = weighted(motion)
+    last = motion.at([motion.end])
+    impulse = (history.normal_force.sum(axis=0) * weight).sum()
+    impulse += sum(event.impulse for event in (*motion.impacts, *motion.cascades))
+    load = 1e7 + 10800 * 9.81
+    assert impulse == pytest.approx(10800 * last.velocity[1, 0] + load * 0.02, rel=1e-12)
+    assert np.ptp(history.energy) < 1e-12 * np.abs(history.load).max()
+    assert np.all(history.gap > -1e-12 * history.gap.max())
+    assert np.all(history.normal_force >= 0)
+    assert (last.damped[0] > 0) == (e < 1)
+
+
+@pytest.mark.parametrize("e", [0.25, 0.5, 0.875, 1.0])
+def test_the_gap_opens_with_e_times_the_rate_at_which_it_closed(e: float) -> None:
+    motion = solve(replace(RIGID, restitution=e, gravity=9.81, poisson=0.2), 0.01)
+    assert len(motion.impacts) > 3
+    instants = np.array([impact.time for impact in motion.impacts])
+    after = motion.at(np.nextafter(instants, 1.0)).gap_velocity[0]
+    before = motion.at(np.nextafter(instants, 0.0)).gap_velocity[0]
+    speeds = np.array([impact.approach for impact in motion.impacts])
+    assert before == pytest.approx(-speeds, rel=1e-12)
+    assert after == pytest.approx(e * speeds, rel=1e-12)
+
+
+def test_a_dashpot_of_nothing_is_none() -> None:
+    one = solve(replace(PAPER, stiffness=1e10), 0.05)
+    other = solve(replace(PAPER, stiffness=1e10, damping=1e-30), 0.05)
+    assert at_events(one) == at_events(other)
+    t = np.linspace(0, 0.05, 101)
+    assert np.array_equal(one.at(t).displacement, other.at(t).displacement)
+    assert not one.at(t).damped.any()
+
+
+def test_more_digits_lie_within_the_balls() -> None:
+    cases = [dashpot(replace(PAPER, stiffness=1e10), 0.02), *(replace(RIGID, restitution=e) for e in (0.0, 0.4, 1.0))]
+    for problem in cases:
+        motion = solve(problem, 0.03)
+        finer = solve(problem, 0.03, digits=90)
+        with precision(bits_of(110)):
+            for kind in ("switches", "impacts", "cascades"):
+                events = getattr(motion, kind)
+                assert len(events) == len(getattr(finer, kind))
+                for one, other in zip(events, getattr(finer, kind), strict=True):
+                    apart = abs(arb(one.midpoint) - arb(other.midpoint))
+                    assert apart <= arb(one.radius + other.radius) + abs(arb(one.midpoint)) * arb("1e-39")
+        t = np.linspace(0, 0.03, 200)
+        one, more = motion.at(t), finer.at(t)
+        radius = one.displacement_radius + more.displacement_radius
+        assert np.all(np.abs(one.displacement - more.displacement) <= radius)
+        assert one.displacement_radius.max() < 1e-12 * np.abs(one.displacement).max()
+
+
+@pytest.mark.parametrize("velocity", [-5.46, -5.6, -5.76])
+def test_a_released_corner_presses_again_before_its_gap_opens(velocity: float) -> None:
+    """A rigid block under an acceleration g that lets go at w_1 rises evenly slower; p w + c w' is zero again at w_2.
+
+    With w_1 = -c w_1'/p this is w_1 + w_2 = -2 (c/p)^2 g, where w' is still positive: -p w_2/c.
+    """
+    problem = dashpot(replace(PAPER, young=math.inf, velocity=velocity), 0.2)
+    motion = solve(problem, 0.06)
+    assert [kind for _, kind in at_events(motion)] == ["opens", "closes"]
+    history = motion.at([time for time, _ in at_events(motion)])
+    relaxation = problem.damping / problem.stiffness
+    assert history.gap[0, 1] < 0
+    assert history.gap[0].sum() == pytest.approx(-2 * relaxation**2 * 1e7 / 10800, rel=1e-12)
+    assert history.gap_velocity[0] == pytest.approx(-history.gap[0] / relaxation, rel=1e-11)
+
+
+# -- what is proven of flows and hops
+
+
+@pytest.mark.parametrize("states", [(STICKS, STICKS), (STICKS, RELEASED), (OPEN, STICKS)])
+def test_the_rate_bounds_a_flow_with_dashpots(states: tuple[int, int]) -> None:
+    with precision(bits_of(50)):
+        for zeta in (0.1, 1.0, 4.0):
+            flow = Flow(BlockModel(dashpot(PAPER, zeta)), states)
+            block = (flow.G_floats * flow.units / flow.units[:, None])[:12, :12]
+            assert np.linalg.norm(block, 2) <= flow.rate
+            length = arb(8.0 / flow.rate)
+            exact = to_floats((flow.G * length).exp())
+            units = flow.units / flow.units[:, None]
+            off = np.abs((flow.sensitivity(length) - exact) * units)
+            assert off.max() < EXPONENTIAL_ERROR / 4 * np.abs(exact * units).max()
+
+
+def test_a_hop_is_enclosed() -> None:
+    """An impact in mid-motion: in more digits the gap is zero at the end of the hop, and closes at its speed."""
+    with precision(bits_of(50)):
+        model = BlockModel(replace(RIGID, restitution=0.5))
+        contact = model.contact
+        assert contact is not None
+        flow = Flow(model, (OPEN, OPEN))
+        deep = arb_mat(SIZE, 1, [0, -4e-3, 0, 0, 0, -4e-3, 0, 0.04, 0, 0, 0, 0.03, 0, 0, 1])
+        speed = (contact.rate * deep)[0, 0]
+        hop = Hops(flow, contact).find_hop(deep, speed)
+        assert hop is not None
+        with precision(bits_of(80)):
+            landed = flow.series(deep, hop.length.mid())
+            tolerance = hop.length.rad() * 2 * abs(speed)
+            assert abs((contact.gap * landed)[0, 0] - (contact.gap * deep)[0, 0]) < tolerance + arb("1e-50")
+            assert abs((contact.rate * landed)[0, 0] + hop.approach) < hop.approach.rad() + arb("1e-44")
+        assert hop.approach.rel_accuracy_bits() > 120
+        assert hop.approach > 0
+        assert Hops(flow, contact).find_hop(deep, speed * 1000) is None  # too long
+        assert Hops(flow, contact).find_hop(deep * -1, speed) is None  # its gap bends upwards
+
+
+def test_accumulation_that_is_not_proven_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Hops, "find_accumulation", lambda *_: None)
+    with pytest.raises(AccumulationError, match="not proven") as caught:
+        solve(replace(RIGID, restitution=0.3), 0.02)
+    assert 0.004 < caught.value.time < 0.00402
+
+
+def test_impacts_count_against_the_limit() -> None:
+    with pytest.raises(block_march.TooManySwitchesError):
+        solve(replace(RIGID, restitution=1.0), 0.05, limit=20)
+
+
+# -- what is refused
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"damping": math.nan}, "damping"),
+        ({"damping": 1e3, "friction": 30.0, "shear_stiffness": 1e8}, "damping"),
+        ({"damping": 1e3, "locked": True}, "damping"),
+        ({"damping": 1e3, "stiffness": math.inf, "restitution": 0.5}, "damping"),
+        ({"stiffness": math.inf}, "stiffness"),
+        ({"restitution": 0.5}, "stiffness"),
+        ({"stiffness": math.inf, "restitution": -0.1}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 1.01}, "restitution"),
+        ({"stiffness": math.inf, "restitution": math.nan}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "friction": 30.0, "shear_stiffness": 1e8}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "shear_stiffness": 1e8}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "eccentricity": 0.3}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "traction": 1e5}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "slope": 5.0}, "restitution"),
+        ({"stiffness": math.inf, "restitution": 0.5, "base": Motion((0.0,), (0.0,), (0.0,))}, "restitution"),
+    ],
+)
+def test_what_is_not_handled_is_refused_by_its_field(changes: dict, name: str) -> None:
+    with pytest.raises(ValueError, match=f"^{name}: must be .*, got "):
+        replace(PAPER, **changes)
