@@ -113,7 +113,6 @@ APART = [  # what a solver takes each by itself: solver, values, the two that ar
     ("dda", MOVED | IMPACT, features.BASE_MOTION, features.IMPACT),
     ("dda", SUB_BLOCKS | AUGMENTED, features.SUB_BLOCKS, features.AUGMENTED),
     ("dda", AUGMENTED | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.AUGMENTED),
-    ("block-events", DASHPOTS | {"load.traction": 1e5}, features.OFF_CENTRE, features.DASHPOTS),
     ("block-events", IMPACT | {"load.traction": 1e5}, features.OFF_CENTRE, features.IMPACT),
     *((solver, COMPOSITE | VISCOUS, features.COMPOSITE, features.DAMPING) for solver in ("dda", "fem", "bar")),
     *((solver, COMPOSITE | KINETIC, features.COMPOSITE, features.ADAPTIVE) for solver in ("dda", "fem")),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from validation.runs.contact import LOST, STORED, ContactRecord, Rebound
+from validation.runs.contact import LOST, LOST_AT_IMPACTS, STORED, ContactRecord, Rebound
 from validation.runs.history import Array, History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
@@ -87,6 +87,8 @@ def block_of(scene: Scene) -> BlockProblem:
         cohesion=c.cohesion,
         base=base_of(scene),
         locked=c.law == "locked",
+        damping=opened.dashpot_of(scene),
+        restitution=c.restitution if c.rule == "impact" else None,
     )
 
 
@@ -259,6 +261,11 @@ class BlockMotion(Motion):
         yield f"proven: the displacement is off by at most {self.radius:.1e} m, of which floats round the most"
         if motion.simultaneous:
             yield f"both corners switch within one ball {len(motion.simultaneous)} times"
+        if motion.impacts:
+            first = motion.impacts[0]
+            yield f"{len(motion.impacts)} impacts, the first at {first.time:.9g} s with {first.impulse:.6g} N s"
+        for cascade in motion.cascades:
+            yield f"infinitely many impacts accumulate at {cascade.time:.9g} s, after which the block rests"
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
@@ -281,7 +288,7 @@ class BlockMotion(Motion):
             gap=np.maximum(0.0, state.gap).max(axis=0),
             open_share=1 - state.closed.mean(axis=0),
             velocity=velocity,
-            rebounds=landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0))),
+            rebounds=self._rebounds(contacts),
             energies=self._energies(state),
             slip=np.abs(state.slipped).max(axis=0),
         )
@@ -290,7 +297,18 @@ class BlockMotion(Motion):
         """Return the energies; the work of the base is counted as that of the loads."""
         stored = {name: getattr(state, name) for name in STORED}
         no_loss = dict.fromkeys(LOST[:2], np.zeros_like(state.time))
-        return stored | no_loss | {"switching": state.released, "friction": state.friction}
+        losses = {"switching": state.released, "friction": state.friction}
+        for name, feature in zip(LOST_AT_IMPACTS, (features.DASHPOTS, features.IMPACT), strict=True):
+            if feature in features.of(self.scene):
+                losses[name] = state.damped
+        return stored | no_loss | losses
+
+    def _rebounds(self, contacts: Iterable[tuple[float, float | None, int]]) -> tuple[Rebound, ...]:
+        """Return the landings in the order of time; under a law of impact each impact is one, of both corners."""
+        restitution = self.motion.problem.restitution
+        if restitution is not None:
+            return tuple(Rebound(impact.approach, restitution * impact.approach) for impact in self.motion.impacts)
+        return landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0)))
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
@@ -365,11 +383,8 @@ class BlockEvents(Solver):
         | features.SCHEMES
         | {features.UNILATERAL, features.FRICTION, features.SLOPE, features.DASHPOTS, features.IMPACT}
     )
-    # Dashpots and the law of impact are of both corners landing at once, without friction, on a base at rest.
-    apart: features.Apart = (
-        (features.DASHPOTS, UNSYMMETRIC),
-        (features.IMPACT, UNSYMMETRIC),
-    )
+    # Under the law of impact both corners do the same, on a base at rest.
+    apart: features.Apart = ((features.IMPACT, UNSYMMETRIC),)
     unread: tuple[str, ...] = OF_SCHEMES
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
