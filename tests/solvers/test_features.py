@@ -112,7 +112,7 @@ APART = [  # what a solver takes each by itself: solver, values, the two that ar
     ("dda", SUB_BLOCKS | DASHPOTS, features.SUB_BLOCKS, features.DASHPOTS),
     ("dda", MOVED | IMPACT, features.BASE_MOTION, features.IMPACT),
     ("dda", SUB_BLOCKS | AUGMENTED, features.SUB_BLOCKS, features.AUGMENTED),
-    ("dda", AUGMENTED | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.AUGMENTED),
+    ("dda", DASHPOTS | {"contact.band": [1e-3, 0.0]}, features.DEAD_BAND, features.DASHPOTS),
     ("block-events", IMPACT | {"load.traction": 1e5}, features.OFF_CENTRE, features.IMPACT),
     *((solver, COMPOSITE | VISCOUS, features.COMPOSITE, features.DAMPING) for solver in ("dda", "fem", "bar")),
     *((solver, COMPOSITE | KINETIC, features.COMPOSITE, features.ADAPTIVE) for solver in ("dda", "fem")),
