@@ -287,7 +287,7 @@ def order(one: Method, finished: Finished) -> Mapping[str, Value]:
     reached = [count for count, error in errors.items() if error <= TARGET]
     values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
     values["solves to 1 %"] = float(min(reached) * one.solves) if reached else "undefined"
-    return values
+    return values | {f"error of {count} steps": error for count, error in errors.items()}
 
 
 def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
@@ -423,6 +423,34 @@ def derived() -> tuple[Derived, ...]:
         for case in expanded(sliding(one)):
             rows.append(Derived(case.name, SLIDING, ((case.name, "dda"),), functools.partial(slid_distance, case)))
     return tuple(rows)
+
+
+CURVES = ("constant", "average", "ch-0.8", "ch-0.5", "ch-0", "hht-0.1", "bathe-half", "tr-bdf2", "leapfrog")
+DAMPED_OMEGAS = np.geomspace(0.03, 100.0, 71)  # w dt of the curves of damping ratios
+MAP_CURVES = ("constant", "ch-0", "ch-0.8", "hht-0.1", "bathe-half")
+MAP_OMEGAS = np.geomspace(0.3, 300.0, 19)  # w_c dt of those of restitutions
+MAP_PHASES = 40
+
+
+@functools.cache
+def data() -> Mapping[str, Any]:
+    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt."""
+    curves: dict[str, dict[str, list[float | None]]] = {}
+    for name in CURVES:
+        one = method(name)
+        ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
+        curves[name] = {"damping": [_short(ratio) for ratio in ratios]}
+        if name not in MAP_CURVES:
+            continue
+        rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
+        for part in ("mean", "least", "most"):
+            curves[name][part] = [_short(getattr(row, part)) for row in rows]
+    omegas = {"damping": [_short(x) for x in DAMPED_OMEGAS], "impact": [_short(x) for x in MAP_OMEGAS]}
+    return {"omega": omegas, "methods": curves, "labels": {one.id: one.label for one in METHODS}}
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.5g}") if math.isfinite(value) else None
 
 
 # ---- gates ----------------------------------------------------------------------------------------------------------
@@ -631,5 +659,6 @@ def study() -> Study:
         scenes=scenes(),
         gates=gates,
         derived=derived,
+        data=data,
         pairs=(),
     )
