@@ -649,9 +649,10 @@ def write_step(
     if stage.numbers.lag != 0:
         w = work.speed
         we = work.stretch_speed
+        discount = stage.numbers.stage.gg if step == 0 else 1.0  # of what `late_momentum` made of those at t = 0
         for i in range(n):
-            w[i] = state.w[i] + stage.numbers.lag * state.s[i]
-            we[i] = state.we[i] + stage.numbers.lag * state.se[i]
+            w[i] = discount * state.w[i] + stage.numbers.lag * state.s[i]
+            we[i] = discount * state.we[i] + stage.numbers.lag * state.se[i]
     for k in range(len(observed.kind)):
         kind = observed.kind[k]
         place = observed.place[k]
@@ -751,6 +752,8 @@ def add_damping(stage: ColumnStage, state: ColumnState, energies: Rows, step: in
     numbers = stage.numbers
     gg = numbers.stage.gg
     kinetic = energies[step - 1, KINETIC]
+    if numbers.lag != 0 and step == 1:
+        return
     if numbers.lag != 0:
         kinetic = kinetic_of(stage.blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
     energies[step, DAMPING] += (1 - gg * gg) * kinetic

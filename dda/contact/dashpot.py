@@ -1,4 +1,4 @@
-r"""A dashpot c beside each penalty spring, clipped: N = max(0, -(k w + c w')), both at the end of the step, frictionless.
+r"""A dashpot c beside each penalty spring, clipped: N = max(0, -(k w + c w')) at the end of the step, frictionless.
 
 With tau = c/k a contact presses as a spring without dashpot would at y = w + tau w'. Forces change the gaps by C N
 and their rates by C' N, so that
@@ -66,12 +66,18 @@ def set_closed(free: Free, flexible: Flexible, after: Contacts, work: Work) -> i
     n = len(after.gap)
     for i in range(n):
         without_own_force = free.gap[i] + dot(flexible.C[i], after.normal, n) - flexible.C[i][i] * after.normal[i]
-        pulls = after.normal[i] < 0 if after.state[i] == STICK else after.gap[i] >= 0
-        state = STICK if without_own_force < 0 and not pulls else OPEN
+        state = STICK if without_own_force < 0 and not would_pull(after, i) else OPEN
         if state != after.state[i]:
             wrong += 1
         work.tried[i] = state
     return wrong
+
+
+def would_pull(after: Contacts, i: int) -> bool:
+    """Tell whether spring and dashpot of a contact would pull: of an open one by y."""
+    if after.state[i] == STICK:
+        return bool(after.normal[i] < 0)
+    return bool(after.gap[i] >= 0)
 
 
 def set_gaps(slope: float, free: Free, retarded: Free, flexible: Flexible, after: Contacts) -> None:

@@ -5,10 +5,10 @@ Newton's law of restitution with an impulse P over the step,
 
     w'_1 + e w' >= 0,    P >= 0,    P (w'_1 + e w') = 0,    w'_1 = w'_f + G P,
 
-a linear complementarity problem for the rates (w'_f is the rate at the end without impulses); all others have P = 0. So e
-is exact at every step and every phase. The gap itself is in no law: what a landing has left of penetration, up to V h,
-stays (drift). With several contacts e is that of each, as Newton has it: an impulse at one corner changes the rate of the
-other, which then is not -e times its own.
+a linear complementarity problem for the rates (w'_f is the rate at the end without impulses); all others have P = 0.
+So e is exact at every step and every phase. The gap itself is in no law: what a landing has left of penetration, up to
+V h, stays (drift). With several contacts e is that of each, as Newton has it: an impulse at one corner changes the rate
+of the other, which then may leave faster than by e times its own.
 
 M. Jean, The non-smooth contact dynamics method, 1999; J. J. Moreau, Numerical aspects of the sweeping process, 1999.
 """
@@ -51,7 +51,12 @@ def impulses(
         In C: G [m/s per N s].
     """
     for i in range(len(rate)):
-        near = before.gap[i] + length * rate[i] / 2 <= 0
+        near = is_near(before.gap[i], rate[i], length)
         after.state[i] = STICK if near else OPEN
         free.gap[i] = free.gap[i] + restitution * rate[i] if near else FAR
     return find_contacts(law, None, after, free, flexible, after, work)
+
+
+def is_near(gap: float, rate: float, length: float) -> bool:
+    """Tell whether a contact would be closed half a step on."""
+    return bool(gap + length * rate / 2 <= 0)

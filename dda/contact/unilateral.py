@@ -85,7 +85,8 @@ class Unilateral:
         if math.isinf(self.stiffness):
             raise ValueError("damping: a dashpot needs a finite stiffness beside it, got stiffness = inf")
         if self.friction is not None or self.cohesion or self.rules != CONSISTENT:
-            raise ValueError(f"damping: a dashpot goes with frictionless contact only, got friction = {self.friction!r}")
+            friction = f"friction = {self.friction!r}, cohesion = {self.cohesion!r}, rules = {self.rules!r}"
+            raise ValueError(f"damping: a dashpot goes with frictionless contact only, got {friction}")
         if any(self.band):
             raise ValueError(f"damping: a dashpot goes with no dead band, got band = {self.band!r}")
 

@@ -21,7 +21,6 @@ import math
 from dda.contact.dense import Vector, dot, multiply, quadratic
 from dda.contact.impact import impulses
 from dda.contact.kernel import FOUND, Shear
-from dda.contact.unilateral import OPEN
 from dda.model.load import load_share
 from dda.one_block.unilateral_step import (
     BlockEquations,
@@ -86,8 +85,6 @@ def accept(block: BlockEquations, length: StepLength, theta: float, state: Block
     for i in range(n):
         end[i] = start[i] + room.x[i] + h * dot(length.pushed[i], contacts.normal, c)
     for i in range(c):
-        if contacts.state[i] != OPEN:
-            end[n - c + i] = 0.0 - block.restitution * start[n - c + i]  # and not the rounding of a sum of forces
         contacts.normal[i] /= h
     for i in range(n):
         after.D[i] = state.D[i] + (theta * end[i] + (1 - theta) * start[i])

@@ -20,10 +20,10 @@ from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
+from dda.one_block.impact_step import make_impact_steps
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.impact_step import make_impact_steps
 from dda.one_block.unilateral_step import (
     AUGMENTED,
     CONSERVING,

@@ -19,8 +19,8 @@ into the displacement, with weight 1/2 for alpha, and into the momentum, with we
 at the end (Kane, Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and
 average acceleration of the block itself is then the midpoint rule, with F - K D0 for M A0.
 
-Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes of
-the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
+Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes
+of the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
 
 On a moving base unknowns count from it: x = D + R y with K0 R = 0, so that its displacement in the step enters as the
 momentum M R (y1 - y).
@@ -350,9 +350,7 @@ def solve_damped(
 ) -> tuple[int, int]:
     """Find the contacts with a dashpot beside their springs, without shear."""
     room = block.room
-    outcome, solves = damped(
-        block.law, before, room.free, room.retarded, length, length.retarded, after, block.work
-    )
+    outcome, solves = damped(block.law, before, room.free, room.retarded, length, length.retarded, after, block.work)
     set_gaps(length.numbers[3], room.free, room.retarded, length, after)
     return outcome, solves
 
@@ -487,9 +485,7 @@ def free_stage(
         slides_by(block, room.x, room.free.slide)
 
 
-def retard(
-    block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool
-) -> None:
+def retard(block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool) -> None:
     """Write w + tau w' at the end of a stage without contact forces, with w' from the base, which moves evenly."""
     room = block.room
     n = len(block.K)
@@ -708,9 +704,11 @@ def account_by_balance(
     algorithmic = sums[ALGORITHMIC]
     n = len(block.K)
     gg = length_of(block, shear_law, block.last, part.ratio).numbers[1]
-    if gg != 1:
+    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
+    if gg != 1 and not late_start:
         sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
-    released = stored_energy(block, shear_law, state) - stored_energy(block, shear_law, after)
+    released = stored_energy(block, shear_law, state, gg if late_start else 1.0)
+    released -= stored_energy(block, shear_law, after, 1.0)
     if block.stages == 2:
         between = block.between
         released += add_stage(block, shear_law, block.first, state, between, block.first.slipped, part, sums)
@@ -752,13 +750,13 @@ def add_stage(
     return work
 
 
-def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState) -> float:
-    """Return kinetic energy, strain energy and that of the contacts' springs [J]."""
+def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState, discount: float) -> float:
+    """Return kinetic energy, strain energy and that of the contacts' springs [J]; `discount` is that of P."""
     room = block.room
     n = len(block.K)
     strain = 0.0
     for i in range(n):
-        room.change[i] = state.P[i] + block.lag * state.f[i]
+        room.change[i] = discount * state.P[i] + block.lag * state.f[i]
         strain += block.K[i] * state.D[i] * state.D[i]
     energy = (quadratic(block.inverse_mass, room.change, n) / (block.step * block.step) + strain) / 2
     for i in range(len(room.slide)):
@@ -774,7 +772,8 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
         rows[number, i] = state.D[i]
         rows[number, n + i] = state.P[i]
         if block.lag != 0:
-            rows[number, n + i] += block.lag * state.f[i]
+            discount = block.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, n + i] = discount * state.P[i] + block.lag * state.f[i]
         total += state.D[i]
     if rows.shape[1] > 2 * n:
         rows[number, 2 * n] = block.passes[0]

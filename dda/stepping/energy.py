@@ -8,10 +8,10 @@ c = alpha - delta/2 and V the velocity after gg,
 
 [ ] the change over the step and U = N^2/(2 p) + T^2/(2 p_s). A contact that keeps its state is part of the
 algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Of what a contact loses that slips,
-friction takes -T1 (r1 - r0), never negative. A dashpot takes -dw of what its force adds to the spring's. Where the base moves by y the loads work on x = D + R y, and its own work
--lambda' B R y is counted as theirs. Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the
-first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the
-others leave of the balance.
+friction takes -T1 (r1 - r0), never negative; a dashpot beside a spring takes -dw times what it adds to the spring's
+force. Where the base moves by y the loads work on x = D + R y, and its own work -lambda' B R y is counted as theirs.
+Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the first step's A0 adds where M A0 was not
+F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the others leave of the balance.
 """
 
 from __future__ import annotations

@@ -229,15 +229,19 @@ class OpeningBody:
         P = late_momentum(self.scheme, P, f)
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), F, self.find.room(contacts))
 
-    def stored(self, state: SystemState) -> tuple[float, ...]:
+    def stored(self, state: SystemState, discount: float = 1.0) -> tuple[float, ...]:
         """Return kinetic and strain energy, and that of the load without what the base gave [J]."""
         dt = self.scheme.step
         strain = self.stiff(state.D, state.mu / dt**2) / 2
-        return self.kinetic(self.momentum(state) / dt), strain, -float(self.F @ state.D)
+        return self.kinetic(self.momentum(state, discount) / dt), strain, -float(self.F @ state.D)
 
-    def momentum(self, state: SystemState) -> Array:
-        """Return dt M V at the time of the displacements."""
-        return state.P + self.scheme.lag * state.f if self.scheme.lag else state.P
+    def momentum(self, state: SystemState, discount: float = 1.0) -> Array:
+        """Return dt M V at the time of the displacements; `discount` is that of P."""
+        return discount * state.P + self.scheme.lag * state.f if self.scheme.lag else state.P
+
+    def start_discount(self, first: bool) -> float:
+        """Return the discount of P at the start of a step: gg in what `late_momentum` made of the one at t = 0."""
+        return self.scheme.gg if first and self.scheme.lag else 1.0
 
     def kinetic(self, momentum: Array) -> float:
         """Return momentum' M^-1 momentum / 2."""
@@ -370,10 +374,12 @@ def account(
             1.0,
             sums,
         )
-    sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
+    discount = body.start_discount(part.begun == 0)
+    if discount == 1:
+        sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
     if not newmark:  # the algorithm loses what the others leave of the balance
         lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN] - lost
-        released = sum(body.stored(state)) - sum(body.stored(after))
+        released = sum(body.stored(state, discount)) - sum(body.stored(after))
         for i in range(body.points):
             released += spring_energy(body.law, shear_law, state.contacts, i)
             released -= spring_energy(body.law, shear_law, after.contacts, i)
@@ -394,8 +400,9 @@ def account(
 def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> bool:
     """Write columns, momentum and energy at the end of a step; tell whether it is finite."""
     columns = body.observers @ state.D + body.pressure * np.sum(state.contacts.normal)
-    momentum = body.momentum(state).reshape(-1, 6)[:, :2].sum(axis=0)
-    stored = body.stored(state) if body.energies else ()
+    discount = body.start_discount(number == 0)
+    momentum = body.momentum(state, discount).reshape(-1, 6)[:, :2].sum(axis=0)
+    stored = body.stored(state, discount) if body.energies else ()
     rows[number] = np.concatenate([columns, momentum, body.opening.tangents @ state.D, stored])
     return bool(np.isfinite(state.D).all())
 
@@ -425,6 +432,8 @@ def solve_opening_system(
     options = options or UnilateralOptions()
     if options.rule != NEWMARK:
         raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    if opening.law.damping:
+        raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {opening.law.damping:g}")
     law = opening.law
     if law.rules == LAGGED:
         raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")

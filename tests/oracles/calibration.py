@@ -152,11 +152,17 @@ def _outside(rng: np.random.Generator) -> dict[str, object]:
     return every[rng.integers(len(every))]
 
 
-def _named_outside(slips: dict[str, object]) -> str:
-    """Return the id of a further slip; more stiffness in a step, without more of it kept, is another alpha."""
+def _named_outside(slips: dict[str, object], base: Plain) -> tuple[str, ...]:
+    """Return the ids of a further slip; more stiffness in a step, without more of it kept, is another scheme.
+
+    With a share e of it under (1/2, 1) from A0 = 0 the step is M a1 + K ((1 + e) x1 - e x) = F, x1 = x + U + dt^2 a1/2,
+    which has the rows of Newmark's ((1 + e)/2, 1 + e) from the consistent start, the first one too.
+    """
+    if set(slips) == {"hht"} and (base.alpha, base.delta, base.consistent) == (0.5, 1.0, False):
+        return ("scheme", "start")
     known = {"hht": "scheme", "structural": "stiffness-damping", "viscous": "viscous-damping", "ramp": "load-ramp"}
     (name, *others) = slips
-    return UNKNOWN if others else known.get(name, UNKNOWN)
+    return (UNKNOWN if others else known.get(name, UNKNOWN),)
 
 
 def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str, object], tuple[str, ...]]:
@@ -170,7 +176,7 @@ def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str,
         return {}, (SAME,)
     if kind < 0.38 and maker == "plain":
         slips = _outside(rng)
-        return slips, (_named_outside(slips),)
+        return slips, _named_outside(slips, base)
     if kind < 0.38 and maker == "modes":
         return {"hht": 1.0}, ("exact-in-time",)  # summed in closed form: no scheme at all
     if kind < 0.55:

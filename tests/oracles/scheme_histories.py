@@ -149,7 +149,7 @@ def wbz(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
 
 
 def leapfrog(run: Run) -> Rows:
-    """v at half steps; the first one from v_0 + dt a_0 / 2."""
+    """Velocities at half steps; the first one is v_0 + dt a_0 / 2."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
     half = None
@@ -220,7 +220,7 @@ def theta(run: Run, share: float) -> Rows:
 
 
 def composite(run: Run, split: float, r: float) -> Rows:
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 the same of u, vg, v1 (Noh, Bathe)."""
+    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh and Bathe 2019)."""
     b, dt = run.body, run.dt
     q1 = (r + 1) / (2 * split * (r - 1) + 4)
     q0 = (split - 1) * q1 + 0.5
@@ -247,7 +247,7 @@ def composite(run: Run, split: float, r: float) -> Rows:
     for _ in range(run.steps):
         u = run.gg * v
         h = split * dt / 2
-        xg, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
+        _, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
         x, v, a, closed, N = implicit(x + dt * (q0 * u + q1 * vg), u + dt * (q0 * a + q1 * ag), q2 * dt, closed)
         rows.append((x, N))
     return rows
@@ -367,12 +367,15 @@ def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
 
 
 def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) -> float:
+    if not opens:
+        return -k * (wf + w0) / (2 + k * C)
+
     def energy(w: float) -> float:
-        return k * (min(w, 0.0) if opens else w) ** 2 / 2
+        return k * min(w, 0.0) ** 2 / 2
 
     def force(w1: float) -> float:
         if abs(w1 - w0) < 1e-14:
-            return -k * (min(w0, 0.0) if opens else w0)
+            return -k * min(w0, 0.0)
         return -(energy(w1) - energy(w0)) / (w1 - w0)
 
     low, high = wf - 1e-9, max(wf, 0.0) + abs(w0) + 1e-9
@@ -384,7 +387,9 @@ def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) ->
     return force((low + high) / 2)
 
 
-def dashpot(run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False) -> Rows:
+def dashpot(
+    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
+) -> Rows:
     """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
     b, dt = run.body, run.dt
     x = np.zeros(2)

@@ -81,7 +81,8 @@ def _print(answer: Answer) -> None:
 
     echo(answer.sentence)
     if answer.remedy:
-        echo(f"to read the history so, add {answer.remedy}")
+        what = "run the scene" if answer.remedy.startswith("--set") else "read the history"
+        echo(f"to {what} so, add {answer.remedy}")
     if answer.causes:
         echo("\ncauses")
         for name in answer.causes:

@@ -219,7 +219,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
         "rho_inf": (1 - value) / (1 + value) if value > -1 else math.nan,
         "implicit_euler": ": implicit Euler" if value == 1 else "",
         "form": "",
-        "split": math.nan,
+        "split": "",
         "clipping": "",
         "twelfth": {3.0: ", of a mass in the corners", 12.0: ", without its twelfth"}.get(round(value, 3), ""),
         "scheme": "",
@@ -233,7 +233,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
             "formula": {"velocity": "velocity (7)", "displacement": "displacement (6)"}.get(v.discounted, ""),
             "place": {1.0: ", the top edge", -1.0: ", the base"}.get(round(v.point, 6), ""),
             "carried": "force of the springs" if v.kept == "springs" else "stress",
-            "split": split_of(v),
+            "split": f"split {split_of(v):.4g}",
         }
     return cause.sentence.format(value=value, per_cent=100 * value, v=v, scene=scene, **(words | further))
 

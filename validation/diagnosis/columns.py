@@ -41,6 +41,8 @@ from validation.diagnosis.one_change import (
 from validation.diagnosis.other_solvers import DISCOUNTS, STARTS, row_of
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Reading, slips, words_of_slips
+from validation.diagnosis.schemes import scheme_numbers
+from validation.diagnosis.variant import own_scheme
 from validation.errors import InputError
 from validation.metrics.contact import AGREED, SHIFT
 from validation.metrics.values import largest
@@ -105,10 +107,11 @@ def _changing(values: Callable[[float], Values]) -> Callable[[float], ColumnChan
 def schemes(scene: Scene) -> Iterator[Candidate]:
     """Yield the schemes by which programs step, with either start, and several steps in one of the scene's."""
     t = scene.time
-    for alpha, delta in dict.fromkeys([(t.alpha, t.delta), *NAMED.values()]):
+    scene_pairs = [(t.alpha, t.delta)] if t.scheme == "newmark" else []
+    for alpha, delta in dict.fromkeys([*scene_pairs, *NAMED.values()]):
         for start in dict.fromkeys([t.start, "zero", "consistent"]):
-            values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
-            if (alpha, delta) != (t.alpha, t.delta):
+            values = {"time.scheme": "newmark", "time.alpha": alpha, "time.delta": delta, "time.start": start}
+            if (alpha, delta) not in scene_pairs:
                 also = "" if start == t.start else f', the initial acceleration is "{start}"'
                 yield _plain("scheme", f"{sentences.scheme_words(alpha, delta, t.discount)}{also}", values)
             elif start != t.start:
@@ -591,25 +594,24 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
     unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
     departure = None if not ids and explained else _departure(search)
-    t = scene.time
-    scheme: dict[str, float | None] = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount}
+    scene_variant = own_scheme(scene)
+    scheme = scheme_numbers(scene_variant)
     words = words_of_slips(reading.corrected)
     if cause is not None:
         values = cause.change.values
-        scheme |= {name: values[f"time.{name}"] for name in scheme if f"time.{name}" in values}
+        if "time.alpha" in values:
+            scheme = {"alpha": values["time.alpha"], "delta": values["time.delta"], "gg": scheme["gg"]}
+        if "time.gg" in values:
+            scheme["gg"] = values["time.gg"]
         words[cause.id] = cause.words
         if cause.id == "scheme":
-            words["scheme"] = (
-                f"a different scheme from the scene's {sentences.scheme_words(t.alpha, t.delta, t.discount)}"
-            )
+            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(scene_variant)}"
     alike = [] if cause or verdict.is_scene else [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if verdict.slipped is not None:
         slipped = list(verdict.slipped.history.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
     subject = sentences.Subject(
-        cause.words
-        if cause and cause.id == "scheme"
-        else sentences.scheme_words(scheme["alpha"], scheme["delta"], scheme["gg"]),
+        cause.words if cause and cause.id == "scheme" else sentences.scheme_of(replace(scene_variant, gg=scheme["gg"])),
         words,
         departure,
         sentences.remaining(misfit),
@@ -627,7 +629,8 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         sentence = f"{sentences.not_explained(subject, nearest, unexplained, stages)[:-1]}; {_first_rows(search)}."
     (judged_solver, *_) = by_role(Role.JUDGED)
     curves = {"the file": search.history.recorded, judged_solver: search.scene_run, "best": columns}
-    ranking = [row_of(judged_solver, t.alpha, t.delta, t.discount, scene_misfit, None)]
+    alpha, delta = (scene_variant.scheme[:2]) if scene_variant.family == "newmark" else (None, None)
+    ranking = [row_of(judged_solver, alpha, delta, scene_variant.gg, scene_misfit, None)]
     if cause is not None:
         ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     return Answer(

@@ -29,8 +29,8 @@ from validation.diagnosis.readings import (
     slips,
     words_of_slips,
 )
-from validation.diagnosis.schemes import EXPLICIT, split_of
-from validation.diagnosis.search import Verdict, beside, paired, simple
+from validation.diagnosis.scene_keys import assignments
+from validation.diagnosis.search import Verdict, beside, discounted, paired, simple
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -41,6 +41,7 @@ from validation.scenes.scene import Scene
 DDA = "dda"
 RIVALS = ("bar", "continuum")
 MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
+SAME_SPLIT = 1e-4  # of a composite scheme
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -101,7 +102,9 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
     answer = _judged(scene, foreign, tolerance)
-    return replace(answer, remedy=answer.remedy or remedy_of(foreign, answer.slips))
+    if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
+        return answer
+    return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
 
 
 def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
@@ -110,7 +113,7 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
     answer = _judged(scene, foreign, tolerance)
     first, second = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
-    remedy = f"--columns {columns} {remedy_of(foreign, answer.slips)}".strip()
+    remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
     sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
@@ -194,9 +197,10 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
     if not verdict.explains and scene.contact.law == "locked":
-        verdict = paired(case.target, scene_variant, verdict)
+        verdict = paired(case.target, scene_variant, discounted(case.target, scene_variant, verdict))
     elif not verdict.explains:
-        verdict = beside(case.target, scene_variant, verdict)
+        verdict = discounted(case.target, scene_variant, verdict)
+        verdict = verdict if verdict.reached else beside(case.target, scene_variant, verdict)
     others: list[Rival] = []
     if has_rivals and np.ptp(case.target.steps) == 0:
         v = verdict.best.fit.variant
@@ -251,7 +255,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if either:
         verdict = replace(verdict, explained=False)
     ids = all_causes if verdict.explained else [UNEXPLAINED]
-    v = best_fit.variant if verdict.explained else scene_variant
+    v = _with_first_split(target, best_fit.variant) if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
@@ -276,6 +280,8 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if "dead-band" in ends:
         low, high = ends["dead-band"]
         further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    if v.family == "composite":
+        further["split"] = _splits(target, v)
     if "contact-dashpot" in ids and v.opens:
         further["clipping"] = _clipping(target, v)
     if v.opens and schemes.stages(v)[-1].mean_force > 0:
@@ -296,7 +302,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
     pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
-        scheme=scheme_numbers(v),
+        scheme=schemes.scheme_numbers(v),
         ranking=ranking(DDA, target, v, shown.free, others),
         departure=first_departure,
         causes=ids,
@@ -315,6 +321,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         slips=corrected if verdict.explained else (),
         pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
         intervals=ends,
+        remedy=assignments(ids, v, scene_variant) if verdict.explained else "",
     )
 
 
@@ -335,18 +342,27 @@ def _contact_form(target: Target, v: Variant) -> str:
     return f", the contact force {'that of the mean gap' if is_of_gaps else 'the mean of those at both ends'}"
 
 
-def scheme_numbers(v: Variant) -> dict[str, Any]:
-    """Return a scheme's numbers; alpha and delta are None where it is no pair of them, and `name` says which it is."""
-    if v.family == "newmark":
-        return {"alpha": v.alpha, "delta": v.delta, "gg": v.gg}
-    numbers: dict[str, Any] = {"alpha": None, "delta": None, "gg": v.gg, "name": v.family}
-    if v.family == "theta":
-        return numbers | {"theta": v.spectral}
-    if v.family not in EXPLICIT:
-        numbers["rho_inf"] = (1 - v.spectral) / (1 + v.spectral) if v.family == "hht" else v.spectral
-    if v.family == "composite":
-        numbers["split"] = split_of(v)
-    return numbers
+def _has_second_split(target: Target, v: Variant) -> bool:
+    """Whether a composite scheme gives the same rows with another split."""
+    other = schemes.companion_split(v)
+    if abs(other - schemes.split_of(v)) < SAME_SPLIT:
+        return False
+    return target.explained(fit(target, [(replace(v, split=other), ())])[0].residual)
+
+
+def _with_first_split(target: Target, v: Variant) -> Variant:
+    """Return a variant, of the two splits that give the same rows the smaller one."""
+    if v.family != "composite" or not _has_second_split(target, v):
+        return v
+    return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
+
+
+def _splits(target: Target, v: Variant) -> str:
+    """Return the share at which a composite scheme is split, and the other one that gives the same rows."""
+    split = f"split {schemes.split_of(v):.4g}"
+    if not _has_second_split(target, v):
+        return split
+    return f"{split} or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
 
 
 def _opened(target: Target, v: Variant) -> list[int]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 if TYPE_CHECKING:
     from validation.diagnosis.variant import Variant
@@ -98,6 +98,30 @@ def _composite(v: Variant) -> tuple[Stage, ...]:
 def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
     return v.split or usual_split(v.spectral)
+
+
+def scheme_numbers(v: Variant) -> dict[str, Any]:
+    """Return a scheme's numbers; alpha and delta are None where it is no pair of them, and `name` says which it is."""
+    if v.family == "newmark":
+        return {"alpha": v.alpha, "delta": v.delta, "gg": v.gg}
+    numbers: dict[str, Any] = {"alpha": None, "delta": None, "gg": v.gg, "name": v.family}
+    if v.family == "theta":
+        return numbers | {"theta": v.spectral}
+    if v.family not in EXPLICIT:
+        numbers["rho_inf"] = (1 - v.spectral) / (1 + v.spectral) if v.family == "hht" else v.spectral
+    if v.family == "composite":
+        numbers["split"] = split_of(v)
+    return numbers
+
+
+def companion_split(v: Variant) -> float:
+    """Return the other split with which a composite scheme is the same in linear motion, 2 q2.
+
+    Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which a split of 2 q2 exchanges; at the usual
+    split they are one.
+    """
+    share = split_of(v)
+    return 1 - 2 * share * (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)
 
 
 def usual_split(rho_inf: float) -> float:

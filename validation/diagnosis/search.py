@@ -51,8 +51,8 @@ MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apa
 # is in no catalogue comes as near to one of them as that, but not nearer
 HIDDEN, HIDDEN_RARE, HIDDEN_TWO, HIDDEN_SCHEME = 0.2, 0.03, 0.01, 0.003
 SCHEMES = [  # causes that are a time scheme, in the order in which one of several names is chosen
-    *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite", "symplectic-euler"),
-    "exact-in-time",
+    *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite"),
+    *("symplectic-euler", "exact-in-time"),
 ]
 PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme
 PROBED = 40  # steps of such a run
@@ -235,14 +235,21 @@ def _canonical(
 
     Two explanations are one scheme if they give the same rows at any time step, not only at this one.
     """
-    if len(best.ids) != 1 or best.ids[0] not in SCHEMES or best.fit.free:
-        return best, {best.ids: best}
     aliases = {best.ids: best}
+    if _scheme_alone(best) is None:
+        return best, aliases
     for f in close:
-        is_other = len(f.ids) == 1 and f.ids[0] in SCHEMES and f.ids not in aliases
-        if is_other and not f.fit.free and same_program(target, best.fit.variant, f.fit.variant):
+        is_other = f.ids not in aliases and _scheme_alone(f) is not None and f.ids[1:] == best.ids[1:]
+        if is_other and same_program(target, best.fit.variant, replace(f.fit.variant, gg=best.fit.variant.gg)):
             aliases[f.ids] = f
     return aliases[min(aliases, key=lambda ids: SCHEMES.index(ids[0]))], aliases
+
+
+def _scheme_alone(explanation: Explanation) -> str | None:
+    """Return the id of a time scheme with fixed numbers that explains by itself, or beside a discount, else None."""
+    first, *others = explanation.ids or ("",)
+    alone = first in SCHEMES and others in ([], ["gg"]) and set(explanation.fit.free) <= {"gg"}
+    return first if alone else None
 
 
 def same_program(target: Target, one: Variant, other: Variant) -> bool:
@@ -379,6 +386,17 @@ def paired(target: Target, scene: Variant, before: Verdict) -> Verdict:
     if verdict.reached or before.around < FAULT:
         return min((verdict, before), key=lambda v: (not v.reached, v.best.fit.misfit))
     return _nearer(verdict, beside(target, scene, before))
+
+
+def discounted(target: Target, scene: Variant, before: Verdict) -> Verdict:
+    """Return what another time scheme explains beside another discount; else what was found before."""
+    if before.reached or target.spread > 3 * HIDDEN_TWO * before.scene_fit.misfit:
+        return before
+    every = moves(target, scene)
+    (discount,) = (move for move in every if move.id == "gg" and move.free)
+    of_schemes = [move for move in every if move.id == "scheme" or LISTED[move.id].family]
+    combos = [(move, discount) for move in of_schemes if len(move.free) < 2]
+    return _nearer(decided(target, before.scene_fit, fitted(target, scene, combos)), before)
 
 
 def _nearer(*verdicts: Verdict) -> Verdict:

@@ -121,7 +121,9 @@ class Stepper:
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
-        self.stages = [Stage(*(column[:, None] for column in of_stage.T)) for of_stage in np.moveaxis(numbers_of_stages, 1, 0)]
+        self.stages = []  # of each its numbers, (variants, 1)
+        for of_stage in np.moveaxis(numbers_of_stages, 1, 0):
+            self.stages.append(Stage(*(number[:, None] for number in of_stage.T)))
         self.size = 4 + 3 * unknowns
         self.presses = np.array([v.contact != "mean gap" for v in variants])  # by the gap of the end of the step before
         self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
@@ -283,7 +285,7 @@ class Stepper:
         return np.asarray(np.linalg.inv((1 - c.mean_mass) * q.mass + (1 - c.mean_force) * part))
 
     def forced_matrix(self, dt: float) -> tuple[Array, Array]:
-        """Return the matrix of a step with open contact, and the state that a unit contact force adds, (variants, size).
+        """Return the matrix of a step with open contact, and the state that a unit contact force adds.
 
         In an implicit, an energy-conserving and an impact law the contact's force is no part of M A: it enters the
         displacement by 1/2 dt^2 (by theta dt of an impulse), the velocity by dt, and A what the block's strain gives.

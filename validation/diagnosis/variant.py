@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Literal
 
@@ -181,23 +181,17 @@ def _opens_only(scene: Scene) -> bool:
 
 def own_variant(scene: Scene) -> Variant:
     """Return the scene's own scheme and contact, nothing added."""
-    t, (closing, opening) = scene.time, scene.contact.band
+    closing, opening = scene.contact.band
     opens = scene.contact.law == "unilateral"
     ratio = opening / closing if closing else 0.0
+    return replace(own_scheme(scene), opens=opens, band=closing, reopening=ratio, ramp=scene.load.ramp)
+
+
+def own_scheme(scene: Scene) -> Variant:
+    """Return the scene's own scheme, of a block or of a column."""
+    t = scene.time
     alpha, delta = (t.alpha, t.delta) if t.scheme == "newmark" else AVERAGE_ACCELERATION
     spectral = t.rho_inf or 0.0
     if t.scheme == "hht":
         spectral = (1 - spectral) / (1 + spectral)
-    return Variant(
-        alpha,
-        delta,
-        t.discount,
-        t.start,
-        opens=opens,
-        band=closing,
-        reopening=ratio,
-        ramp=scene.load.ramp,
-        family=t.scheme,
-        spectral=spectral,
-        split=t.split or 0.0,
-    )
+    return Variant(alpha, delta, t.discount, t.start, family=t.scheme, spectral=spectral, split=t.split or 0.0)

@@ -59,8 +59,8 @@ class Outcome(WordWithSentence):
     )
     PASS_LIMIT = (
         "pass limit exceeded",
-        "The passes of the augmented Lagrangian did not reach its penetration within their limit; use a stiffer penalty, "
-        "a greater penetration or a longer step.",
+        "The passes of the augmented Lagrangian did not reach its penetration within their limit; use a stiffer "
+        "penalty, a greater penetration or a longer step.",
     )
     HORIZON = (
         "exact up to a horizon",

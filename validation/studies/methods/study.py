@@ -1,8 +1,8 @@
 """The study `methods`: time schemes and contact methods on the same scenes, at equal steps and at equal cost.
 
 The block on its locked springs, from rest; the same block where the contact opens; a rigid block that lands on springs;
-a block that slides. Each by all methods that apply, held to closed forms of the schemes and to the numbers of an
-independent program (`known.toml`).
+a rigid stop; blocks on each other; a block that slides. Each by all methods that apply, held to closed forms of the
+schemes and to the numbers of an independent program (`known.toml`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from validation.metrics.values import or_nan
 from validation.runs.history import Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import OTHER, about, gate
+from validation.studies.bands import OTHER, OWN, about, fitted_order, gate, near
 from validation.studies.declaration import Study
 from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
 from validation.theory import friction, rebound, spectra, statics
@@ -40,6 +40,9 @@ COARSEST = 100  # steps
 LEVELS = 6  # of the refinement, each with twice the steps of the one before
 SLOW_LEVELS = {"constant": 8, "nine-sixteenths": 7, "implicit-euler": 7, "kane": 7}  # the same of first order
 TARGET = 0.01  # relative error of the velocity
+RIGID_COARSEST, RIGID_LEVELS = 800, 5  # steps over `REFINED_TIME` of a rigid stop
+COLUMN_STEPS = (1e-3, 2e-4)  # s
+COLUMN_TIME = 0.06  # s
 SLIDING_STEP = 0.01  # s
 SLIDING_TIME = 0.5  # s
 IMPACT_OMEGAS = (0.3, 4.0, 1000.0)  # w_c dt
@@ -52,6 +55,8 @@ FINAL = "energy at the end"
 MAP = "rebound map"
 RIGID_MAP = "rebound on a rigid contact"
 SLIDING = "distance"
+STOP = "approach"
+COLUMN = "column error"
 COST = "methods-cost"
 SOFT = 1e-7  # of the restitution: the block's own strain, eight times p/E, and rounding over the impact
 PHASE_DRIFT = 0.15  # of an order: where in their steps the landings fall changes the error's constant by a tenth
@@ -65,6 +70,16 @@ STABLE_EXPLICIT = 1.0, 0.001  # p/E and dt [s] of the locked block within the li
 def known() -> Mapping[str, Any]:
     """Return the printed numbers, as text."""
     return tomllib.loads((Path(__file__).parent / "known.toml").read_text())
+
+
+_EXPANDED: dict[str, tuple[Scene, ...]] = {}  # a scene has no hash
+
+
+def expanded(scene: Scene) -> tuple[Scene, ...]:
+    """Return the cases of a scene of the study, which are made once."""
+    if scene.name not in _EXPANDED:
+        _EXPANDED[scene.name] = scene.expand()
+    return _EXPANDED[scene.name]
 
 
 def half_unit(text: str) -> float:
@@ -143,6 +158,51 @@ def impacts(one: Method) -> Scene:
     return named(scene, "impact", one, "A rigid block lands on springs", sweep)
 
 
+STOPS = {  # what turns a block back at a rigid stop: id -> words, values
+    "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
+    "impulses": (
+        "Moreau and Jean, e = 0, theta = 1/2",
+        {"contact.rule": "impact", "contact.restitution": 0.0, "time.alpha": 0.25, "time.delta": 0.5},
+    ),
+    "impulses-euler": (
+        "Moreau and Jean, e = 0, theta = 1",
+        {"contact.rule": "impact", "contact.restitution": 0.0, "time.alpha": 1.0, "time.delta": 1.5},
+    ),
+}
+
+
+@functools.cache
+def rigid(stop: str) -> Scene:
+    """Return the block on a rigid stop, over halved steps."""
+    words, values = STOPS[stop]
+    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
+    counts = [RIGID_COARSEST * 2**level for level in range(RIGID_LEVELS)]
+    sweep = {"mode": "zip", "time.step": [REFINED_TIME / count for count in counts], "time.steps": counts}
+    update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
+    return base.with_values({**rigid_stop, **values}).model_copy(update=update)
+
+
+@functools.cache
+def column(one: Method) -> Scene:
+    """Return five rigid blocks that are dropped on each other, over two steps."""
+    values = {"run.solvers": ["dda"], "run.columns": ["displacement"]}
+    scene = one.scene(load_scene("columns-drop-average"), values)
+    sweep = {"time.step": COLUMN_STEPS, "time.steps": [round(COLUMN_TIME / step) for step in COLUMN_STEPS]}
+    return named(scene, "column", one, "Five rigid blocks dropped", sweep)
+
+
+@functools.cache
+def column_truth() -> Scene:
+    """Return the five blocks, exact in time."""
+    steps = {"time.step": COLUMN_STEPS[0], "time.steps": round(COLUMN_TIME / COLUMN_STEPS[0])}
+    values = {"run.solvers": ["column-events"], "run.columns": ["displacement"], **steps}
+    scene = method("average").scene(load_scene("columns-drop-average"), values)
+    return scene.model_copy(
+        update={"name": "methods-column-exact", "title": "Five rigid blocks dropped, exact in time"}
+    )
+
+
 @functools.cache
 def sliding(one: Method) -> Scene:
     """Return the block that slides down an incline."""
@@ -162,8 +222,10 @@ def scenes() -> tuple[Scene, ...]:
     declared += [unlocked(one) for one in METHODS]
     declared += [refined(one) for one in METHODS]
     declared += [impacts(one) for one in IMPLICIT]
+    declared += [rigid(stop) for stop in STOPS]
+    declared += [column(one) for one in SCHEMES]
     declared += [sliding(one) for one in FRICTIONAL]
-    return (*declared, truth())
+    return (*declared, truth(), column_truth())
 
 
 # ---- what is derived from the runs ----------------------------------------------------------------------------------
@@ -206,7 +268,7 @@ def errors_of(one: Method, finished: Finished) -> dict[int, float]:
     """Return the relative L2 error of the displacement's rate by the number of steps, at the coarsest instants."""
     exact = _velocity(finished, truth(), "block-events")
     errors = {}
-    for case in refined(one).expand():
+    for case in expanded(refined(one)):
         velocity = _velocity(finished, case, "dda")
         errors[case.time.steps] = float(np.linalg.norm(velocity - exact) / np.linalg.norm(exact))
     return errors
@@ -234,6 +296,38 @@ def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
     return {"constant over ch-0": or_nan(counts[0]) / or_nan(counts[1])}
 
 
+# Displacement of the block that stops dead at a rigid stop, by an independent program [s], [m].
+PLASTIC = {0.01: -0.00350963748, 0.02: -0.00744841152, 0.05: -0.00275254957}
+
+
+def approach(stop: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the orders in the step of the distance from the plastic motion and of the peak pressure."""
+    exact = np.array([*PLASTIC.values()])
+    steps = []
+    errors = []
+    peaks = []
+    for case in expanded(rigid(stop)):
+        history = finished.needed_history(case.name, "dda")
+        instants = [round(time / case.time.step) - 1 for time in PLASTIC]
+        steps.append(case.time.step)
+        errors.append(float(np.linalg.norm(history.displacement[instants] - exact) / np.linalg.norm(exact)))
+        peaks.append(float(np.max(history.contact_pressure)))
+    return {
+        "order": fitted_order(steps, errors),
+        "finest error": errors[-1],
+        "order of the peak": fitted_order(steps, peaks),
+        "finest peak": peaks[-1],
+    }
+
+
+def column_error(case: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the relative L2 error of the mean displacement at the coarser steps."""
+    exact = finished.needed_history(column_truth().name, "column-events").displacement
+    stride = round(COLUMN_STEPS[0] / case.time.step)
+    displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
+    return {"l2": float(np.linalg.norm(displacement - exact) / np.linalg.norm(exact))}
+
+
 def slid_distance(case: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return the relative error of the distance slid, a t^2 / 2 with a = g (sin b - tan(phi) cos b)."""
     exact = friction.sliding_acceleration(case) * case.time.duration**2 / 2
@@ -243,7 +337,7 @@ def slid_distance(case: Scene, finished: Finished) -> Mapping[str, Value]:
 
 def restitutions(one: Method, finished: Finished) -> Iterator[tuple[Scene, float, float]]:
     """Yield the cases of a rigid block that lands, with the restitution of DDA and of the map."""
-    for case in impacts(one).expand():
+    for case in expanded(impacts(one)):
         history = finished.needed_history(case.name, "dda").displacement
         after = float(history[-1] - history[-2]) / case.time.step
         omega = math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step
@@ -287,38 +381,46 @@ def equal_cost(finished: Finished) -> Mapping[str, Value]:
 
 def case_of(scene: Scene, ratio: float, step: float) -> Scene:
     """Return the case of a stiffness p/E and a step [s]."""
-    for case in scene.expand():
+    for case in expanded(scene):
         if math.isclose(case.contact.stiffness, ratio * case.block.young) and math.isclose(case.time.step, step):
             return case
     raise LookupError(f"{scene.name}: no case of p = {ratio:g}E and dt = {step:g} s")
 
 
+@functools.cache
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
     rows = []
     for one in SCHEMES:
-        for case in locked(one).expand():
+        for case in expanded(locked(one)):
             rows.append(Derived(case.name, ERROR, ((case.name, "dda"),), functools.partial(locked_error, case)))
     composites = [locked(one) for one in SCHEMES if one.group == "composite"]
     cost_cases = [case_of(scene, 1.0, 2 * HALVED) for scene in composites]
     cost_cases.append(case_of(locked(method("average")), 1.0, HALVED))
     rows.append(Derived(COST, ERROR, tuple((case.name, "dda") for case in cost_cases), equal_cost))
-    compared_levels = [(case.name, "dda") for name in ("constant", "ch-0") for case in refined(method(name)).expand()]
+    compared_levels = [(case.name, "dda") for name in ("constant", "ch-0") for case in expanded(refined(method(name)))]
     rows.append(Derived(COST, ORDER, (*compared_levels, (truth().name, "block-events")), slow_and_fast))
     for one in METHODS:
-        for case in unlocked(one).expand():
+        for case in expanded(unlocked(one)):
             needs = ((case.name, "dda"),)
             rows.append(Derived(case.name, FINAL, needs, functools.partial(final_energy, case), ENERGIES))
-        levels = [(case.name, "dda") for case in refined(one).expand()]
+        levels = [(case.name, "dda") for case in expanded(refined(one))]
         needs_truth = (*levels, (truth().name, "block-events"))
         rows.append(Derived(refined(one).name, ORDER, needs_truth, functools.partial(order, one)))
     for one in IMPLICIT:
-        landings = tuple((case.name, "dda") for case in impacts(one).expand())
+        landings = tuple((case.name, "dda") for case in expanded(impacts(one)))
         rows.append(Derived(impacts(one).name, MAP, landings, functools.partial(compared_map, one)))
         if one.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
             rows.append(Derived(impacts(one).name, RIGID_MAP, (), functools.partial(rigid_map, one)))
+    for stop in STOPS:
+        levels = [(case.name, "dda") for case in expanded(rigid(stop))]
+        rows.append(Derived(rigid(stop).name, STOP, tuple(levels), functools.partial(approach, stop)))
+    for one in SCHEMES:
+        for case in expanded(column(one)):
+            needs_column = ((case.name, "dda"), (column_truth().name, "column-events"))
+            rows.append(Derived(case.name, COLUMN, needs_column, functools.partial(column_error, case)))
     for one in FRICTIONAL:
-        for case in sliding(one).expand():
+        for case in expanded(sliding(one)):
             rows.append(Derived(case.name, SLIDING, ((case.name, "dda"),), functools.partial(slid_distance, case)))
     return tuple(rows)
 
@@ -350,6 +452,7 @@ def printed(case: Scene | str, name: str, metric: str, text: str, scale: float =
     return gate(case, name, metric, about(float(text) * scale, half * 1.001), why, OTHER, half)
 
 
+@functools.cache
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
     return (
@@ -359,6 +462,8 @@ def gates() -> tuple[Gate, ...]:
         *order_gates(),
         *impact_gates(),
         *rigid_gates(),
+        *stop_gates(),
+        *column_gates(),
         *sliding_gates(),
     )
 
@@ -368,7 +473,7 @@ def locked_gates() -> Iterator[Gate]:
     why = "roots of one step of the scheme at the closed-form frequency, written apart from the solver; band: rounding"
     errors = f"{PRINTED}; phase errors saturate near 0.5 (damped to rest) and 1 (out of phase)"
     for one in SCHEMES:
-        cases = locked(one).expand()
+        cases = expanded(locked(one))
         texts = known()["locked"][one.id]
         if one.id == "leapfrog":
             texts = [text for text in texts if text != UNSTABLE]
@@ -405,7 +510,7 @@ def unlocked_gates() -> Iterator[Gate]:
     why = f"{PRINTED}; with the leapfrog beyond its limit the block is thrown, and all numbers stay finite"
     for one in METHODS:
         rows = known()["unlocked"].get(one.id, ())
-        for n, (case, row) in enumerate(zip(unlocked(one).expand(), rows, strict=False)):
+        for n, (case, row) in enumerate(zip(expanded(unlocked(one)), rows, strict=False)):
             if (one.id, n) in CHAOTIC:
                 continue
             peak, energy = row
@@ -447,10 +552,60 @@ def rigid_gates() -> Iterator[Gate]:
                 yield printed(name, RIGID_MAP, part, text, why=gains if part == "most" else PRINTED)
 
 
+def stop_gates() -> Iterator[Gate]:
+    """Yield the gates on rigid stops: whether they converge to the motion of a plastic impact."""
+    name = rigid("displacements")
+    why = (
+        "a rigid stop in displacements turns each landing back by where in the step it falls, at every step: no "
+        "convergence, |order| < 1/2, where a method that converges has 1"
+    )
+    yield gate(name, STOP, "order", (-0.5, 0.5), why)
+    why = (
+        "the distance from the plastic motion that is left at the finest step: an independent program, 1 to 4 %, twice"
+    )
+    yield gate(name, STOP, "finest error", (0.005, 0.08), why, OTHER)
+    why = "theta = 1/2 leaves a penetration of up to V dt at a landing, by its phase: order 1, which scatters"
+    yield gate(rigid("impulses"), STOP, "order", about(0.85, 0.35), why)
+    why = "theta = 1 is implicit Euler between the impacts: order 1; band: the next order at the coarsest step"
+    yield gate(rigid("impulses-euler"), STOP, "order", about(1.0, 0.15), why)
+    why = "the pressure of a rigid stop is an impulse over dt: order -1; band: the load's part of it"
+    for stop in ("impulses", "impulses-euler"):
+        yield gate(rigid(stop), STOP, "order of the peak", about(-1.0, 0.05), why)
+
+
+# Relative L2 error of the mean displacement of five blocks at the finer step; this suite's own.
+COLUMN_ERRORS: Mapping[str, float] = {
+    "constant": 0.2702,
+    "average": 0.004545,
+    "nine-sixteenths": 0.2681,
+    "implicit-euler": 0.4425,
+    "ch-0.8": 0.004901,
+    "ch-0.5": 0.007143,
+    "ch-0": 0.01111,
+    "hht-0.1": 0.005857,
+    "wbz-0.5": 0.009092,
+    "bathe-half": 0.002043,
+    "tr-bdf2": 0.001817,
+    "bathe-0.5": 0.001405,
+    "leapfrog": 0.005209,
+}
+
+
+def column_gates() -> Iterator[Gate]:
+    """Yield the gates on five blocks that are dropped on each other."""
+    solves = "solves of the stages, and one more where a contact opens or closes, which few steps do"
+    errors = "error against the exact motion, this suite's own last value; band: where the landings fall in their steps"
+    for one in SCHEMES:
+        for case in expanded(column(one)):
+            yield gate(case, "dda", "contact.mean_solves", (float(one.solves), one.solves + 0.25), solves)
+        *_, fine = expanded(column(one))
+        yield gate(fine, COLUMN, "l2", near(COLUMN_ERRORS[one.id], 0.05), errors, OWN)
+
+
 def sliding_gates() -> Iterator[Gate]:
     """Yield the gates on the distance slid."""
     for one in FRICTIONAL:
-        (case,) = sliding(one).expand()
+        (case,) = expanded(sliding(one))
         distance = friction.sliding_acceleration(case) * case.time.duration**2 / 2
         settled = 2 * math.tan(math.radians(case.contact.friction or 0.0)) * friction.settlement(case) / distance
         late = case.time.step / case.time.duration if one.id == "implicit-euler" else 0.0
