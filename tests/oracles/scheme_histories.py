@@ -220,7 +220,7 @@ def theta(run: Run, share: float) -> Rows:
 
 
 def composite(run: Run, split: float, r: float) -> Rows:
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh and Bathe 2019)."""
+    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh, Bathe 2019)."""
     b, dt = run.body, run.dt
     q1 = (r + 1) / (2 * split * (r - 1) + 4)
     q0 = (split - 1) * q1 + 0.5
