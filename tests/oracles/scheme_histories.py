@@ -262,6 +262,7 @@ def tr_bdf2(run: Run) -> Rows:
     y = np.zeros(4)
     rows = []
     for _ in range(run.steps):
+        y = y * np.array([1.0, 1.0, run.gg, run.gg])
         yg = np.linalg.solve(np.eye(4) - g * dt / 2 * A, y + g * dt / 2 * (A @ y + 2 * f))
         known = (yg - (1 - g) ** 2 * y) / (g * (2 - g))
         h = (1 - g) / (2 - g) * dt

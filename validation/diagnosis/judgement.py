@@ -123,6 +123,8 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
     """Refuse a scene that compare does not step, before anything of it is run."""
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if scene.time.scheme != "newmark":
+        _refuse_other_schemes(scene)
     if scene.column is None:
         is_frictional = features.FRICTION in features.of(scene)
         is_rectangle = rectangle_of(scene) is not None
@@ -136,8 +138,6 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
             )
         if is_frictional:
             of_friction.refuse_other_scenes(scene)
-    if scene.time.scheme != "newmark":
-        _refuse_other_schemes(scene)
     features.refuse_sweep(scene)
 
 

@@ -234,8 +234,8 @@ def _digits(value: float) -> int:
 def _without_special_cases(target: Target, fine: list[Explanation], scores: dict[int, float]) -> list[Explanation]:
     """Return explanations, the best first, without those whose number says no more than that another one holds.
 
-    HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: where such a special
-    case leaves hardly more, or what rounded constants leave, the further number is none.
+    HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: where such a
+    special case leaves hardly more, or what rounded constants leave, the further number is none.
     """
     plain = [f for f in fine[:COMPARED] if len(f.ids) < 2]
     kept = []
