@@ -204,9 +204,18 @@ def verdict(case: Case, answer: Answer) -> str:
         listed = {cause for one in answer.alike for cause in one["causes"]}
         return "alike" if possible & (listed | ({""} if listed & {"scheme", "start"} else set())) else "silent"
     own = set(answer.causes) - {"scheme", "start", "gg"}
-    is_right = any(_is(name, own, answer) for name in names)
+    is_right = any(_is(name, own, answer) for name in names) and _has_split(case.run, answer)
     is_right = is_right and math.isclose(answer.scheme["gg"], case.run.gg, abs_tol=TOLERANCE / 10)
     return "right" if is_right else "wrong"
+
+
+def _has_split(run: Run, answer: Answer) -> bool:
+    """Whether the split of a composite scheme is the run's, or the one that is the same in locked contact."""
+    if "split" not in run.numbers:
+        return True
+    g, r = run.numbers["split"], run.numbers["r"]
+    other = 1 - 2 * g * (r + 1) / (2 * g * (r - 1) + 4)
+    return min(abs(answer.scheme["split"] - g), abs(answer.scheme["split"] - other)) < TOLERANCE
 
 
 def _is(name: tuple[str, float | None, tuple[float, float] | None], own: set[str], answer: Answer) -> bool:
