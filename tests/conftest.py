@@ -69,6 +69,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_invariants",
     "test_judge",
     "test_kept_numbers",
+    "test_literature",
     "test_opened_chapters",
     "test_other_versions",
     "test_own_solver",

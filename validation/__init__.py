@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from validation.advice.across import advise_across as advise_across
     from validation.advice.advice import advise as advise
     from validation.advice.engines import translate as translate
     from validation.advice.response import response as response
@@ -43,6 +44,7 @@ _NAMES = {
     "Solution": "solution",
     "Solver": "solvers.contract",
     "advise": "advice.advice",
+    "advise_across": "advice.across",
     "damping": "advice.spectra",
     "get_solver": "solvers.registry",
     "load_scene": "scenes.scene",
@@ -50,7 +52,8 @@ _NAMES = {
     "solve": "solution",
     "translate": "advice.engines",
 }
-_OF_A_SCENE = ("advise", "damping", "response", "solve")  # they warn of values that were probably not meant
+# They warn of values that were probably not meant.
+_OF_A_SCENE = ("advise", "advise_across", "damping", "response", "solve")
 __all__ = sorted(_NAMES)
 
 

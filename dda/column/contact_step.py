@@ -19,6 +19,9 @@ contact feels its neighbours less than half as much as itself. Where all B <= 0,
 second solve on, and N contacts take N + 1 solves at most. If states changed `SWEEPS` times the number of contacts, one
 state is changed at a time (Murty 1974), which ends for every such matrix.
 
+Other schemes take one stage or two of the same form (`dda.scheme.stages`) with b = alpha (1 - af)/(1 - am) dt^2. Where
+the forces are balanced between the ends of a step, what the start gives of them is known before the iteration.
+
 What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments); the
 displacements follow from these, from the base upwards. So neither stiff springs nor long steps, in which weight alone
 would move a block by g dt^2, cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
@@ -36,6 +39,7 @@ from typing import Any, NamedTuple
 from dda.contact.dense import Vector, copy
 from dda.contact.kernel import FOUND, NONE, ROUNDING
 from dda.contact.unilateral import OPEN, SLIP, STICK
+from dda.scheme.stages import Stage
 from dda.stepping.driver import OVERFLOW
 from dda.stepping.energy import ALGORITHMIC, DAMPING, FRICTION, GIVEN, IMPULSE, SUMS, SWITCHING, bulk_loss
 
@@ -60,6 +64,7 @@ class BlockColumn(NamedTuple):
     mobility: Vector  # dt^2/m, acceleration of the mean by a force
     half_stretch: Vector  # that of the stretch by half the sum of the two forces; 0 where rigid
     relaxation: Vector  # that of the stretch by the stretch itself [-]
+    inertia_share: Vector  # (m/12) / (m/12 + b K), of its inertia in these two; 0 where rigid
 
 
 class JointLaws(NamedTuple):
@@ -78,11 +83,15 @@ class JointLaws(NamedTuple):
 
 
 class StepNumbers(NamedTuple):
-    """Numbers of the scheme and the base."""
+    """Numbers of a stage of the scheme and of the base."""
 
-    alpha: float
-    delta: float
-    gg: float
+    stage: Stage
+    begin: float  # where the stage begins, over the step
+    stages: int  # of the scheme
+    newmark: bool  # whether it is Newmark's
+    averages: bool  # whether its stage balances the forces between the ends of the step
+    share: float  # (1 - af)/(1 - am): weight of the forces at the end
+    lag: float  # by how much of a step velocities are older than displacements
     step: float  # dt [s]
     fall: float  # -g dt^2, acceleration by weight
     first: int  # number of the lowest contact
@@ -93,6 +102,14 @@ class StepNumbers(NamedTuple):
     dashpot: float  # 1 / (1 + delta dt z A_0/D_0): what the dashpot leaves of its force before the step
     dashpot_coupling: float  # by which N_1 changes the force N_0 of the dashpot
     limit: int  # solves that end the run; 0: none
+
+
+class ColumnStage(NamedTuple):
+    """The equations of a stage."""
+
+    numbers: StepNumbers
+    blocks: BlockColumn
+    joints: JointLaws
 
 
 class ColumnState(NamedTuple):
@@ -110,6 +127,15 @@ class ColumnState(NamedTuple):
     state: States  # (n,) OPEN, STICK or SLIP in its direction
 
 
+class StepStart(NamedTuple):
+    """Velocities and accelerations at the start of a step, (n,) each as in `ColumnState`."""
+
+    w: Vector
+    s: Vector
+    we: Vector
+    se: Vector
+
+
 class ColumnWork(NamedTuple):
     """Room for a step."""
 
@@ -118,10 +144,15 @@ class ColumnWork(NamedTuple):
     pivot: Vector
     right: Vector
     tried: States
+    start: StepStart  # of two stages
+    mean_0: Vector  # (n,) what forces and accelerations at the start leave of the accelerations of mean and stretch
+    stretch_0: Vector
+    speed: Vector  # (n,) dt v of mean and stretch at the time of the displacements
+    stretch_speed: Vector
 
 
 class DriveSteps(NamedTuple):
-    """What drives the column at t = 0 and every step, (steps + 1,) each."""
+    """What drives the column at t = 0 and at the end of every stage, (stages * steps + 1,) each."""
 
     displacement: Vector  # of the base [m]
     velocity: Vector  # of the base, or of the incident wave above a half-space [m/s]
@@ -269,13 +300,29 @@ def set_state(joints: JointLaws, j: int, state: int, force: Vector, tried: State
 
 
 def predict(
-    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, drive: DriveSteps, step: int, q: Vector
+    numbers: StepNumbers,
+    blocks: BlockColumn,
+    state: ColumnState,
+    start: StepStart,
+    drive: DriveSteps,
+    row: int,
+    work: ColumnWork,
 ) -> None:
-    """Bring the state to that of gg and the old accelerations, and write the openings without contact forces."""
-    alpha = numbers.alpha
-    gg = numbers.gg
-    early = 0.5 - alpha
-    late = 1.0 - numbers.delta
+    """Bring the state to what is known before the contact forces, and write the openings without these.
+
+    Parameters
+    ----------
+    start
+        The start of the step: the state itself where there is one stage.
+    row
+        Of the drive, at the end of the stage.
+    """
+    stage = numbers.stage
+    alpha = stage.alpha
+    gg = stage.gg
+    early = stage.e_0
+    late = stage.g_0
+    follows = numbers.begin > 0
     fall = alpha * numbers.fall
     w = state.w
     s = state.s
@@ -283,28 +330,71 @@ def predict(
     we = state.we
     se = state.se
     gap = state.gap
-    state.u[0] += gg * w[0] + early * s[0]
+    q = work.q
+    if numbers.averages:
+        fall = alpha * numbers.share * numbers.fall
+        known_accelerations(numbers, blocks, state, start, work)
+    state.u[0] += stage.d_u * (gg * start.w[0]) + early * start.s[0]
+    if follows:
+        state.u[0] += stage.d_g * w[0] + stage.e_g * s[0]
     relaxation = blocks.relaxation
     if numbers.welded == 1:
-        below = predict_welded(numbers, blocks, state, drive, step)
+        below = predict_welded(numbers, blocks, state, start, drive, row, work)
     else:
-        below = drive.displacement[step] - drive.displacement[step - 1]
+        below = drive.displacement[row] - drive.displacement[row - 1]
     for i in range(numbers.welded, len(w)):
-        moved = gg * w[i] + early * s[i]
-        w[i] = gg * w[i] + late * s[i]
+        speed = gg * start.w[i]
+        stretch_speed = gg * start.we[i]
+        moved = stage.d_u * speed + early * start.s[i]
+        half = stage.d_u * stretch_speed + early * start.se[i]
+        speed += late * start.s[i]
+        stretch_speed += late * start.se[i]
+        if follows:
+            moved += stage.d_g * w[i] + stage.e_g * s[i]
+            half += stage.d_g * we[i] + stage.e_g * se[i]
+            speed += stage.g_g * s[i]
+            stretch_speed += stage.g_g * se[i]
+        w[i] = speed
+        we[i] = stretch_speed
         moved += fall
-        half = gg * we[i] + early * se[i]
         e[i] += half
-        we[i] = gg * we[i] + late * se[i]
-        half = 0.5 * (half - alpha * relaxation[i] * e[i])
+        if numbers.averages:
+            moved += alpha * work.mean_0[i]
+            half = 0.5 * (half - alpha * (numbers.share * relaxation[i] * e[i] - work.stretch_0[i]))
+        else:
+            half = 0.5 * (half - alpha * relaxation[i] * e[i])
         q[i] = gap[i] + (moved - half - below)
         below = moved + half
 
 
-def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> None:
+def known_accelerations(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, start: StepStart, work: ColumnWork
+) -> None:
+    """Write what the start of a step gives of the accelerations at its end: (af R0 - am a0)/(1 - am), R0 by M."""
+    stage = numbers.stage
+    for i in range(len(state.w)):
+        above = state.force[i + 1]
+        below = state.force[i]
+        mean = numbers.fall + blocks.mobility[i] * (below - above)
+        work.mean_0[i] = (stage.af * mean - stage.am * start.s[i]) / (1.0 - stage.am)
+        work.stretch_0[i] = 0.0
+        if blocks.stiffness[i] > 0:
+            stretch = 0.0 - 12 * blocks.mobility[i] * (blocks.stiffness[i] * state.e[i] + (below + above) / 2)
+            known = (stage.af * stretch - stage.am * start.se[i]) / (1.0 - stage.am)
+            work.stretch_0[i] = blocks.inertia_share[i] * known
+    if numbers.welded == 1:  # of its top alone, as a force
+        mass = 1 / blocks.mobility[0]
+        top_change = start.s[0] + start.se[0] / 2
+        base_change = start.s[0] - start.se[0] / 2
+        force = numbers.fall * mass / 2 - state.force[1] - blocks.stiffness[0] * state.e[0]
+        inertia = mass / 3 * top_change + mass / 6 * base_change
+        work.mean_0[0] = (stage.af * force - stage.am * inertia) / (1.0 - stage.am)
+
+
+def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:
     """Write the state under the contact forces."""
-    alpha = numbers.alpha
-    delta = numbers.delta
+    alpha = numbers.stage.alpha
+    delta = numbers.stage.delta
     fall = numbers.fall
     w = state.w
     s = state.s
@@ -320,6 +410,9 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
         above = force[i + 1]
         a = fall + mobility[i] * (below - above)
         ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
+        if numbers.averages:
+            a = numbers.share * a + work.mean_0[i]
+            ae = numbers.share * ae + work.stretch_0[i]
         below = above
         w[i] += delta * a
         s[i] = a
@@ -329,44 +422,59 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> No
 
 
 def predict_welded(
-    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, drive: DriveSteps, step: int
+    numbers: StepNumbers,
+    blocks: BlockColumn,
+    state: ColumnState,
+    start: StepStart,
+    drive: DriveSteps,
+    row: int,
+    work: ColumnWork,
 ) -> float:
     """Predict the lowest block, whose foot is the base; return how far its top moves without contact forces.
 
     Displacement, velocity and acceleration of the foot are those of the base: from its displacement alone average
     acceleration would make accelerations that alternate, ever more, around the right ones.
     """
-    base = drive.displacement[step] - drive.displacement[step - 1]
-    base_speed = numbers.step * drive.velocity[step]
-    base_change = numbers.step * numbers.step * drive.acceleration[step]
-    top_speed = state.w[0] + state.we[0] / 2
-    top_change = state.s[0] + state.se[0] / 2
-    moved = numbers.gg * top_speed + (0.5 - numbers.alpha) * top_change
-    predicted_speed = numbers.gg * top_speed + (1.0 - numbers.delta) * top_change
+    stage = numbers.stage
+    base = drive.displacement[row] - drive.displacement[row - 1]
+    base_speed = numbers.step * drive.velocity[row]
+    base_change = numbers.step * numbers.step * drive.acceleration[row]
+    top_speed = stage.gg * (start.w[0] + start.we[0] / 2)
+    top_change = start.s[0] + start.se[0] / 2
+    moved = stage.d_u * top_speed + stage.e_0 * top_change
+    predicted_speed = top_speed + stage.g_0 * top_change
+    if numbers.begin > 0:
+        change_before = state.s[0] + state.se[0] / 2
+        moved += stage.d_g * (state.w[0] + state.we[0] / 2) + stage.e_g * change_before
+        predicted_speed += stage.g_g * change_before
     if blocks.stiffness[0] == 0:
-        moved = base - numbers.alpha * base_change
-        predicted_speed = base_speed - numbers.delta * base_change
+        moved = base - stage.alpha * base_change
+        predicted_speed = base_speed - stage.delta * base_change
     state.e[0] += moved - base
     state.w[0] = (base_speed + predicted_speed) / 2
     state.we[0] = predicted_speed - base_speed
     state.s[0] = base_change
-    return float(moved + numbers.alpha * top_acceleration(numbers, blocks, state, 0.0))
+    return float(moved + stage.alpha * top_acceleration(numbers, blocks, state, 0.0, work))
 
 
-def top_acceleration(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, above: float) -> float:
+def top_acceleration(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, above: float, work: ColumnWork
+) -> float:
     """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
     weight = numbers.fall / blocks.mobility[0] / 2
     force = weight - above - blocks.stiffness[0] * state.e[0]
+    if numbers.averages:
+        force = numbers.share * force + work.mean_0[0]
     return float(numbers.welded_mobility * force - numbers.welded_coupling * state.s[0])
 
 
-def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState) -> None:
+def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:
     """Write the lowest block, whose foot is the base, and the force of the base on it."""
     base_change = state.s[0]
-    a = top_acceleration(numbers, blocks, state, state.force[1])
-    state.e[0] += numbers.alpha * a
-    state.w[0] += numbers.delta * a / 2
-    state.we[0] += numbers.delta * a
+    a = top_acceleration(numbers, blocks, state, state.force[1], work)
+    state.e[0] += numbers.stage.alpha * a
+    state.w[0] += numbers.stage.delta * a / 2
+    state.we[0] += numbers.stage.delta * a
     if blocks.stiffness[0] == 0:
         state.e[0] = 0.0
         state.we[0] = 0.0
@@ -375,10 +483,15 @@ def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState
     state.force[0] = state.force[1] + (state.s[0] - numbers.fall) / blocks.mobility[0]
 
 
-def dashpot_force(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, velocity: float) -> float:
+def dashpot_force(
+    numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, velocity: float, work: ColumnWork
+) -> float:
     """Return the force of the half-space on a predicted column, z (2 v - velocity of the foot) [Pa]."""
     foot = state.w[0] - state.we[0] / 2
-    foot += numbers.delta * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
+    gained = numbers.fall + blocks.relaxation[0] * state.e[0] / 2
+    if numbers.averages:
+        gained = numbers.share * gained + work.mean_0[0] - work.stretch_0[0] / 2
+    foot += numbers.stage.delta * gained
     force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
     return force
 
@@ -392,7 +505,7 @@ def place_blocks(numbers: StepNumbers, joints: JointLaws, state: ColumnState, ba
         below = base
     else:
         lowest = 1
-        u[0] += numbers.alpha * state.s[0]
+        u[0] += numbers.stage.alpha * state.s[0]
         below = u[0] + e[0] / 2
     for i in range(lowest, len(u)):
         foot = below + (state.gap[i] - joints.gap[i]) + state.slip[i]
@@ -419,9 +532,8 @@ def accept_contacts(joints: JointLaws, first: int, state: ColumnState, work: Col
 
 
 def make_column_steps(
-    numbers: StepNumbers,
-    blocks: BlockColumn,
-    joints: JointLaws,
+    first: ColumnStage,
+    last: ColumnStage,
     state: ColumnState,
     before: ColumnState,
     work: ColumnWork,
@@ -437,8 +549,10 @@ def make_column_steps(
 
     Parameters
     ----------
+    first, last
+        The stages of the scheme, `last` alone where there is one.
     before
-        Room for the state before a step, used with energies only.
+        Room for the state before a stage, used with energies only.
     values, states
         (steps + 1, columns) what is observed, and (steps + 1, n) states of the contacts, or (0, n) if not asked for.
     solves, switches
@@ -446,48 +560,81 @@ def make_column_steps(
     energies
         (steps + 1, RECORDED), or no rows if they are not asked for.
     """
-    n = len(state.u)
-    first = numbers.first
-    force = state.force
-    write_step(numbers, blocks, joints, state, observed, 0, values, states, energies)
+    count = last.numbers.stages
+    start = StepStart(state.w, state.s, state.we, state.se) if count == 1 else work.start
+    write_step(last, state, work, observed, 0, values, states, energies)
     for step in range(1, len(values)):
-        if len(energies) > 0:
-            copy_state(numbers, state, before, step)
-        predict(numbers, blocks, state, drive, step, work.q)
-        force[n] = drive.pressure[step]
-        if first > 0 and numbers.impedance > 0:
-            force[0] = dashpot_force(numbers, blocks, state, drive.velocity[step])
-        for j in range(first, n):
-            work.tried[j] = state.state[j]
-        outcome, count = find_forces(joints, first, n, work.q, force, work, numbers.limit)
-        if outcome != FOUND:
-            solves[step] = count
-            return step - 1, outcome
-        if numbers.welded == 1:
-            correct_welded(numbers, blocks, state)
-        elif first > 0:
-            force[0] += numbers.dashpot_coupling * force[1]
-        correct(numbers, blocks, state)
-        solves[step] = count
-        switches[step] = accept_contacts(joints, first, state, work)
-        place_blocks(numbers, joints, state, drive.displacement[step])
         if len(energies) > 0:
             for k in range(SUMS):
                 energies[step, k] = energies[step - 1, k]
-            account(numbers, blocks, joints, before, state, drive, step, energies)
-        if not write_step(numbers, blocks, joints, state, observed, step, values, states, energies):
+            add_damping(last, state, energies, step)
+        if count > 1:
+            copy(state.w, start.w)
+            copy(state.s, start.s)
+            copy(state.we, start.we)
+            copy(state.se, start.se)
+        for k in range(count):
+            stage = last if k + 1 == count else first
+            row = count * (step - 1) + k + 1
+            if len(energies) > 0:
+                copy_state(stage.numbers, state, before, step)
+            outcome = make_stage(stage, state, start, work, drive, row, step, solves, switches)
+            if outcome != FOUND:
+                return step - 1, outcome
+            if len(energies) > 0:
+                account(stage, before, state, drive, row, step, energies)
+        if not write_step(last, state, work, observed, step, values, states, energies):
             return step - 1, OVERFLOW
+        if len(energies) > 0 and not last.numbers.newmark:
+            close_balance(energies, step)
     return len(values) - 1, FOUND
+
+
+def make_stage(
+    stage: ColumnStage,
+    state: ColumnState,
+    start: StepStart,
+    work: ColumnWork,
+    drive: DriveSteps,
+    row: int,
+    step: int,
+    solves: Any,
+    switches: Any,
+) -> int:
+    """Bring the state to the end of a stage; return the outcome."""
+    numbers = stage.numbers
+    blocks = stage.blocks
+    joints = stage.joints
+    n = len(state.u)
+    first = numbers.first
+    force = state.force
+    predict(numbers, blocks, state, start, drive, row, work)
+    force[n] = drive.pressure[row]
+    if first > 0 and numbers.impedance > 0:
+        force[0] = dashpot_force(numbers, blocks, state, drive.velocity[row], work)
+    for j in range(first, n):
+        work.tried[j] = state.state[j]
+    outcome, count = find_forces(joints, first, n, work.q, force, work, numbers.limit)
+    solves[step] += count
+    if outcome != FOUND:
+        return outcome
+    if numbers.welded == 1:
+        correct_welded(numbers, blocks, state, work)
+    elif first > 0:
+        force[0] += numbers.dashpot_coupling * force[1]
+    correct(numbers, blocks, state, work)
+    switches[step] += accept_contacts(joints, first, state, work)
+    place_blocks(numbers, joints, state, drive.displacement[row])
+    return FOUND
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
 def write_step(
-    numbers: StepNumbers,
-    blocks: BlockColumn,
-    joints: JointLaws,
+    stage: ColumnStage,
     state: ColumnState,
+    work: ColumnWork,
     observed: Observed,
     step: int,
     values: Rows,
@@ -496,6 +643,16 @@ def write_step(
 ) -> bool:
     """Write what is kept of a state; tell whether it is finite."""
     n = len(state.u)
+    joints = stage.joints
+    w = state.w
+    we = state.we
+    if stage.numbers.lag != 0:
+        w = work.speed
+        we = work.stretch_speed
+        discount = stage.numbers.stage.gg if step == 0 else 1.0  # of what `late_momentum` made of those at t = 0
+        for i in range(n):
+            w[i] = discount * state.w[i] + stage.numbers.lag * state.s[i]
+            we[i] = discount * state.we[i] + stage.numbers.lag * state.se[i]
     for k in range(len(observed.kind)):
         kind = observed.kind[k]
         place = observed.place[k]
@@ -503,7 +660,7 @@ def write_step(
         if kind == MOTION:
             value = state.u[place] + weight * state.e[place]
         elif kind == SPEED:
-            value = (state.w[place] + weight * state.we[place]) / numbers.step
+            value = (w[place] + weight * we[place]) / stage.numbers.step
         elif kind == STRAIN:
             value = weight * state.e[place]
         elif kind == FORCES:  # that of one contact, or the mean of both of a rigid block
@@ -517,7 +674,7 @@ def write_step(
         for j in range(n):
             states[step, j] = state.state[j]
     if len(energies) > 0:
-        store(numbers, blocks, joints, state, energies, step)
+        store(stage, state, w, we, energies, step)
     total = 0.0
     for i in range(n):
         total += state.u[i]
@@ -532,7 +689,7 @@ def copy_state(numbers: StepNumbers, source: ColumnState, target: ColumnState, s
     copy(source.slip, target.slip)
     copy(source.force, target.force)
     copy(source.state, target.state)
-    if step == 1 or numbers.alpha != numbers.delta / 2:
+    if step == 1 or numbers.stage.alpha != numbers.stage.delta / 2:
         copy(source.s, target.s)
         copy(source.se, target.se)
 
@@ -545,10 +702,11 @@ def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:
     return total / 2
 
 
-def store(
-    numbers: StepNumbers, blocks: BlockColumn, joints: JointLaws, state: ColumnState, energies: Rows, step: int
-) -> None:
+def store(stage: ColumnStage, state: ColumnState, w: Vector, we: Vector, energies: Rows, step: int) -> None:
     """Write kinetic energy, strain energy and that of the springs [J/m^2], momentum, and the extremes of contacts."""
+    numbers = stage.numbers
+    blocks = stage.blocks
+    joints = stage.joints
     strain = 0.0
     springs = 0.0
     momentum = 0.0
@@ -561,7 +719,6 @@ def store(
     stiffness = blocks.stiffness
     compliance = joints.compliance
     opens = joints.opens
-    w = state.w
     e = state.e
     for i in range(len(w)):
         strain += stiffness[i] * e[i] * e[i]
@@ -580,7 +737,7 @@ def store(
                 open_contacts += 1
         elif abs(state.slip[j]) > furthest:
             furthest = abs(state.slip[j])
-    energies[step, KINETIC] = kinetic_of(blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
+    energies[step, KINETIC] = kinetic_of(blocks.mass, w, we) / (numbers.step * numbers.step)
     energies[step, STRAINED] = strain / 2
     energies[step, SPRINGS] = springs / 2
     energies[step, MOMENTUM] = momentum / numbers.step
@@ -590,27 +747,51 @@ def store(
     energies[step, FURTHEST] = furthest
 
 
+def add_damping(stage: ColumnStage, state: ColumnState, energies: Rows, step: int) -> None:
+    """Add what the discount takes of the velocities that a step starts with [J/m^2]."""
+    numbers = stage.numbers
+    gg = numbers.stage.gg
+    kinetic = energies[step - 1, KINETIC]
+    if numbers.lag != 0 and step == 1:
+        return
+    if numbers.lag != 0:
+        kinetic = kinetic_of(stage.blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
+    energies[step, DAMPING] += (1 - gg * gg) * kinetic
+
+
+def close_balance(energies: Rows, step: int) -> None:
+    """Write what the algorithm loses of a scheme without a closed form: what the others leave of the energy."""
+    now = energies[step]
+    last = energies[step - 1]
+    released = (now[GIVEN] - last[GIVEN]) - (now[DAMPING] - last[DAMPING])
+    released -= (now[SWITCHING] - last[SWITCHING]) + (now[FRICTION] - last[FRICTION])
+    released += (last[KINETIC] - now[KINETIC]) + (last[STRAINED] - now[STRAINED]) + (last[SPRINGS] - now[SPRINGS])
+    now[ALGORITHMIC] = last[ALGORITHMIC] + released
+
+
 def account(
-    numbers: StepNumbers,
-    blocks: BlockColumn,
-    joints: JointLaws,
+    stage: ColumnStage,
     before: ColumnState,
     after: ColumnState,
     drive: DriveSteps,
+    drive_row: int,
     step: int,
     energies: Rows,
 ) -> None:
-    """Add what a step loses, and what weight, pressure, base and half-space put in [J/m^2]; see `dda.stepping.energy`.
+    """Add what a stage loses, and what weight, pressure, base and half-space put in [J/m^2]; see `dda.stepping.energy`.
 
-    All forces act with the weights 1 - delta and delta at the two ends of the step. A base that moves with a block
-    welded to it does not move as Newmark's formulas do: its work is as accurate as the scheme.
+    All forces act with the weights 1 - delta and delta at the two ends of Newmark's step, with one half at those of
+    another scheme's stage, whose algorithmic loss `close_balance` writes. A base that moves with a block welded to it
+    does not move as Newmark's formulas do: its work is as accurate as the scheme.
     """
+    numbers = stage.numbers
+    blocks = stage.blocks
+    joints = stage.joints
     n = len(after.u)
     first = numbers.first
-    late = numbers.delta
+    late = numbers.stage.delta if numbers.newmark else 0.5
     dt2 = numbers.step * numbers.step
     row = energies[step]
-    row[DAMPING] += (1 - numbers.gg * numbers.gg) * energies[step - 1, KINETIC]
     stiff = 0.0
     work = 0.0
     stiffness = blocks.stiffness
@@ -625,13 +806,13 @@ def account(
         work += mass[i] * (u1[i] - u0[i])
     kinetic = 0.0
     change = 0.0
-    if numbers.alpha != late / 2:
+    if numbers.newmark and numbers.stage.alpha != late / 2:
         kinetic = kinetic_of(blocks.mass, after.s, after.se) - kinetic_of(blocks.mass, before.s, before.se)
         for i in range(n):
             faster = after.s[i] - before.s[i]
             wider = after.se[i] - before.se[i]
             change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
-    row[ALGORITHMIC] += bulk_loss(numbers.alpha, late, 1 / dt2, stiff, kinetic, change)
+    row[ALGORITHMIC] += bulk_loss(numbers.stage.alpha, late, 1 / dt2, stiff, kinetic, change)
     switching = 0.0
     keeping = 0.0
     dissipated = 0.0
@@ -652,13 +833,13 @@ def account(
     row[FRICTION] += dissipated
     foot = after.u[0] - before.u[0] - (after.e[0] - before.e[0]) / 2
     if first == 0:
-        foot = drive.displacement[step] - drive.displacement[step - 1]
+        foot = drive.displacement[drive_row] - drive.displacement[drive_row - 1]
     top = after.u[n - 1] - before.u[n - 1] + (after.e[n - 1] - before.e[n - 1]) / 2
     base_force = (1 - late) * before.force[0] + late * after.force[0]
     top_force = (1 - late) * before.force[n] + late * after.force[n]
     row[GIVEN] += numbers.fall / dt2 * work + base_force * foot - top_force * top
-    row[IMPULSE] += numbers.step * base_force
-    if step == 1:  # A0 may be any, later accelerations follow from the forces
+    row[IMPULSE] += numbers.step * (numbers.stage.end - numbers.begin) * base_force
+    if step == 1 and numbers.newmark:  # A0 may be any, later accelerations follow from the forces
         row[ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)
 
 

@@ -26,12 +26,14 @@ from dda.column.contact_step import (
     STRAIN,
     STRAINED,
     BlockColumn,
+    ColumnStage,
     ColumnState,
     ColumnWork,
     DriveSteps,
     JointLaws,
     Observed,
     StepNumbers,
+    StepStart,
     find_forces,
     make_column_steps,
 )
@@ -42,7 +44,7 @@ from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.one_block.solution import Result, times_of
-from dda.scheme.newmark import Scheme
+from dda.scheme.newmark import Scheme, implicit_weight, late_momentum, plain_stage
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import OUTCOMES
 from dda.stepping.energy import ENERGIES, GIVEN, SUMS
@@ -149,10 +151,15 @@ def solve_contact_column(
     options = options or ColumnOptions()
     check_contact_column(column, scheme, options)
     began = perf_counter()
-    instants = len(drive.pressure)
+    stages = len(scheme.stages)
+    instants = 1 + (len(drive.pressure) - 1) // stages
     n = len(column.heights)
     observed = observed_columns(column, columns, heights)
-    numbers, blocks, joints = step_equations(column, scheme, options.solve_limit, options.bonded)
+    equations = [
+        ColumnStage(*step_equations(column, scheme, options.solve_limit, options.bonded, place))
+        for place in range(stages)
+    ]
+    numbers, blocks, joints = equations[-1]
     state = start_state(column, scheme, drive, options.settled, numbers, blocks, joints)
     values = np.zeros((instants, len(columns)))
     states = np.zeros((instants if options.states else 0, n), dtype=np.int8)
@@ -160,13 +167,14 @@ def solve_contact_column(
     record = np.zeros((instants if options.energies else 0, RECORDED))
     parts = (drive.displacement, drive.velocity, drive.acceleration, drive.pressure)
     forcing = DriveSteps(*(np.array(part, dtype=float) for part in parts))
+    seconds = stages * instants * (PLAIN_STEP + n * PLAIN_BLOCK)
     ready = perf_counter()
     (reached, ended), _, how = run_loop(
         make_column_steps,
         (),
-        (numbers, blocks, joints, state, _room_for_state(n), _room(n), forcing, observed),
+        (equations[0], equations[-1], state, _room_for_state(n), _room(n), forcing, observed),
         (values, states, solves, switches, record),
-        instants * (PLAIN_STEP + n * PLAIN_BLOCK) * (PLAIN_ENERGIES if options.energies else 1.0) * options.repeats,
+        seconds * (PLAIN_ENERGIES if options.energies else 1.0) * options.repeats,
     )
     rows = slice(1, reached + 1)
     early = () if ended == FOUND else (f"{COLUMN_OUTCOMES[ended]} at step {reached + 1}",)
@@ -194,7 +202,10 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
         values = f"{scheme.mass_damping:g}, {scheme.stiffness_damping:g}"
         raise ValueError(f"mass_damping, stiffness_damping: must be 0 where a column has contacts, got {values}")
     lowest = int(not column.rests_on_base or column.contacts[0] is None)
-    if scheme.alpha == 0 and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
+    if scheme.lag and (column.impedance or (column.rests_on_base and column.contacts[0] is None)):
+        below = "half-space" if column.impedance else "base welded to the lowest block"
+        raise ValueError(f"scheme: {scheme.name} takes contacts on a base or none, got a {below}")
+    if scheme.explicit and any(math.isinf(spring.stiffness) for spring in _springs_from(column, lowest)):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
     if options.settled and not (column.law == "unilateral" and column.rests_on_base):
         base = "such a base" if column.rests_on_base else "another base"
@@ -213,9 +224,12 @@ def _springs_from(column: Column, first: int) -> list[Spring]:
 
 
 def step_equations(
-    column: Column, scheme: Scheme, solve_limit: int | None = None, bonded: bool = False
+    column: Column, scheme: Scheme, solve_limit: int | None = None, bonded: bool = False, place: int = -1
 ) -> tuple[StepNumbers, BlockColumn, JointLaws]:
-    """Return the equations of a step as numbers."""
+    """Return the equations of a stage as numbers, of the last one unless its `place` says otherwise."""
+    stage = scheme.stages[place]
+    weight = implicit_weight(stage)
+    share = (1 - stage.af) / (1 - stage.am)
     welded = column.rests_on_base and column.contacts[0] is None
     first = 0 if column.rests_on_base and not welded else 1
     n = len(column.heights)
@@ -224,15 +238,15 @@ def step_equations(
     rigid = np.isinf(column.moduli)
     stiffness = np.where(rigid, 0.0, column.moduli / column.heights)
     # D as a product keeps the digits that A^2 - B^2 loses in long steps
-    A = mass / 3 + scheme.alpha * dt2 * stiffness
-    B = mass / 6 - scheme.alpha * dt2 * stiffness
-    D = mass / 2 * (mass / 6 + 2 * scheme.alpha * dt2 * stiffness)
+    A = mass / 3 + weight * dt2 * stiffness
+    B = mass / 6 - weight * dt2 * stiffness
+    D = mass / 2 * (mass / 6 + 2 * weight * dt2 * stiffness)
     own = dt2 * np.where(rigid, 1 / mass, A / D)
     across = dt2 * np.where(rigid, -1 / mass, B / D)
-    stretch = np.where(rigid, 0.0, dt2 / (mass / 12 + scheme.alpha * dt2 * stiffness))
+    stretch = np.where(rigid, 0.0, dt2 / (mass / 12 + weight * dt2 * stiffness))
     impedance = (column.impedance or 0.0) / scheme.step
-    dashpot = 1 / (1 + scheme.delta * impedance * own[0])
-    dashpot_coupling = -scheme.delta * impedance * across[0] * dashpot
+    dashpot = 1 / (1 + share * stage.delta * impedance * own[0])
+    dashpot_coupling = -share * stage.delta * impedance * across[0] * dashpot
     diagonal = own.copy()
     diagonal[1:] += own[:-1]
     top = 0.0 if rigid[0] else dt2 / A[0]  # of the lowest block where its foot is the base
@@ -251,19 +265,23 @@ def step_equations(
     if column.law == "unilateral" and not bonded:
         opens[lowest:] = [face is not None for face in column.contacts[lowest:]]
     joints = JointLaws(
-        diagonal=scheme.alpha * diagonal + compliance,
-        coupling=scheme.alpha * coupling,
+        diagonal=weight * diagonal + compliance,
+        coupling=weight * coupling,
         compliance=compliance,
         lower=np.where(opens == 1, 0.0, -upper),
         upper=upper,
         opens=opens,
         gap=gaps,
     )
-    blocks = BlockColumn(mass, stiffness, dt2 / mass, stretch / 2, stretch * stiffness)
+    blocks = BlockColumn(mass, stiffness, dt2 / mass, stretch / 2, stretch * stiffness, stretch * mass / 12 / dt2)
     numbers = StepNumbers(
-        alpha=scheme.alpha,
-        delta=scheme.delta,
-        gg=scheme.gg,
+        stage=plain_stage(stage)._replace(gg=scheme.gg),
+        begin=0.0 if stage is scheme.stages[0] else float(scheme.stages[0].end),
+        stages=len(scheme.stages),
+        newmark=scheme.table is None,
+        averages=scheme.averages,
+        share=float(share),
+        lag=float(scheme.lag),
         step=scheme.step,
         fall=-column.gravity * dt2,
         first=first,
@@ -280,7 +298,7 @@ def step_equations(
 
 def _room(n: int) -> ColumnWork:
     room: list[Any] = [*zeros(n, n, n, n), np.zeros(n, dtype=np.int64)]
-    return ColumnWork(*room)
+    return ColumnWork(*room, StepStart(*zeros(n, n, n, n)), *zeros(n, n, n, n))
 
 
 def _room_for_state(n: int) -> ColumnState:
@@ -335,6 +353,8 @@ def start_state(
         state.state[unknown] = states[unknown]
     if numbers.welded:
         _move_foot(drive, state, numbers, blocks)
+    state.w[:] = late_momentum(scheme, state.w, state.s)
+    state.we[:] = late_momentum(scheme, state.we, state.se)
     return state
 
 

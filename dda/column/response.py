@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from dda.column.column import Column
 from dda.column.equations import WIDTH, equations
 from dda.column.stepping import DISPLACEMENT, PRESSURE, Stepper, observers
-from dda.scheme.harmonic import Complex, chosen
+from dda.scheme.harmonic import Complex, acceleration_share, chosen
 from dda.scheme.newmark import Scheme
 
 Driven = Literal["base", "top"]
@@ -50,6 +50,7 @@ def column_response(
     """
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
     W2, S = chosen(scheme, frequencies, exact)
+    accelerations = W2 if exact or not scheme.averages else W2 * acceleration_share(scheme, w)
     system = equations(column)
     step = Stepper(system, scheme)
     rows = observers(system, columns, ())
@@ -58,9 +59,9 @@ def column_response(
     drive[:, 3] = at == "top"
     driven = drive @ step.told(rows).T
     by_D, by_V, by_A = (matrix[:, step.first :] for matrix in (rows.D, rows.V, rows.A))
-    for i, (w2, s) in enumerate(zip(W2, S, strict=True)):
+    for i, (w2, s, a) in enumerate(zip(W2, S, accelerations, strict=True)):
         D = _solved(step.K.rows + s * step.C.rows - w2 * step.M.rows, step.push @ drive[i])
-        driven[i] += by_D @ D + s * (by_V @ D) - w2 * (by_A @ D)
+        driven[i] += by_D @ D + s * (by_V @ D) - a * (by_A @ D)
     return dict(zip(columns, driven.T, strict=True))
 
 

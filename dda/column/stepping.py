@@ -1,4 +1,4 @@
-r"""Histories of a column by the Newmark scheme with a dashpot.
+r"""Histories of a column with a dashpot.
 
 One step from (D, V, A) is the scheme's (6) and (7), solved for the acceleration:
 
@@ -6,8 +6,9 @@ One step from (D, V, A) is the scheme's (6) and (7), solved for the acceleration
     (M + delta dt C + alpha dt^2 K) A1 = F1 - C V* - K D*
     D1 = D* + alpha dt^2 A1,                        V1 = V* + delta dt A1
 
-The matrix has three diagonals below and on the main one and is factorised once. Nothing is divided by alpha, and
-alpha = 0 is the same code.
+and of other schemes a stage or two of the same form (`dda.scheme.stages`), whose forces, those of the dashpot too, are
+balanced between the ends of the step where the scheme says so. The matrix has three diagonals below and on the main one
+and is factorised once. Nothing is divided by alpha, and alpha = 0 is the same code.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from dda.column.equations import WIDTH, Bands, Equations, equations
 from dda.model.arrays import Array
 from dda.one_block.solution import Result, bound_overflow, times_of
 from dda.scheme.newmark import Scheme, correctors, dashpot_matrix, predictors
+from dda.scheme.stages import Stage
 
 # of the top [m], on the base [Pa]
 DISPLACEMENT = "displacement"
@@ -32,6 +34,8 @@ PRESSURE = "contact_pressure"
 @dataclass(frozen=True, eq=False)
 class Drive:
     """What drives a column, at t = 0 and at every step, each (steps + 1,).
+
+    Of a scheme of several stages it holds the end of each stage, `dda.Scheme.instants`.
 
     The base's motion is that of the base itself or, above a half-space, the particle motion of the wave that comes up.
 
@@ -104,8 +108,8 @@ def solve_column(
         columns=dict(zip(columns, histories, strict=True)),
         unknowns=stepper.M.rows.shape[1],
         nonzeros=int(np.count_nonzero(stepper.S.rows)),
-        factorisations=1,
-        solves=steps,
+        factorisations=len(stepper.solvers),
+        solves=steps * len(stepper.solvers),
         notes=overflow,
     )
 
@@ -158,6 +162,8 @@ class Stepper:
 
     def __init__(self, system: Equations, scheme: Scheme) -> None:
         """Form the matrices of the free unknowns and factorise the one of the step."""
+        if scheme.lag and system.dashpot:
+            raise ValueError(f"impedance: a half-space does not go with {scheme.name}, got {system.dashpot!r}")
         self.system = system
         self.scheme = scheme
         first = int(system.told)
@@ -166,8 +172,9 @@ class Stepper:
         self.K = Bands(system.K.rows[:, first:])
         self.C = Bands.zeros(system.size - first)
         self.C.add(0, 0, system.dashpot)
-        self.S = Bands(dashpot_matrix(scheme, self.M.rows, self.C.rows, self.K.rows))
-        self.solve = _factorised(self.S)
+        matrices = [Bands(dashpot_matrix(stage, self.M.rows, self.C.rows, self.K.rows)) for stage in scheme.stages]
+        self.S = matrices[-1]
+        self.solvers = [_factorised(matrix) for matrix in matrices]
         base = np.eye(1, system.size)[0]
         top = system.row(len(system.lower) - 1, 0.0, -1.0)
         dashed = 2 * system.dashpot * base
@@ -177,22 +184,47 @@ class Stepper:
 
     def run(self, drive: Drive, rows: Observers) -> Array:
         """Return the observed rows at every step, (rows, steps)."""
-        s = self.scheme
         push = self.push
         parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
         by_state = np.hstack([matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A)])
+        M = _product(self.M)
         K = _product(self.K)
         C = _product(self.C)
+        stages = tuple(zip(self.scheme.stages, self.solvers, strict=True))
         D = np.zeros(len(push))
-        V = np.zeros_like(D)
         A = self._start(push @ parts[0])
-        observed_values = np.empty((len(by_state), len(parts) - 1))
-        for n, part in enumerate(parts[1:]):
-            D, V = predictors(s, D, V, A)
-            A = self.solve(push @ part - C(V) - K(D))
-            D, V = correctors(s, D, V, A)
-            observed_values[:, n] = by_state @ np.concatenate((D, V, A))
-        return observed_values + self.told(rows) @ parts[1:].T
+        V = np.zeros_like(D)
+        if self.scheme.lag:
+            V = V - self.scheme.lag / self.scheme.gg * self.scheme.step * A
+        force = push @ parts[0]
+        ends = parts[len(stages) :: len(stages)]
+        observed_values = np.empty((len(by_state), len(ends)))
+        coming = iter(parts[1:])
+        for n in range(len(ends)):
+            start_V = V
+            start_A = A
+            start_force = force
+            for stage, solve in stages:
+                before_V = V
+                before_A = A
+                D, V = predictors(stage, D, start_V, start_A)
+                if stage is not self.scheme.stages[0]:
+                    D, V = add_stage_before(stage, D, V, before_V, before_A)
+                load = push @ next(coming)
+                force = load - C(V) - K(D)
+                if self.scheme.averages:
+                    force = (1 - stage.af) * force + stage.af * start_force - stage.am * M(start_A)
+                    A = solve(force) / (1 - stage.am)
+                else:
+                    A = solve(force)
+                D, V = correctors(stage, D, V, A)
+                if self.scheme.averages:
+                    force = load - C(V) - K(D)
+            if self.scheme.lag:
+                observed_values[:, n] = by_state @ np.concatenate((D, V + self.scheme.lag * self.scheme.step * A, A))
+            else:
+                observed_values[:, n] = by_state @ np.concatenate((D, V, A))
+        return observed_values + self.told(rows) @ ends.T
 
     def told(self, rows: Observers) -> Array:
         """Return the rows of the drive, with what the told base adds by its displacement and acceleration."""
@@ -208,6 +240,12 @@ class Stepper:
         if not self.system.told and 0 in self.system.openings:
             raise ValueError("start: must be 'zero' where a spring lies between half-space and column")
         return _factorised(self.M)(F)
+
+
+def add_stage_before(stage: Scheme | Stage, D: Array, V: Array, V_g: Array, A_g: Array) -> tuple[Array, Array]:
+    """Return predicted D and V with what the end of the stage before, (V_g, A_g), adds."""
+    dt = stage.step
+    return D + dt * stage.d_g * V_g + dt**2 * stage.e_g * A_g, V + dt * stage.g_g * A_g
 
 
 def _product(matrix: Bands) -> Callable[[Array], Array]:

@@ -47,7 +47,12 @@ Flexible = Any  # `Flexibility`, or what has its fields
 FOUND = 0
 NONE = 1
 SEVERAL = 2
-FAILURES = {NONE: "no consistent contact state", SEVERAL: "several consistent contact states"}
+UNREACHED = 5  # beside the outcomes of `dda.stepping.driver` and of columns; no shorter step helps
+FAILURES = {
+    NONE: "no consistent contact state",
+    SEVERAL: "several consistent contact states",
+    UNREACHED: "pass limit exceeded",
+}
 
 ROUNDING = 1e-12  # of the limit, by which |T| of a sticking contact may exceed it
 CROSSING_STEPS = 60  # of Newton's method, which takes about five
@@ -64,6 +69,7 @@ class Law(NamedTuple):
     closing: float  # gap below which an open contact closes [m]
     pull: float  # greatest tension of a closed contact [N]
     limit: int  # solves of the open-close iteration before the states are searched
+    damping: float = 0.0  # c of a dashpot beside the spring, clipped [N s/m]
 
 
 class ShearLaw(NamedTuple):
@@ -137,7 +143,7 @@ class Work(NamedTuple):
 
 def law_of(law: Unilateral, limit: int) -> Law:
     """Return the numbers of a law across the base; `limit` bounds the solves before the states are searched."""
-    return Law(compliance=law.compliance, closing=-law.band[0], pull=law.pull, limit=limit)
+    return Law(law.compliance, -law.band[0], law.pull, limit, law.damping)
 
 
 def shear_law_of(law: Unilateral) -> Shear:
@@ -218,12 +224,19 @@ def find_contacts(
 
 def spring_energy(law: Law, shear_law: Shear, contacts: Contacts, i: int) -> float:
     """Return the energy of the springs of a contact [J]."""
-    N = contacts.normal[i]
+    N = spring_force(law, contacts, i)
     energy = N * N * law.compliance
     if shear_law is not None:
         T = contacts.shear[i]
         energy += T * T * shear_law.softness
     return float(energy / 2)
+
+
+def spring_force(law: Law, contacts: Contacts, i: int) -> float:
+    """Return the normal force of the spring of a contact, without that of a dashpot beside it [N]."""
+    if law.damping > 0:
+        return max(0.0 - contacts.gap[i], 0.0) / law.compliance
+    return float(contacts.normal[i])
 
 
 def stays_closed(law: Law, N: float) -> bool:

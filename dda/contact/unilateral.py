@@ -54,6 +54,7 @@ class Unilateral:
     friction: float | None = None  # tan(phi) [-]; None is glued
     cohesion: float = 0.0  # c of each closed corner, beside the friction [N]
     rules: str = CONSISTENT  # or "lagged": friction of the iteration before, as common programs have it
+    damping: float = 0.0  # c of a dashpot beside each spring, clipped: N >= 0 (`dda.contact.dashpot`) [N s/m]
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -64,7 +65,9 @@ class Unilateral:
             raise ValueError(f"band: must be two finite lengths that are not negative, got {self.band!r}")
         if math.isinf(self.stiffness) and self.band[1] > 0:
             raise ValueError(f"band: a rigid stop must open at once (band[1] = 0), got {self.band!r}")
-        check_not_negative(cohesion=self.cohesion)
+        check_not_negative(cohesion=self.cohesion, damping=self.damping)
+        if self.damping:
+            self._check_dashpot()
         if self.rules not in (CONSISTENT, LAGGED):
             raise ValueError(f"rules: must be {CONSISTENT} or {LAGGED}, got {self.rules!r}")
         if self.friction is None:
@@ -76,6 +79,16 @@ class Unilateral:
             raise ValueError("shear: must be positive with friction, got 0")
         if self.band[1] > 0 and self.rules == CONSISTENT:
             raise ValueError(f"band: a corner that pulls rubs under {LAGGED} rules only, got {self.band!r}")
+
+    def _check_dashpot(self) -> None:
+        """Check what a dashpot goes with."""
+        if math.isinf(self.stiffness):
+            raise ValueError("damping: a dashpot needs a finite stiffness beside it, got stiffness = inf")
+        if self.friction is not None or self.cohesion or self.rules != CONSISTENT:
+            friction = f"friction = {self.friction!r}, cohesion = {self.cohesion!r}, rules = {self.rules!r}"
+            raise ValueError(f"damping: a dashpot goes with frictionless contact only, got {friction}")
+        if any(self.band):
+            raise ValueError(f"damping: a dashpot goes with no dead band, got band = {self.band!r}")
 
     @property
     def compliance(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -68,6 +68,9 @@ class ContactResult(Result):
     softness: float  # 1/p_s, 0 without springs in shear [m/N]
     parts: Mapping[str, Callable[[], Any]]  # makes the displacement along the base and the velocities
     balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
+    _: KW_ONLY
+    impulses: Array | None = None  # P of the rule "impact", (contacts, steps) [N s]
+    step_passes: NDArray[np.int_] | None = None  # of the augmented Lagrangian in each step
 
     normal = of_contacts("normal", "N, away from the base, (contacts, steps) [N].")
     shear = of_contacts("shear", "T, along the base from M to N, (contacts, steps) [N].", -1.0)

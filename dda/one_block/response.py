@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dda.model.arrays import Array
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.solution import check_request
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme.harmonic import Complex, answering
+from dda.scheme.harmonic import Complex, answering, staged_amplitude
 from dda.scheme.newmark import Scheme
 
 _OWN = {"horizontal_displacement": 0, "displacement": 1}  # what a moving base adds to the columns
@@ -42,13 +43,28 @@ def response(
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
     check_request(1, columns)
-    W2, factor = answering(scheme, frequencies, exact)
     modal = modal_form(model.gap_form.reduced())
     rows = np.array([model.gap_form.reduced().observers[name] @ modal.shapes for name in columns])
+    if len(scheme.stages) > 1 and not exact:
+        omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+        loads = scheme.step**2 * modal.load * (model.load_size if along is None else 0.0)
+        carried = np.zeros_like(loads) if along is None else modal.translation @ along
+        squares = (scheme.step * modal.frequencies) ** 2
+        parts = zip(squares.tolist(), loads.tolist(), carried.tolist(), strict=True)
+        amplitudes = rows @ np.array([staged_amplitude(scheme, omega, *part) for part in parts])
+        return dict(zip(columns, amplitudes + _of_base(columns, along), strict=True))
+    W2, factor = answering(scheme, frequencies, exact)
     apart = modal.frequencies[:, None] ** 2 - W2
     if along is None:
         amplitudes = rows @ ((modal.load * model.load_size)[:, None] / apart) * factor
     else:
         amplitudes = rows @ ((modal.translation @ along)[:, None] * (W2 / apart))
-        amplitudes += np.array([along[_OWN[name]] if name in _OWN else 0.0 for name in columns])[:, None]
+        amplitudes += _of_base(columns, along)
     return dict(zip(columns, amplitudes, strict=True))
+
+
+def _of_base(columns: Sequence[str], along: tuple[float, float] | None) -> Array:
+    """Return what a moving base adds to the columns, (columns, 1)."""
+    if along is None:
+        return np.zeros((len(columns), 1))
+    return np.array([along[_OWN[name]] if name in _OWN else 0.0 for name in columns])[:, None]

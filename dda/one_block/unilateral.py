@@ -17,26 +17,34 @@ import numpy as np
 
 from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
-from dda.model.checks import check_count, check_finite
+from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
+from dda.one_block.impact_step import make_impact_steps
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
 from dda.one_block.unilateral_step import (
+    AUGMENTED,
     CONSERVING,
+    IMPACT,
+    IMPLICIT,
     NEWMARK,
     RULES,
     block_equations,
+    make_augmented_steps,
     make_conserving_steps,
+    make_damped_steps,
     make_steps,
     start_state,
 )
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
-from dda.stepping.energy import ENERGIES, GIVEN, spring_energies
+from dda.stepping.energy import CONTACT, DASHPOT, ENERGIES, GIVEN, spring_energies
+from dda.stepping.energy import IMPACT as IMPACT_LOSS
 
+LOOPS = {CONSERVING: make_conserving_steps, IMPACT: make_impact_steps, AUGMENTED: make_augmented_steps}
 SHEAR_COMPILE_TIME = 2.5  # with springs in shear, over that of contacts which slide freely
 PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
@@ -70,22 +78,44 @@ class UnilateralModel(LoadedBlock):
 class UnilateralOptions:
     """How the contacts are found and what is kept.
 
+    The rules, beside "newmark" with a penalty spring, a dashpot beside it, or a rigid stop:
+
+    - "implicit": the contact force of the end alone (Kane and others 1999), the block by average acceleration;
+    - "energy-conserving": the force that does the work of its spring (Armero and Petocz 1998), the block likewise;
+    - "impact": impulses with a coefficient of restitution on a rigid stop (Moreau and Jean), by the theta method, which
+      is Newmark's (theta^2, 2 theta - 1/2). e is exact at every step; what a landing leaves of penetration, up to V dt,
+      stays;
+    - "augmented": passes of an augmented Lagrangian (Uzawa) over springs of the given stiffness until no contact is
+      pressed deeper than `penetration`. They lead to the rigid stop, whose rebound is arbitrary at every step.
+
     Raises
     ------
     ValueError
         If a value is out of its range.
     """
 
-    rule: str = NEWMARK  # or "implicit", "energy-conserving": the block by average acceleration, contact of its own
+    rule: str = NEWMARK  # among RULES
     solve_limit: int = 6  # solves of the open-close iteration before all states are tried
     cut: float = 0.3  # length of a cut step over that of the failed one
     energies: bool = False  # keep what the energies of every step are made of
     full: bool = False  # keep all six unknowns and both corners where the motion is symmetric
+    restitution: float | None = None  # e of the rule "impact" [-]
+    penetration: float = 1e-9  # to which the passes of the rule "augmented" reduce it [m]
+    pass_limit: int = 100_000  # these passes in a step, before the history ends
 
     def __post_init__(self) -> None:
         """Check the ranges."""
         if self.rule not in RULES:
             raise ValueError(f"rule: must be among {', '.join(RULES)}, got {self.rule!r}")
+        if (self.rule == IMPACT) != (self.restitution is not None):
+            raise ValueError(
+                f"restitution: goes with rule = {IMPACT!r}, which needs it, "
+                f"got {self.restitution!r} with rule = {self.rule!r}"
+            )
+        if self.restitution is not None and not 0 <= self.restitution <= 1:
+            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
+        check_positive(penetration=self.penetration)
+        check_count(pass_limit=self.pass_limit)
         check_iteration(self.solve_limit, self.cut)
 
 
@@ -129,18 +159,28 @@ def solve_unilateral(
     check_combination(model, scheme, options)
     began = perf_counter()
     law = model.contact
-    if options.rule == CONSERVING:  # no corner slides, even if `full` keeps the unknowns that could
+    if frictionless(law, options):  # no corner slides, even if `full` keeps the unknowns that could
         law = replace(law, shear=0.0)
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     motion = model.load.motion
-    block, shear_law = block_equations(form, law, scheme, options.rule, options.solve_limit)
+    block, shear_law = block_equations(
+        form,
+        law,
+        scheme,
+        options.rule,
+        options.solve_limit,
+        options.penetration,
+        options.pass_limit,
+        options.restitution or 0.0,
+    )
     state = start_state(form, law, scheme, model.velocity, options.rule)
     base = base_record(motion and motion.along(form.axes))
-    history = history_of(steps, 2 * len(form.unknowns), form.contacts, options.energies)
+    n = len(form.unknowns)
+    history = history_of(steps, 2 * n + (options.rule == AUGMENTED), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
     ready = perf_counter()
-    loop = make_conserving_steps if options.rule == CONSERVING else make_steps
+    loop = LOOPS.get(options.rule, make_damped_steps if law.damping else make_steps)
     (reached, ended), left, how = run_loop(
         loop,
         (block, shear_law, state, state),
@@ -155,25 +195,30 @@ def solve_unilateral(
     for name, moved in carried(motion, step_times(scheme, reached)).items():
         if name in values:
             values[name] = values[name] + moved
-    D, P = np.hsplit(history.motion[1:], 2)
+    D = history.motion[1:, :n]
+    P = history.motion[1:, n : 2 * n]
+    impulses = np.broadcast_to(scheme.step * history.normal[1:].T, (2, reached)) if options.rule == IMPACT else None
+    passes = history.motion[1:, 2 * n].astype(int) if options.rule == AUGMENTED else None
     per_momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
     notes = [f"stepped, {how}: contact opens and closes"]
-    if len(form.unknowns) < 6:
+    if n < 6:
         notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
     return ContactResult(
         **run_fields(history, ended, scheme, notes, (began, ready)),
         columns=values,
-        unknowns=len(form.unknowns),
+        unknowns=n,
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=int(left[0].made[0]),
         base_contacts=(0, 1),
         softness=law.softness,
+        impulses=impulses,
+        step_passes=passes,
         parts={
             "slide": lambda: form.slide @ D.T,
             "horizontal_velocity": lambda: P @ per_momentum[0],
             "velocity": lambda: P @ per_momentum[1],
         },
-        balance=(lambda: energies(model, form, scheme, history)) if options.energies else None,
+        balance=(lambda: energies(model, form, scheme, history, options.rule)) if options.energies else None,
     )
 
 
@@ -190,38 +235,64 @@ def observed(form: UnilateralForm, history: History, a: float, names: Sequence[s
     return values
 
 
-def energies(model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History) -> dict[str, Array]:
+def energies(
+    model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History, rule: str
+) -> dict[str, Array]:
     """Return the energies [J] after every step, the losses summed from t = 0 on.
 
-    They are those of `dda.stepping.energy`. Energy-conserving contact does the work U0 - U1 itself and loses nothing.
+    They are those of `dda.stepping.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
+    does the work U0 - U1 itself and loses nothing.
     """
     n = len(form.unknowns)
     D = history.motion[1:, :n]
-    V = history.motion[1:, n:] / scheme.step
+    V = history.motion[1:, n : 2 * n] / scheme.step
     load = -(D - form.start) @ form.F - history.sums[1:, GIVEN]
     if model.load.motion is not None:
         moved = model.load.motion.at(step_times(scheme, len(D)))
         load -= moved @ (form.axes.T @ form.translation.T @ form.F)
-    springs = spring_energies(model.contact, history.normal[1:], history.shear[1:])
+    law = model.contact if rule != AUGMENTED else replace(model.contact, stiffness=math.inf)
+    normal = history.normal[1:]
+    if law.damping:
+        normal = law.stiffness * np.maximum(-history.gap[1:], 0.0)
+    springs = spring_energies(law, normal, history.shear[1:])
     stored = (
         np.einsum("ki,ij,kj->k", V, np.linalg.inv(form.M), V) / 2,
         (D * D) @ form.K / 2,
         form.multiplicity * springs,
         load,
     )
-    return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
+    energies = dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
+    if law.damping:
+        energies[DASHPOT] = history.sums[1:, CONTACT]
+    if rule == IMPACT:
+        energies[IMPACT_LOSS] = history.sums[1:, CONTACT]
+    return energies
 
 
 def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
     """Raise ValueError where rule, scheme and contact exclude each other."""
-    if options.rule != NEWMARK and scheme.table is not None:
+    law = model.contact
+    if options.rule not in (NEWMARK, AUGMENTED) and scheme.table is not None:
         raise ValueError(f"rule: {options.rule} contact goes with scheme newmark only, got {scheme.name!r}")
-    if options.rule != NEWMARK and (scheme.alpha, scheme.delta) != (0.25, 0.5):
+    if law.damping and options.rule != NEWMARK:
+        raise ValueError(
+            f"damping: a dashpot goes with rule = {NEWMARK!r} only, got {law.damping:g} with rule = {options.rule!r}"
+        )
+    if frictionless(law, options) and len(model.reduced.B) > model.reduced.contacts:
+        subject = "damping: a dashpot" if law.damping else f"rule: {options.rule} contact"
+        raise ValueError(f"{subject} needs shear = 0 where the base can slide, got {law.shear:g}")
+    if options.rule == IMPACT:
+        check_impact(model, scheme)
+    if options.rule == AUGMENTED and (math.isinf(law.stiffness) or any(law.band) or scheme.alpha == 0):
+        raise ValueError(
+            f"rule: {AUGMENTED} contact needs a finite stiffness (that of its passes), no band and an implicit scheme, "
+            f"got stiffness = {law.stiffness:g}, band = {law.band} and alpha = {scheme.alpha:g}"
+        )
+    if options.rule in (IMPLICIT, CONSERVING) and (scheme.alpha, scheme.delta) != (0.25, 0.5):
         weights = (scheme.alpha, scheme.delta)
         raise ValueError(
             f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {weights}"
         )
-    law = model.contact
     if options.rule == CONSERVING:
         if math.isinf(law.stiffness) or any(law.band):
             raise ValueError(
@@ -231,9 +302,31 @@ def check_combination(model: UnilateralModel, scheme: Scheme, options: Unilatera
         at_once(model.load, f"{CONSERVING} contact")
         if model.load.motion is not None:
             raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
-        if len(model.reduced.B) > model.reduced.contacts:
-            raise ValueError(f"rule: {CONSERVING} contact needs shear = 0 where the base can slide, got {law.shear:g}")
     check_scheme(law, scheme)
+
+
+def frictionless(law: Unilateral, options: UnilateralOptions) -> bool:
+    """Tell whether contact has no forces along the base, whatever its law has."""
+    return bool(law.damping) or options.rule in LOOPS
+
+
+def check_impact(model: UnilateralModel, scheme: Scheme) -> None:
+    """Raise ValueError where impulses do not go with the scheme or the contact."""
+    law = model.contact
+    theta = (scheme.delta + 0.5) / 2
+    if not (0 < theta <= 1 and math.isclose(scheme.alpha, theta * theta, rel_tol=1e-9)):
+        raise ValueError(
+            f"rule: {IMPACT} contact needs alpha = theta^2, delta = 2 theta - 1/2, e.g. 1/4 and 1/2, or 9/16 and 1, "
+            f"got {(scheme.alpha, scheme.delta)}"
+        )
+    if not math.isinf(law.stiffness):
+        raise ValueError(f"rule: {IMPACT} contact needs a rigid stop, stiffness = inf, got {law.stiffness:g}")
+    if law.friction is not None or any(law.band):
+        raise ValueError(
+            f"rule: {IMPACT} contact needs no friction and no band, got friction = {law.friction} and band = {law.band}"
+        )
+    if model.load.motion is not None:
+        raise ValueError(f"rule: {IMPACT} contact needs a base at rest, got one that moves")
 
 
 def check_scheme(law: Unilateral, scheme: Scheme) -> None:

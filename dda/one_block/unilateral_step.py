@@ -19,6 +19,9 @@ into the displacement, with weight 1/2 for alpha, and into the momentum, with we
 at the end (Kane, Repetto, Ortiz and Marsden 1999); with "energy-conserving" that of `dda.contact.conserving`, and
 average acceleration of the block itself is then the midpoint rule, with F - K D0 for M A0.
 
+Contact methods beside the penalty spring have modules of their own: a clipped dashpot (`dda.contact.dashpot`), passes
+of the augmented Lagrangian (`dda.contact.augmented`), impulses with a restitution (`dda.one_block.impact_step`).
+
 On a moving base unknowns count from it: x = D + R y with K0 R = 0, so that its displacement in the step enters as the
 momentum M R (y1 - y).
 """
@@ -27,17 +30,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.contact.augmented import augmented
 from dda.contact.conserving import conserving
+from dda.contact.dashpot import damped, set_gaps
 from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
     NONE,
     TO_OWN,
     Contacts,
+    Flexibility,
     Free,
     Law,
     Shear,
@@ -69,6 +76,7 @@ from dda.scheme.stages import Stage
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import (
     ALGORITHMIC,
+    CONTACT,
     DAMPING,
     FRICTION,
     GIVEN,
@@ -80,19 +88,22 @@ from dda.stepping.energy import (
 NEWMARK = "newmark"
 IMPLICIT = "implicit"
 CONSERVING = "energy-conserving"
-RULES = (NEWMARK, IMPLICIT, CONSERVING)
+IMPACT = "impact"
+AUGMENTED = "augmented"
+RULES = (NEWMARK, IMPLICIT, CONSERVING, IMPACT, AUGMENTED)
 
 
 class StepLength(NamedTuple):
     """Everything of a stage that depends on the length of the step alone."""
 
-    numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
+    numbers: Vector  # (4,) length over the scheme's step, gg for this length, length [s], slope of `set_gaps`
     k: Vector  # (n,) h^2 K0
     F: Vector  # (n,) h^2 F; where the load rises in a ramp, that at the end of the stage which was made last
     inverse: Matrix  # (n, n) of S0
     pushed: Matrix  # (n, q) weight h^2 S0^-1 multiplicity B': displacement of unit forces
     C: Matrix  # flexibility of the contacts in their own slides [m/N]
     C_paired: Matrix  # that in mean and difference of two slides [m/N]
+    retarded: Flexibility  # C + tau C' of contacts with a dashpot, tau = c/p [m/N]
 
 
 class BlockState(NamedTuple):
@@ -127,6 +138,7 @@ class Room(NamedTuple):
     x: Vector
     forces: Vector  # (q,) N, then T in the coordinates of B
     free: Free  # the contacts in a step without their forces
+    retarded: Free  # the same of w + tau w' of contacts with a dashpot, in `slide` tau w'; or of preloaded springs
     slide: Vector  # (c,) displacement of the contacts along the base
     A: Matrix  # (n, n)
     scale: Vector
@@ -139,7 +151,10 @@ class BlockEquations(NamedTuple):
 
     law: Law
     stiffness: float  # p [N/m]
-    rule: int  # place in RULES
+    penetration: float  # tolerance of the augmented Lagrangian [m]
+    pass_limit: int  # its passes in a step
+    restitution: float  # of impacts [-]
+    rule: int  # place in RULES; that of Newmark's where the contact force enters as there
     newmark: bool  # whether the scheme is Newmark's
     stages: int  # 1, or 2: `first` and `last`
     lag: float  # by how much of a step P is older than D
@@ -158,27 +173,38 @@ class BlockEquations(NamedTuple):
     last: BlockStage
     between: BlockState  # at the end of the first one
     made: Vector  # (1,) matrices made
+    passes: Vector  # (1,) of the augmented Lagrangian since a step was kept
     room: Room
     work: Work
 
 
 def block_equations(
-    form: UnilateralForm, law: Unilateral, scheme: Scheme, rule: str, limit: int
+    form: UnilateralForm,
+    law: Unilateral,
+    scheme: Scheme,
+    rule: str,
+    limit: int,
+    penetration: float = 0.0,
+    pass_limit: int = 1,
+    restitution: float = 0.0,
 ) -> tuple[BlockEquations, Shear]:
     """Return the equations as numbers, with the matrices of a whole step, and the law of contacts that can slide."""
     n = len(form.unknowns)
     c = form.contacts
     q = len(form.B)
     vectors: list[Any] = zeros(n, n, n, n, n, q)
-    vectors.append(Free(*zeros(c, c, c)))
+    vectors += [Free(*zeros(c, c, c)), Free(*zeros(c, c, c))]
     vectors += zeros(c, (n, n), n, 2, n)
     stages = [plain_stage(stage) for stage in scheme.stages]
     rooms = [stage_room(stage, n, c, q) for stage in stages]
     rooms[-1] = rooms[-1]._replace(begin=float(stages[0].end) if len(stages) == 2 else 0.0)
     block = BlockEquations(
-        law=law_of(law, limit),
+        law=law_of(replace(law, stiffness=math.inf) if rule == AUGMENTED else law, limit),
         stiffness=law.stiffness,
-        rule=RULES.index(rule),
+        penetration=penetration,
+        pass_limit=pass_limit,
+        restitution=restitution,
+        rule=0 if rule == AUGMENTED else RULES.index(rule),
         newmark=scheme.table is None,
         stages=len(stages),
         lag=float(scheme.lag),
@@ -197,6 +223,7 @@ def block_equations(
         last=rooms[-1],
         between=BlockState(*zeros(n, n, n, n), at_rest(np.zeros(c))),
         made=np.zeros(1),
+        passes=np.zeros(1),
         room=Room(*vectors),
         work=work_for(c),
     )
@@ -212,11 +239,17 @@ def stage_room(stage: Stage, n: int, c: int, q: int) -> BlockStage:
         numbers=stage,
         begin=0.0,
         averages=stage.am != 0 or stage.af != 0,
-        whole=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
-        part=StepLength(*zeros(3, n, n, (n, n), (n, q), (q, q), (q, q))),
+        whole=length_room(n, q),
+        part=length_room(n, q),
         base=np.zeros(2),
         slipped=np.zeros(c),
     )
+
+
+def length_room(n: int, q: int) -> StepLength:
+    """Return room for what belongs to the length of a step."""
+    matrices = zeros(4, n, n, (n, n), (n, q), (q, q), (q, q))
+    return StepLength(*matrices, Flexibility(*zeros((q, q), (q, q))))
 
 
 def start_state(form: UnilateralForm, law: Unilateral, scheme: Scheme, velocity: float, rule: str) -> BlockState:
@@ -252,6 +285,8 @@ def set_length(block: BlockEquations, shear_law: Shear, stage: BlockStage, ratio
         room.A[i][i] += implicit * length.k[i]
     invert(room.A, n, room.scale, length.inverse)
     weight = (implicit if block.rule == 0 else 0.5) * h2 * block.multiplicity
+    if block.rule == 3:  # impulses change the velocity
+        weight = block.multiplicity
     for i in range(n):
         for j in range(q):
             length.pushed[i][j] = weight * dot(length.inverse[i], block.B[j], n)
@@ -265,7 +300,26 @@ def set_length(block: BlockEquations, shear_law: Shear, stage: BlockStage, ratio
         change_slides(length.C_paired, TO_OWN, length.C)
     else:
         copy_matrix(length.C_paired, length.C)
+    if block.law.damping > 0:
+        set_retarded(block, stage, length)
     block.made[0] += 1
+
+
+def set_retarded(block: BlockEquations, stage: BlockStage, length: StepLength) -> None:
+    """Write C + tau C' of contacts with a dashpot, where forces change their rates by C' = delta' h B S0^-1 B'."""
+    n = len(block.K)
+    retardation = block.law.damping * block.law.compliance
+    implicit = implicit_weight(stage.numbers)
+    h = length.numbers[2]
+    late = stage.numbers.delta * (1 - stage.numbers.af) / (1 - stage.numbers.am)
+    length.numbers[3] = retardation * late / (implicit * h) if implicit > 0 else 0.0
+    weight = (implicit * h * h + retardation * late * h) * block.multiplicity
+    for i in range(len(block.B)):
+        for j in range(len(block.B)):
+            total = 0.0
+            for k in range(n):
+                total += block.B[i][k] * dot(length.inverse[k], block.B[j], n)
+            length.retarded.C[i][j] = weight * total
 
 
 def length_of(block: BlockEquations, shear_law: Shear, stage: BlockStage, ratio: float) -> StepLength:
@@ -291,8 +345,39 @@ def solve_conserving(
     return conserving(block.stiffness, before, block.room.free, length, after, block.work)
 
 
+def solve_damped(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts with a dashpot beside their springs, without shear."""
+    room = block.room
+    outcome, solves = damped(block.law, before, room.free, room.retarded, length, length.retarded, after, block.work)
+    set_gaps(length.numbers[3], room.free, room.retarded, length, after)
+    return outcome, solves
+
+
+def solve_augmented(
+    block: BlockEquations, shear_law: Shear, before: Contacts, length: StepLength, after: Contacts
+) -> tuple[int, int]:
+    """Find the contacts on a rigid stop by passes over springs, without shear."""
+    room = block.room
+    springs = Law(1 / block.stiffness, 0.0, 0.0, block.law.limit, 0.0)
+    outcome, solves, passes = augmented(
+        springs,
+        block.penetration,
+        block.pass_limit,
+        before,
+        room.free,
+        room.retarded,
+        length,
+        after,
+        block.work,
+    )
+    block.passes[0] += passes
+    return outcome, solves
+
+
 def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
-    """Return what makes a step whose contacts are found by `solve`, one of the two functions above."""
+    """Return what makes a step whose contacts are found by `solve`, one of the functions above."""
 
     def advance(
         block: BlockEquations,
@@ -382,7 +467,7 @@ def free_stage(
         force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
         if stage.averages:
             force = inertia_force(numbers, force, room.force_0[i], room.f[i])
-        balance = predictor(numbers, room.P[i], room.f[i])
+        balance = predictor(numbers, numbers.d_u * room.P[i], room.f[i])
         if stage.begin > 0:
             balance += numbers.d_g * (ratio * before.P[i]) + numbers.e_g * (ratio * ratio * before.f[i])
         room.balance[i] = balance + numbers.alpha * force
@@ -394,8 +479,55 @@ def free_stage(
     multiply(length.inverse, room.balance, n, n, room.x)
     for i in range(c):  # the gaps are the last unknowns
         room.free.gap[i] = before.D[n - c + i] + room.x[n - c + i]
+    if block.law.damping > 0:
+        retard(block, stage, length, before, base is not None)
     if shear_law is not None:
         slides_by(block, room.x, room.free.slide)
+
+
+def retard(block: BlockEquations, stage: BlockStage, length: StepLength, before: BlockState, base_moves: bool) -> None:
+    """Write w + tau w' at the end of a stage without contact forces, with w' from the base, which moves evenly."""
+    room = block.room
+    n = len(block.K)
+    c = len(room.slide)
+    h = length.numbers[2]
+    retardation = block.law.damping * block.law.compliance
+    for i in range(n):
+        room.change[i] = momentum_at_end(block, stage, length, before, before.D[i] + room.x[i], 0.0, i)
+    for i in range(c):
+        rate = dot(block.inverse_mass[n - c + i], room.change, n) / h
+        if base_moves:
+            rate -= stage.base[1] / (h * (stage.numbers.end - stage.begin))
+        room.retarded.slide[i] = retardation * rate
+        room.retarded.gap[i] = room.free.gap[i] + room.retarded.slide[i]
+
+
+def momentum_at_end(
+    block: BlockEquations,
+    stage: BlockStage,
+    length: StepLength,
+    before: BlockState,
+    D: float,
+    pressed: float,
+    i: int,
+) -> float:
+    """Return h M V of an unknown at the end of a stage, in units of the step's length.
+
+    Parameters
+    ----------
+    D, pressed
+        The unknown there [m], and h^2 B' lambda.
+    """
+    room = block.room
+    numbers = stage.numbers
+    ratio = length.numbers[0]
+    f1 = acceleration_corrector(length.F[i], length.k[i], D) + pressed
+    if stage.averages:
+        f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
+    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
+    if stage.begin > 0:
+        P1 += numbers.g_g * (ratio * ratio * before.f[i])
+    return float(P1)
 
 
 def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
@@ -568,20 +700,22 @@ def account_by_balance(
 
     Forces of contact and loads that rise act with the mean of both ends of each stage.
     """
-    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN]
+    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN]
     algorithmic = sums[ALGORITHMIC]
     n = len(block.K)
     gg = length_of(block, shear_law, block.last, part.ratio).numbers[1]
-    if gg != 1:
+    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
+    if gg != 1 and not late_start:
         sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
-    released = stored_energy(block, shear_law, state) - stored_energy(block, shear_law, after)
+    released = stored_energy(block, shear_law, state, gg if late_start else 1.0)
+    released -= stored_energy(block, shear_law, after, 1.0)
     if block.stages == 2:
         between = block.between
         released += add_stage(block, shear_law, block.first, state, between, block.first.slipped, part, sums)
         released += add_stage(block, shear_law, block.last, between, after, block.last.slipped, part, sums)
     else:
         released += add_stage(block, shear_law, block.last, state, after, after.contacts.slipped, part, sums)
-    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN] - lost
+    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN] - lost
     sums[ALGORITHMIC] = algorithmic + released - lost
 
 
@@ -616,13 +750,13 @@ def add_stage(
     return work
 
 
-def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState) -> float:
-    """Return kinetic energy, strain energy and that of the contacts' springs [J]."""
+def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState, discount: float) -> float:
+    """Return kinetic energy, strain energy and that of the contacts' springs [J]; `discount` is that of P."""
     room = block.room
     n = len(block.K)
     strain = 0.0
     for i in range(n):
-        room.change[i] = state.P[i] + block.lag * state.f[i]
+        room.change[i] = discount * state.P[i] + block.lag * state.f[i]
         strain += block.K[i] * state.D[i] * state.D[i]
     energy = (quadratic(block.inverse_mass, room.change, n) / (block.step * block.step) + strain) / 2
     for i in range(len(room.slide)):
@@ -638,11 +772,17 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
         rows[number, i] = state.D[i]
         rows[number, n + i] = state.P[i]
         if block.lag != 0:
-            rows[number, n + i] += block.lag * state.f[i]
+            discount = block.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, n + i] = discount * state.P[i] + block.lag * state.f[i]
         total += state.D[i]
+    if rows.shape[1] > 2 * n:
+        rows[number, 2 * n] = block.passes[0]
+        block.passes[0] = 0.0
     return math.isfinite(total)
 
 
 advance = stepping(solve_at_end)
 make_steps = driver(advance, account, keep)
 make_conserving_steps = driver(stepping(solve_conserving), account, keep)
+make_damped_steps = driver(stepping(solve_damped), account, keep)
+make_augmented_steps = driver(stepping(solve_augmented), account, keep)

@@ -32,7 +32,7 @@ from dda.rotation.body import (
     turned,
 )
 from dda.rotation.step import STATE, RollingState, Setting, make_steps, rolling_equations
-from dda.scheme.newmark import Scheme
+from dda.scheme.newmark import Scheme, late_momentum
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
 from dda.stepping.energy import ENERGIES, FRICTION, GIVEN, IMPULSE, SWITCHING, spring_energies
@@ -68,6 +68,8 @@ class RollingModel(LoadedBlock):
                 raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
         if any(self.contact.band):
             raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
+        if self.contact.damping:
+            raise ValueError(f"damping: must be zero where the geometry is updated, got {self.contact.damping!r}")
         _ = self.body
 
     @cached_property
@@ -109,17 +111,18 @@ class RollingModel(LoadedBlock):
         V = np.zeros(6)
         V[:2] = body.to_base @ self.velocity
         V[2] = self.spin
+        push = np.zeros(6)
+        push[:2] = body.M[0, 0] * setting.weight
+        spin = np.array([-Q[1], Q[0]])
+        across, up = np.zeros((2, 6))
+        for (x, y), force in zip(setting.where, setting.dead, strict=True):
+            directions(spin, Q, q, x, y, across, up)
+            push += force[0] * across + force[1] * up
         A = np.zeros(6)
         if scheme.start == "consistent":
-            push = np.zeros(6)
-            push[:2] = body.M[0, 0] * setting.weight
-            spin = np.array([-Q[1], Q[0]])
-            across, up = np.zeros((2, 6))
-            for (x, y), force in zip(setting.where, setting.dead, strict=True):
-                directions(spin, Q, q, x, y, across, up)
-                push += force[0] * across + force[1] * up
             A[:] = np.linalg.solve(body.M, push)
-        return RollingState(q, Q, V, A, at_rest(gap))
+        V = late_momentum(scheme, V, scheme.step * A)
+        return RollingState(q, Q, V, A, push, at_rest(gap))
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,7 @@ class RollingOptions:
         check_iteration(self.solve_limit, self.cut)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RollingResult(ContactResult):
     """Histories of a block that turns; the contacts are all corners of its outline, `base_contacts` M and N."""
 

@@ -14,6 +14,9 @@ end of the step. Their impulse then has the direction of the middle of the step 
 stays of second order, and at delta = 1 a force does the work lambda times the exact change of its gap, so that, as in
 small motion, no energy is gained by contact however far the block turns. First-order rotation is linear in a step:
 its chord is the derivative at both ends. Its outline grows, and with the area det Q inertia and stiffness do.
+
+Other schemes take one stage or two of this form (`dda.scheme.stages`) and forces that act as at the end of each: with
+B_1, as at delta = 1/2.
 """
 
 from __future__ import annotations
@@ -45,7 +48,8 @@ from dda.contact.kernel import (
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
-from dda.scheme.newmark import Scheme
+from dda.scheme.newmark import Scheme, implicit_weight, plain_stage
+from dda.scheme.stages import Stage
 from dda.stepping.driver import BaseRecord, Part, base_at, driver
 from dda.stepping.energy import DAMPING, add_contact_losses
 
@@ -76,11 +80,12 @@ class RollingState(NamedTuple):
     Q: Matrix  # (2, 2) turn of the outline
     V: Vector  # (6,) velocities of q
     A: Vector  # (6,) accelerations
+    R: Vector  # (6,) all forces, M A of schemes that do not average them
     contacts: Contacts  # of all corners
 
 
 class StepMatrices(NamedTuple):
-    """What a step needs of an outline and of its own length."""
+    """What a stage needs of an outline and of the step's length."""
 
     numbers: Vector  # (3,) length over the scheme's step, gg for this length, length [s]
     M: Matrix  # (6, 6) inertia
@@ -90,10 +95,27 @@ class StepMatrices(NamedTuple):
     kept: Matrix  # (6, 6) S^-1 M
 
 
+class RollingStage(NamedTuple):
+    """One stage of the scheme."""
+
+    numbers: Stage
+    begin: float  # where it begins, over the step
+    averages: bool  # whether it balances the forces between the ends of the step
+    weight: float  # of h^2 K beside M
+    whole: StepMatrices
+    part: StepMatrices
+    slide: Vector  # (corners,) displacement along the base in the stage that was made last [m]
+    slipped: Vector  # (corners,) by slip [m]
+    moved: Vector  # (2,) of the base [m]
+
+
 class Room(NamedTuple):
     """Room for the vectors of a step."""
 
-    held: Vector  # (6,) weight and elastic force at its start
+    V: Vector  # (6,) velocities, accelerations and forces at the start of the step
+    A_0: Vector
+    R: Vector
+    held: Vector  # (6,) weight and elastic force at its start, with what an average takes from the start of the step
     free: Vector  # (6,) D without contact and dead loads
     guess: Vector  # (6,)
     D: Vector  # (6,)
@@ -109,11 +131,9 @@ class Room(NamedTuple):
     spin: Matrix  # (2, 2) dQ/dr at the end of the step
     before: Matrix  # (corners, 2) from the base at the start of the step [m]
     after: Matrix  # (corners, 2) at its end
-    near: Vector  # (corners,) least height in the step
-    slide: Vector  # (corners,)
-    start: Vector  # (2,) displacement of the base at the start of the step [m]
+    near: Vector  # (corners,) least height in the stage
+    start: Vector  # (2,) displacement of the base at the start of the stage [m]
     base: Vector  # (2,) at its end
-    moved: Vector  # (2,) between them
     A: Matrix  # (6, 6)
     at: States  # (2,) corners that may touch
     tried: States  # (PAIRS,)
@@ -138,8 +158,9 @@ class RollingEquations(NamedTuple):
     loads: int  # dead loads, two at most
     law: Law
     exact: bool  # or first-order rotation
-    alpha: float
-    delta: float
+    stages: int  # 1, or 2: `first` and `last`
+    delta: float  # of Newmark's, 1/2 of another scheme: weight of the forces at the end of each stage
+    lag: float  # by how much of a step V is older than q
     gg: float
     step: float  # [s]
     size: float  # greatest distance of a corner from the centroid [m]
@@ -149,9 +170,10 @@ class RollingEquations(NamedTuple):
     weight: Vector  # (2,)
     where: Matrix  # (2, 2)
     dead: Matrix  # (2, 2)
-    whole: StepMatrices
-    part: StepMatrices
-    made: Vector  # (1,) step lengths made
+    first: RollingStage  # of two
+    last: RollingStage
+    between: RollingState  # at the end of the first one
+    made: Vector  # (1,) matrices made
     room: Room
     one: Touching
     two: Touching
@@ -165,17 +187,19 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     where, dead = np.zeros((2, 2, 2))
     where[:loads] = setting.where
     dead[:loads] = setting.dead
-    lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
-    rows: list[Any] = zeros(*[6] * 12)
+    stages = [stage_room(stage, corners) for stage in scheme.stages]
+    stages[-1] = stages[-1]._replace(begin=float(scheme.stages[0].end) if len(stages) == 2 else 0.0)
+    rows: list[Any] = zeros(*[6] * 15)
     rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
-    rows += zeros((2, 2), (corners, 2), (corners, 2), corners, corners, 2, 2, 2, (6, 6))
+    rows += zeros((2, 2), (corners, 2), (corners, 2), corners, 2, 2, (6, 6))
     rows += zeros(2, PAIRS, dtype=np.int64)
     equations = RollingEquations(
         loads=loads,
         law=law_of(setting.law, setting.limit),
         exact=setting.rotation == EXACT,
-        alpha=scheme.alpha,
-        delta=scheme.delta,
+        stages=len(stages),
+        delta=scheme.delta if scheme.table is None else 0.5,
+        lag=float(scheme.lag),
         gg=scheme.gg,
         step=scheme.step,
         size=body.size,
@@ -185,15 +209,30 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         weight=np.array(setting.weight, dtype=float),
         where=where,
         dead=dead,
-        whole=lengths[0],
-        part=lengths[1],
+        first=stages[0],
+        last=stages[-1],
+        between=RollingState(*zeros(6, (2, 2), 6, 6, 6), at_rest(np.zeros(corners))),
         made=np.zeros(1),
         room=Room(*rows),
         one=touching(1),
         two=touching(2),
     )
-    set_matrices(equations, 1.0, np.eye(2), equations.whole)
+    for stage in stages:
+        set_matrices(equations, stage, 1.0, np.eye(2), stage.whole)
     return equations
+
+
+def stage_room(stage: Scheme | Stage, corners: int) -> RollingStage:
+    """Return a first stage, with room for what belongs to it."""
+    lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
+    return RollingStage(
+        plain_stage(stage),
+        0.0,
+        stage.am != 0 or stage.af != 0,
+        float(implicit_weight(stage)),
+        *lengths,
+        *zeros(corners, corners, 2),
+    )
 
 
 def touching(n: int) -> Touching:
@@ -226,14 +265,16 @@ def area_growth(body: RollingEquations, Q: Matrix) -> float:
     return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
-def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, matrices: StepMatrices) -> None:
-    """Write the matrices of a step of some length, of an outline that has grown with Q."""
+def set_matrices(
+    body: RollingEquations, stage: RollingStage, ratio: float, Q: Matrix, matrices: StepMatrices
+) -> None:
+    """Write the matrices of a stage of a step of some length, of an outline that has grown with Q."""
     room = body.room
     growth = area_growth(body, Q)
     matrices.numbers[0] = ratio
     matrices.numbers[1] = body.gg**ratio
     matrices.numbers[2] = body.step * ratio
-    weight = body.alpha * matrices.numbers[2] * matrices.numbers[2]
+    weight = stage.weight * matrices.numbers[2] * matrices.numbers[2]
     for i in range(6):
         for j in range(6):
             matrices.M[i][j] = body.M[i][j] * growth
@@ -256,11 +297,11 @@ def set_matrices(body: RollingEquations, ratio: float, Q: Matrix, matrices: Step
     body.made[0] += 1
 
 
-def matrices_of(body: RollingEquations, Q: Matrix, ratio: float) -> StepMatrices:
-    """Return the matrices of a step; those of an outline that does not grow are kept."""
-    matrices = body.whole if ratio == 1.0 else body.part
+def matrices_of(body: RollingEquations, stage: RollingStage, Q: Matrix, ratio: float) -> StepMatrices:
+    """Return the matrices of a stage; those of an outline that does not grow are kept."""
+    matrices = stage.whole if ratio == 1.0 else stage.part
     if matrices.numbers[0] != ratio or not body.exact:
-        set_matrices(body, ratio, Q, matrices)
+        set_matrices(body, stage, ratio, Q, matrices)
     return matrices
 
 
@@ -272,18 +313,48 @@ def advance(
     base: BaseRecord | None,
     part: Part,
 ) -> tuple[int, int]:
-    """Make a part of a step from `state` to `after`; return the outcome and the number of solves.
+    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
+    if body.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
+        return NONE, 0
+    room = body.room
+    copy(state.V, room.V)
+    copy(state.A, room.A_0)
+    copy(state.R, room.R)
+    if body.stages == 1:
+        return make_stage(body, shear_law, body.last, state, after, base, part)
+    outcome, solves = make_stage(body, shear_law, body.first, state, body.between, base, part)
+    if outcome != FOUND:
+        return outcome, solves
+    outcome, further_solves = make_stage(body, shear_law, body.last, body.between, after, base, part)
+    if outcome == FOUND:
+        for i in range(len(body.xi)):
+            body.first.slipped[i] = body.between.contacts.slipped[i]
+            body.last.slipped[i] = after.contacts.slipped[i]
+            after.contacts.slipped[i] += body.first.slipped[i]
+    return outcome, solves + further_solves
 
-    Of a convex outline two corners at most touch a plane. Which they may be is guessed from the step without contact,
-    and the step is made again with those that turn out to be the lowest, until no other one has crossed the plane.
+
+def make_stage(
+    body: RollingEquations,
+    shear_law: Shear,
+    stage: RollingStage,
+    state: RollingState,
+    after: RollingState,
+    base: BaseRecord | None,
+    part: Part,
+) -> tuple[int, int]:
+    """Go from the end of the stage before, or the start of the step, to the end of a stage.
+
+    Of a convex outline two corners at most touch a plane. Which they may be is guessed from the stage without contact,
+    and it is made again with those that turn out to be the lowest, until no other one has crossed the plane.
     """
-    matrices = matrices_of(body, state.Q, part.ratio)
-    predict(body, matrices, state, base, part)
+    matrices = matrices_of(body, stage, state.Q, part.ratio)
+    predict(body, stage, matrices, state, base, part)
     room = body.room
     near = nearest(body, room.near, REACH * body.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(body, shear_law, matrices, state, after, near)
+        outcome, solves = settle(body, shear_law, stage, matrices, state, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
@@ -305,21 +376,34 @@ def pair_number(at: States, near: int) -> int:
 
 
 def predict(
-    body: RollingEquations, matrices: StepMatrices, state: RollingState, base: BaseRecord | None, part: Part
+    body: RollingEquations,
+    stage: RollingStage,
+    matrices: StepMatrices,
+    state: RollingState,
+    base: BaseRecord | None,
+    part: Part,
 ) -> None:
-    """Write what is known of a step before its contact: the step without it, and where the corners come from."""
+    """Write what is known of a stage before its contact: the stage without it, and where the corners come from."""
     room = body.room
+    numbers = stage.numbers
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
     if base is not None:
-        base_at(base, body.step * part.begun, room.start)
-        base_at(base, body.step * (part.begun + part.ratio), room.base)
+        base_at(base, body.step * (part.begun + part.ratio * stage.begin), room.start)
+        base_at(base, body.step * (part.begun + part.ratio * numbers.end), room.base)
         for axis in range(2):
-            room.moved[axis] = room.base[axis] - room.start[axis]
+            stage.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
+    length = numbers.end - stage.begin
     for i in range(6):
-        room.guess[i] = gg * h * state.V[i] + h * h / 2 * state.A[i]
-        room.new[i] = gg * h * state.V[i] + h * h * (0.5 - body.alpha) * state.A[i]
+        room.guess[i] = length * (gg * h * room.V[i]) + length * length * (h * h / 2 * room.A_0[i])
+        room.new[i] = numbers.d_u * (gg * h * room.V[i]) + h * h * numbers.e_0 * room.A_0[i]
+        if stage.begin > 0:
+            room.new[i] += numbers.d_g * h * state.V[i] + h * h * numbers.e_g * state.A[i]
+    if stage.averages:
+        for i in range(6):
+            known = numbers.af * room.R[i] - numbers.am * dot(matrices.M[i], room.A_0, 6)
+            room.held[i] += known / (1 - numbers.af)
     for i in range(6):
         room.free[i] = dot(matrices.flexible[i], room.held, 6) + dot(matrices.kept[i], room.new, 6)
     place_corners(body, state.q, state.Q, room.start, room.before)
@@ -388,6 +472,7 @@ def another_crossed(body: RollingEquations, after: RollingState) -> bool:
 def settle(
     body: RollingEquations,
     shear_law: Shear,
+    stage: RollingStage,
     matrices: StepMatrices,
     state: RollingState,
     after: RollingState,
@@ -396,11 +481,11 @@ def settle(
     """Make the step with the corners room.at, one or two or none."""
     room = body.room
     if near == 2:
-        return settle_touching(body, shear_law, body.two, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.two, stage, matrices, state, after, near)
     if near == 1 or body.loads > 0:
-        return settle_touching(body, shear_law, body.one, matrices, state, after, near)
+        return settle_touching(body, shear_law, body.one, stage, matrices, state, after, near)
     copy(room.free, room.D)
-    accept(body, body.one, matrices, state, after, near)
+    accept(body, body.one, stage, matrices, state, after, near)
     return FOUND, 0
 
 
@@ -408,12 +493,13 @@ def settle_touching(
     body: RollingEquations,
     shear_law: Shear,
     pair: Touching,
+    stage: RollingStage,
     matrices: StepMatrices,
     state: RollingState,
     after: RollingState,
     near: int,
 ) -> tuple[int, int]:
-    """Make the step with the corners room.at, and again with the turn that it found until nothing changes."""
+    """Make the stage with the corners room.at, and again with the turn that it found until nothing changes."""
     room = body.room
     for k in range(near):
         copy_contact(state.contacts, room.at[k], pair.before, k)
@@ -446,7 +532,7 @@ def settle_touching(
                 settled = False
         copy(room.new, room.D)
         if settled:
-            accept(body, pair, matrices, state, after, near)
+            accept(body, pair, stage, matrices, state, after, near)
             return FOUND, solves
     return NONE, solves
 
@@ -536,10 +622,17 @@ def push_of_loads(body: RollingEquations, state: RollingState) -> None:
 
 
 def accept(
-    body: RollingEquations, pair: Touching, matrices: StepMatrices, state: RollingState, after: RollingState, near: int
+    body: RollingEquations,
+    pair: Touching,
+    stage: RollingStage,
+    matrices: StepMatrices,
+    state: RollingState,
+    after: RollingState,
+    near: int,
 ) -> None:
-    """Write the state at the end of the step."""
+    """Write the state at the end of the stage."""
     room = body.room
+    numbers = stage.numbers
     h = matrices.numbers[2]
     turn(state.Q, room.D[2], body.exact, room.turn)
     push_of_loads(body, state)
@@ -562,11 +655,20 @@ def accept(
         room.push[i] += room.held[i]
     for i in range(6):
         after.A[i] = dot(matrices.accelerating[i], room.push, 6)
-        after.V[i] = matrices.numbers[1] * state.V[i] + h * ((1 - body.delta) * state.A[i] + body.delta * after.A[i])
+        after.R[i] = room.push[i]
+    if stage.averages:
+        for i in range(6):
+            known = numbers.af * dot(matrices.accelerating[i], room.R, 6) - numbers.am * room.A_0[i]
+            after.A[i] = ((1 - numbers.af) * after.A[i] + known) / (1 - numbers.am)
+    for i in range(6):
+        gained = h * (numbers.g_0 * room.A_0[i] + numbers.delta * after.A[i])
+        if stage.begin > 0:
+            gained += h * numbers.g_g * state.A[i]
+        after.V[i] = matrices.numbers[1] * room.V[i] + gained
     place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(len(body.xi)):
         contacts.gap[i] = room.after[i][1]
-        room.slide[i] = room.after[i][0] - room.before[i][0]
+        stage.slide[i] = room.after[i][0] - room.before[i][0]
     for k in range(near):
         copy_contact(pair.after, k, contacts, room.at[k])
 
@@ -578,23 +680,33 @@ def account(
     body: RollingEquations, shear_law: Shear, state: RollingState, after: RollingState, part: Part, sums: Vector
 ) -> None:
     """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
-    room = body.room
     gg = body.gg**part.ratio
     h = body.step * part.ratio
-    if gg != 1:
+    if gg != 1 and not (body.lag != 0 and part.begun == 0):
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
+    if body.stages == 2:
+        between = body.between.contacts
+        add_stage_losses(body, shear_law, body.first, state.contacts, between, body.first.slipped, h, sums)
+        add_stage_losses(body, shear_law, body.last, between, after.contacts, body.last.slipped, h, sums)
+    else:
+        slipped = after.contacts.slipped
+        add_stage_losses(body, shear_law, body.last, state.contacts, after.contacts, slipped, h, sums)
+
+
+def add_stage_losses(
+    body: RollingEquations,
+    shear_law: Shear,
+    stage: RollingStage,
+    before: Contacts,
+    after: Contacts,
+    slipped: Vector,
+    h: float,
+    sums: Vector,
+) -> None:
+    """Add what the contacts lose in a stage of a step of length h."""
+    length = h * (stage.numbers.end - stage.begin)
     add_contact_losses(
-        body.law,
-        shear_law,
-        state.contacts,
-        after.contacts,
-        after.contacts.slipped,
-        room.slide,
-        room.moved,
-        body.delta,
-        h,
-        1.0,
-        sums,
+        body.law, shear_law, before, after, slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
     )
 
 
@@ -615,6 +727,9 @@ def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) 
     for i in range(6):
         rows[number, i] = state.q[i]
         rows[number, 6 + i] = state.V[i]
+        if body.lag != 0:
+            discount = body.gg if number == 0 else 1.0  # of what `late_momentum` made of the velocity at t = 0
+            rows[number, 6 + i] = discount * state.V[i] + body.lag * body.step * state.A[i]
         total += state.V[i]
     for i in range(2):
         for j in range(2):

@@ -127,7 +127,8 @@ def with_all_digits(scheme: Scheme) -> Scheme:
     if scheme.table is not None:
         stages = tuple(Stage(*map(Decimal, stage)) for stage in scheme.table.stages)
         fields["table"] = Table(stages, Decimal(scheme.lag))
-    return replace(scheme, **fields)
+    with localcontext(_DIGITS):
+        return replace(scheme, **fields)
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:

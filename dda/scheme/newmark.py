@@ -22,7 +22,7 @@ of a step where the scheme balances them so: `staged_step`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice, repeat
 from typing import ClassVar, Literal, TypeVar
@@ -59,6 +59,8 @@ class Scheme:
     name: str = NEWMARK  # among `dda.SCHEMES`
     table: Table | None = None  # its stages; None of Newmark's
 
+    e_0: float = field(init=False, repr=False, compare=False)  # weights of A in Newmark's displacement and velocity
+    g_0: float = field(init=False, repr=False, compare=False)
     # of Newmark's stage, beside alpha, delta, gg and step; whole numbers go with decimal ones
     d_u: ClassVar[int] = 1
     d_g: ClassVar[int] = 0
@@ -70,6 +72,8 @@ class Scheme:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
+        object.__setattr__(self, "e_0", (1 - 2 * self.alpha) / 2)  # whole numbers: decimal ones go with no doubles
+        object.__setattr__(self, "g_0", 1 - self.delta)
         check_not_negative(alpha=self.alpha, delta=self.delta)
         check_share(gg=self.gg)
         check_positive(step=self.step)
@@ -113,16 +117,6 @@ class Scheme:
         """Whether a stage balances the forces between the ends of a step, so that M A is not the force at its end."""
         return any(stage.am != 0 or stage.af != 0 for stage in self.stages)
 
-    @cached_property
-    def e_0(self) -> float:
-        """Weight of the acceleration at the start of Newmark's step in the displacement."""
-        return (1 - 2 * self.alpha) / 2  # whole numbers: decimal ones go with no doubles
-
-    @cached_property
-    def g_0(self) -> float:
-        """The same in the velocity."""
-        return 1 - self.delta
-
     def instants(self, steps: int) -> Array:
         """Return t = 0 and the ends of all stages of so many steps [s]."""
         ends = np.array([float(stage.end) for stage in self.stages])
@@ -148,22 +142,23 @@ def effective_matrix(scheme: Scheme | Stage, M: Real, k: Real) -> Real:
     return M + implicit_weight(scheme) * k
 
 
-def dashpot_matrix(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
-    """Return the matrix of the accelerations under any damping, M + delta dt C + alpha dt^2 K."""
-    return M + scheme.delta * scheme.step * C + scheme.alpha * scheme.step**2 * K
+def dashpot_matrix(scheme: Scheme | Stage, M: Array, C: Array, K: Array) -> Array:
+    """Return the matrix of the accelerations of a stage under any damping, M + delta dt C + alpha dt^2 K."""
+    share = (1 - scheme.af) / (1 - scheme.am)
+    return M + share * scheme.delta * scheme.step * C + share * scheme.alpha * scheme.step**2 * K
 
 
-def predictors(scheme: Scheme, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
+def predictors(scheme: Scheme | Stage, D: Array, V: Array, A: Array) -> tuple[Array, Array]:
     """Return D* and V* of eq. (6) and (7), what is known of the end of a step before its acceleration.
 
     Of a scheme with the step 1, V and A stand for dt V and dt^2 A.
     """
     dt = scheme.step
-    displaced = D + scheme.gg * dt * V + dt**2 * (0.5 - scheme.alpha) * A
-    return displaced, scheme.gg * V + dt * (1 - scheme.delta) * A
+    displaced = D + scheme.d_u * scheme.gg * dt * V + dt**2 * scheme.e_0 * A
+    return displaced, scheme.gg * V + dt * scheme.g_0 * A
 
 
-def correctors(scheme: Scheme, D: Array, V: Array, A1: Array) -> tuple[Array, Array]:
+def correctors(scheme: Scheme | Stage, D: Array, V: Array, A1: Array) -> tuple[Array, Array]:
     """Return D1 and V1 from the predicted ones and the acceleration at the end of the step."""
     return D + scheme.alpha * scheme.step**2 * A1, V + scheme.delta * scheme.step * A1
 
@@ -174,8 +169,11 @@ def initial_acceleration(scheme: Scheme, F: Real) -> Real:
 
 
 def predictor(scheme: Scheme | Stage, P: Real, f: Real) -> Real:
-    """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9)."""
-    return scheme.d_u * (scheme.gg * P) + scheme.e_0 * f
+    """Return M (D* - D) = gg dt M V + dt^2 (1/2 - alpha) M A, the right-hand side of eq. (9).
+
+    Of a stage that weighs the velocity by d_u, P is d_u times the momentum.
+    """
+    return scheme.gg * P + scheme.e_0 * f
 
 
 def acceleration_corrector(F: Real, k: Real, D: Real) -> Real:
@@ -240,7 +238,7 @@ def staged_step(
     force = force_0
     for stage, matrix, F, push in zip(scheme.stages, S, loads, pushes, strict=True):
         # of the stage before: in the first stage these weights are zero
-        balance = predictor(stage, P, f) + stage.d_g * P1 + stage.e_g * f1
+        balance = predictor(stage, stage.d_u * P, f) + stage.d_g * P1 + stage.e_g * f1
         accelerated = stage.g_g * f1
         balance = balance + stage.alpha * inertia_force(stage, acceleration_corrector(F, k, D), force_0, f)
         D = D + (balance - push) / matrix

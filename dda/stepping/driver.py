@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
-from dda.contact.kernel import FAILURES, FOUND, Contacts, Shear
+from dda.contact.kernel import FAILURES, FOUND, UNREACHED, Contacts, Shear
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
@@ -151,7 +151,7 @@ def driver(
                 outcome, solves = advance(body, shear_law, state, after, base, part)
                 history.solves[row] += solves
                 if outcome != FOUND:
-                    if ratio <= SHORTEST:
+                    if ratio <= SHORTEST or outcome == UNREACHED:
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1

@@ -8,10 +8,10 @@ c = alpha - delta/2 and V the velocity after gg,
 
 [ ] the change over the step and U = N^2/(2 p) + T^2/(2 p_s). A contact that keeps its state is part of the
 algorithmic loss, one that opens or closes is a switching loss (negative: a gain). Of what a contact loses that slips,
-friction takes -T1 (r1 - r0), never negative. Where the base moves by y the loads work on x = D + R y, and its own work
--lambda' B R y is counted as theirs. Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the
-first step's A0 adds where M A0 was not F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the
-others leave of the balance.
+friction takes -T1 (r1 - r0), never negative; a dashpot beside a spring takes -dw times what it adds to the spring's
+force. Where the base moves by y the loads work on x = D + R y, and its own work -lambda' B R y is counted as theirs.
+Kinetic damping takes (1 - gg^2) V' M V / 2 of the velocity before gg. What the first step's A0 adds where M A0 was not
+F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the others leave of the balance.
 """
 
 from __future__ import annotations
@@ -19,15 +19,17 @@ from __future__ import annotations
 import numpy as np
 
 from dda.contact.dense import Vector
-from dda.contact.kernel import Contacts, Law, Shear, spring_energy
+from dda.contact.kernel import Contacts, Law, Shear, spring_energy, spring_force
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 
 STORED = ("kinetic", "strain", "springs", "load")
 LOST = ("algorithmic", "kinetic damping", "switching", "friction")
 ENERGIES = STORED + LOST
-ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE = range(6)  # of the sums [J, N s]
-SUMS = 6
+ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE, CONTACT = range(7)  # of the sums [J, N s]
+SUMS = 7
+DASHPOT = "dashpot"  # names of the sum `CONTACT` among the energies, where there are dashpots, or impacts
+IMPACT = "impact"
 
 
 def add_contact_losses(
@@ -63,6 +65,11 @@ def add_contact_losses(
         work = N * (after.gap[i] - before.gap[i]) + T * slide[i]
         released = spring_energy(law, shear_law, before, i) - spring_energy(law, shear_law, after, i)
         lost = released - work - friction
+        if law.damping > 0:
+            spring = (1 - late) * spring_force(law, before, i) + late * spring_force(law, after, i)
+            dashpot = (spring - N) * (after.gap[i] - before.gap[i])
+            lost -= dashpot
+            sums[CONTACT] += share * dashpot
         keeps_state = (before.state[i] == OPEN) == (after.state[i] == OPEN)
         sums[ALGORITHMIC if keeps_state else SWITCHING] += share * lost
         sums[FRICTION] += share * friction

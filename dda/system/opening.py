@@ -8,7 +8,8 @@ a sub-block has a contact point at each end, with its share p l / a of the corne
     (w, s) = (w_f, s_f) + C lambda,    C = alpha dt^2 Bc S^-1 Bc'  with S^-1 the same solve,
     f1 = F - k D1 - B' mu1 + dt^2 Bc' lambda,
 
-so that one factorisation, and as many solves with it as there are forces, serve every contact state.
+so that one factorisation, and as many solves with it as there are forces, serve every contact state. Other schemes
+take one stage or two of this form (`dda.scheme.stages`), each with its own contacts.
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
 from dda.contact.kernel import (
     FOUND,
+    NONE,
     TO_PAIR,
     Contacts,
     Flexibility,
@@ -32,6 +35,7 @@ from dda.contact.kernel import (
     find_contacts,
     law_of,
     shear_law_of,
+    spring_energy,
     work_for,
 )
 from dda.contact.springs import Contact, base_directions
@@ -43,12 +47,23 @@ from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_step import NEWMARK
-from dda.scheme.newmark import Scheme, predictor, velocity_corrector
+from dda.scheme.newmark import Scheme, inertia_force, late_momentum, predictor, velocity_corrector
+from dda.scheme.stages import Stage
 from dda.stepping.compiled import Compilable
 from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
-from dda.stepping.energy import ALGORITHMIC, DAMPING, ENERGIES, GIVEN, add_contact_losses, bulk_loss, spring_energies
+from dda.stepping.energy import (
+    ALGORITHMIC,
+    DAMPING,
+    ENERGIES,
+    FRICTION,
+    GIVEN,
+    SWITCHING,
+    add_contact_losses,
+    bulk_loss,
+    spring_energies,
+)
 from dda.system.joints import FIXED
-from dda.system.solution import Stepper
+from dda.system.solution import StageSolver
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations, inverses
 
@@ -121,7 +136,24 @@ class SystemState:
     P: Array  # dt M V
     f: Array  # dt^2 M A
     mu: Array  # dt^2 times the forces of the glue
+    force: Array  # dt^2 times all forces, f of schemes that do not average them
     contacts: Contacts  # of the points
+
+
+class StageLength:
+    """What forces of the points change in a stage of a step of one length."""
+
+    def __init__(self, opening: OpeningSystem, stage: Scheme | Stage, rows: Array) -> None:
+        self.solver = StageSolver(opening.equations, stage)
+        self.still = np.zeros(len(opening.equations.pressure))
+        push = stage.step**2 * rows
+        responses = [self.solver.increments(self.solver.weight * row, self.still) for row in push]
+        self.moved, self.glued = (np.array([pair[i] for pair in responses]).T for i in (0, 1))
+        C = rows @ self.moved
+        C = (C + C.T) / 2
+        self.flexible = Flexibility(C, C.copy())
+        if len(C) == 4 and len(opening.normals) == 2:
+            change_slides(C, TO_PAIR, self.flexible.C_paired)
 
 
 class Length:
@@ -129,19 +161,21 @@ class Length:
 
     def __init__(self, opening: OpeningSystem, scheme: Scheme, ratio: float) -> None:
         self.scheme = scheme if ratio == 1 else replace(scheme, gg=scheme.gg**ratio, step=scheme.step * ratio)
-        self.stepper = Stepper(opening.equations, self.scheme)
         h2 = self.scheme.step**2
         self.F = h2 * opening.equations.F * opening.system.load_size
         self.rows = np.concatenate([opening.normals, opening.tangents]) if opening.law.shear else opening.normals
-        self.still = np.zeros(len(opening.equations.pressure))
         self.push = h2 * self.rows.T
-        responses = [self.stepper.increments(self.scheme.alpha * row, self.still) for row in self.push.T]
-        self.moved, self.glued = (np.array([pair[i] for pair in responses]).T for i in (0, 1))
-        C = self.rows @ self.moved
-        C = (C + C.T) / 2
-        self.flexible = Flexibility(C, C.copy())
-        if len(C) == 4 and len(opening.normals) == 2:
-            change_slides(C, TO_PAIR, self.flexible.C_paired)
+        self.stages = [StageLength(opening, stage, self.rows) for stage in self.scheme.stages]
+
+
+class MadeStage(NamedTuple):
+    """A stage that was made last."""
+
+    before: SystemState
+    after: SystemState
+    carried: Array  # (2,) by which the base moved, along and away from it [m]
+    slipped: Array  # of the points [m]
+    share: float  # its length over that of the step
 
 
 class OpeningBody:
@@ -168,7 +202,8 @@ class OpeningBody:
         self.elastic = e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
         self.energies = energies
-        self.carried = np.zeros(2)  # by which the base moves in a part of a step, along and away from itself [m]
+        self.between = self.start_state()  # room for the end of a first stage
+        self.passed: list[MadeStage] = []  # the stages of the part of a step that was made last
 
     def length(self, ratio: float) -> Length:
         """Return what belongs to a length, over the scheme's step; that of the whole step is always kept."""
@@ -176,8 +211,9 @@ class OpeningBody:
             if len(self.lengths) >= LENGTHS:
                 self.lengths = {1.0: self.lengths[1.0]}
             length = self.lengths[ratio] = Length(self.opening, self.scheme, ratio)
-            length.flexible = self.find.room(length.flexible)
-            self.made += 1
+            for stage in length.stages:
+                stage.flexible = self.find.room(stage.flexible)
+                self.made += 1
         return self.lengths[ratio]
 
     def start_state(self) -> SystemState:
@@ -190,13 +226,22 @@ class OpeningBody:
         F = dt * dt * e.F * self.opening.system.load_size
         f = F if self.scheme.start == "consistent" else np.zeros_like(F)
         contacts = at_rest(np.full(self.points, self.opening.law.gap))
-        return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), self.find.room(contacts))
+        P = late_momentum(self.scheme, P, f)
+        return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), F, self.find.room(contacts))
 
-    def stored(self, state: SystemState) -> tuple[float, ...]:
+    def stored(self, state: SystemState, discount: float = 1.0) -> tuple[float, ...]:
         """Return kinetic and strain energy, and that of the load without what the base gave [J]."""
         dt = self.scheme.step
         strain = self.stiff(state.D, state.mu / dt**2) / 2
-        return self.kinetic(state.P / dt), strain, -float(self.F @ state.D)
+        return self.kinetic(self.momentum(state, discount) / dt), strain, -float(self.F @ state.D)
+
+    def momentum(self, state: SystemState, discount: float = 1.0) -> Array:
+        """Return dt M V at the time of the displacements; `discount` is that of P."""
+        return discount * state.P + self.scheme.lag * state.f if self.scheme.lag else state.P
+
+    def start_discount(self, first: bool) -> float:
+        """Return the discount of P at the start of a step: gg in what `late_momentum` made of the one at t = 0."""
+        return self.scheme.gg if first and self.scheme.lag else 1.0
 
     def kinetic(self, momentum: Array) -> float:
         """Return momentum' M^-1 momentum / 2."""
@@ -211,39 +256,95 @@ def advance(
     body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, base: BaseRecord | None, part: Part
 ) -> tuple[int, int]:
     """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-    ratio = part.ratio
-    length = body.length(ratio)
-    scheme = length.scheme
-    stepper = length.stepper
+    if body.scheme.lag and part.ratio != 1:  # the velocity of half a step before goes on in equal steps only
+        return NONE, 0
+    length = body.length(part.ratio)
+    body.passed.clear()
+    before = state
+    begin = 0.0
+    total = 0
+    for number, stage in enumerate(length.stages):
+        target = after if number + 1 == len(length.stages) else body.between
+        end = float(stage.solver.stage.end)
+        interval = Part(part.begun + part.ratio * begin, part.ratio * (end - begin))
+        carried = np.zeros(2)
+        if base is not None:
+            base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
+        outcome, solves = make_stage(body, shear_law, (length, stage), (state, before), target, carried, part.ratio)
+        total += solves
+        if outcome != FOUND:
+            return outcome, total
+        slipped = np.array(target.contacts.slipped)
+        body.passed.append(MadeStage(before, target, carried, slipped, end - begin))
+        before = target
+        begin = end
+    if len(body.passed) > 1:
+        for i in range(body.points):
+            after.contacts.slipped[i] = sum(stage.slipped[i] for stage in body.passed)
+    return FOUND, total
+
+
+def make_stage(
+    body: OpeningBody,
+    shear_law: Shear,
+    matrices: tuple[Length, StageLength],
+    states: tuple[SystemState, SystemState],
+    after: SystemState,
+    carried: Array,
+    ratio: float,
+) -> tuple[int, int]:
+    """Go to the end of a stage; return the outcome and the number of solves.
+
+    Parameters
+    ----------
+    states
+        The start of the step, and the end of the stage before.
+    carried
+        By which the base moves, along and away from itself [m].
+    """
+    length, made = matrices
+    state, before = states
+    solver = made.solver
+    stage = solver.stage
     P = ratio * state.P
     f = ratio * ratio * state.f
-    mu = ratio * ratio * state.mu
-    internal = stepper.k @ state.D + stepper.Bt @ mu
-    dD, dmu = stepper.increments(predictor(scheme, P, f) + scheme.alpha * (length.F - internal), length.still)
+    force_0 = ratio * ratio * state.force
+    mu = ratio * ratio * before.mu
+    follows = before is not state
+    balance = predictor(stage, stage.d_u * P, f)
+    if follows:
+        balance = balance + stage.d_g * (ratio * before.P) + stage.e_g * (ratio * ratio * before.f)
+    # contact forces at the start of the stage are no part of what is known of its end
+    internal = solver.k @ before.D + solver.Bt @ mu
+    balance = balance + stage.alpha * inertia_force(stage, length.F - internal, force_0, f)
+    dD, dmu = solver.increments(balance, made.still)
     moved = length.rows @ dD
-    carried = body.carried
-    if base is not None:
-        base_displacement(base, body.scheme.step, part, np.zeros(2), carried)
     n = body.points
-    free = Free(np.array(state.contacts.gap) + moved[:n] - carried[1], np.zeros(n), np.zeros(n))
+    free = Free(np.array(before.contacts.gap) + moved[:n] - carried[1], np.zeros(n), np.zeros(n))
     if len(moved) > n:
         free.slide[:] = moved[n:] - carried[0]
         free.paired[:2] = (free.slide[0] + free.slide[-1]) / 2, free.slide[-1] - free.slide[0]
-    outcome, solves = body.find(body.law, shear_law, state.contacts, free, length.flexible, after.contacts, body.work)
+    outcome, solves = body.find(body.law, shear_law, before.contacts, free, made.flexible, after.contacts, body.work)
     if outcome != FOUND:
         return outcome, solves
     forces = np.array([*after.contacts.normal, *after.contacts.shear])[: len(moved)]
-    after.D = state.D + dD
+    D = before.D + dD
     mu = mu + dmu
     pressed = np.zeros_like(dD)
     if np.any(forces):
-        after.D = after.D + length.moved @ forces
-        mu = mu + length.glued @ forces
+        D = D + made.moved @ forces
+        mu = mu + made.glued @ forces
         pressed = length.push @ forces
-    f1 = length.F - (stepper.k @ after.D + stepper.Bt @ mu) + pressed
-    after.P = velocity_corrector(scheme, P, f, f1) / ratio
+    force = length.F - (solver.k @ D + solver.Bt @ mu) + pressed
+    f1 = inertia_force(stage, force, force_0, f)
+    P1 = velocity_corrector(stage, P, f, f1)
+    if follows:
+        P1 = P1 + stage.g_g * (ratio * ratio * before.f)
+    after.D = D
+    after.P = P1 / ratio
     after.f = f1 / (ratio * ratio)
     after.mu = mu / (ratio * ratio)
+    after.force = force / (ratio * ratio)
     return FOUND, solves
 
 
@@ -254,23 +355,37 @@ def account(
     opening = body.opening
     scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
-    carried = body.carried
+    newmark = scheme.table is None
+    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN]
+    algorithmic = sums[ALGORITHMIC]
+    late = scheme.delta if newmark else 0.5
+    for stage in body.passed:
+        slide = opening.tangents @ (stage.after.D - stage.before.D) - stage.carried[0]
+        add_contact_losses(
+            body.law,
+            shear_law,
+            stage.before.contacts,
+            stage.after.contacts,
+            stage.slipped,
+            slide,
+            stage.carried,
+            late,
+            scheme.step * stage.share,
+            1.0,
+            sums,
+        )
+    discount = body.start_discount(part.begun == 0)
+    if discount == 1:
+        sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
+    if not newmark:  # the algorithm loses what the others leave of the balance
+        lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN] - lost
+        released = sum(body.stored(state, discount)) - sum(body.stored(after))
+        for i in range(body.points):
+            released += spring_energy(body.law, shear_law, state.contacts, i)
+            released -= spring_energy(body.law, shear_law, after.contacts, i)
+        sums[ALGORITHMIC] = algorithmic + released - lost
+        return
     moved = after.D - state.D
-    slide = opening.tangents @ moved - carried[0]
-    add_contact_losses(
-        body.law,
-        shear_law,
-        state.contacts,
-        after.contacts,
-        after.contacts.slipped,
-        slide,
-        carried,
-        scheme.delta,
-        scheme.step,
-        1.0,
-        sums,
-    )
-    sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
     R0 = state.f / dt2
     R1 = after.f / dt2
     internal = body.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
@@ -285,8 +400,9 @@ def account(
 def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> bool:
     """Write columns, momentum and energy at the end of a step; tell whether it is finite."""
     columns = body.observers @ state.D + body.pressure * np.sum(state.contacts.normal)
-    momentum = state.P.reshape(-1, 6)[:, :2].sum(axis=0)
-    stored = body.stored(state) if body.energies else ()
+    discount = body.start_discount(number == 0)
+    momentum = body.momentum(state, discount).reshape(-1, 6)[:, :2].sum(axis=0)
+    stored = body.stored(state, discount) if body.energies else ()
     rows[number] = np.concatenate([columns, momentum, body.opening.tangents @ state.D, stored])
     return bool(np.isfinite(state.D).all())
 
@@ -316,13 +432,15 @@ def solve_opening_system(
     options = options or UnilateralOptions()
     if options.rule != NEWMARK:
         raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
+    if opening.law.damping:
+        raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {opening.law.damping:g}")
     law = opening.law
     if law.rules == LAGGED:
         raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
     check_scheme(law, scheme)
     began = perf_counter()
     body = OpeningBody(opening, scheme, options.solve_limit, columns, steps, options.energies)
-    nonzeros = body.length(1.0).stepper.factor.nonzeros
+    nonzeros = body.length(1.0).stages[-1].solver.factor.nonzeros
     requested = len(columns)
     points = body.points
     history = history_of(steps, requested + 2 + points + 3 * options.energies, points, options.energies)

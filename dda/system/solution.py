@@ -8,7 +8,8 @@ mu = dt^2 lambda, k = dt^2 Ke, C' = C / dt^2 and S = M + alpha k, which is a mat
 
 by (C' + alpha B S^-1 B') dmu = B S^-1 r - G dy, whose matrix is sparse, positive definite and
 factorised once. Then f1 = F - k D1 - B' mu1 and P1 = gg P + (1 - delta) f + delta f1, as for one block.
-The force of a joint is never its stiffness times a difference of displacements.
+The force of a joint is never its stiffness times a difference of displacements. Other schemes take one stage or two
+of this form (`dda.scheme.stages`), with alpha (1 - af)/(1 - am) for alpha in the matrices.
 """
 
 from __future__ import annotations
@@ -24,7 +25,17 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.one_block.modes import Mode, scalar_eigenvalues
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
-from dda.scheme.newmark import Scheme, effective_matrix, predictor, predictors, velocity_corrector
+from dda.scheme.newmark import (
+    Scheme,
+    effective_matrix,
+    implicit_weight,
+    inertia_force,
+    late_momentum,
+    predictor,
+    predictors,
+    velocity_corrector,
+)
+from dda.scheme.stages import Stage
 from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 
 if TYPE_CHECKING:
@@ -34,21 +45,21 @@ _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each co
 _DENSE = 300  # unknowns up to which all modes are found by a dense solver
 
 
-def joint_flexibility(scheme: Scheme, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
+def joint_flexibility(scheme: Scheme | Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
     """Return C' + alpha B S^-1 B', the matrix of the joint forces' increments."""
-    return C + scheme.alpha * (B @ inverse @ B.T)
+    return C + implicit_weight(scheme) * (B @ inverse @ B.T)
 
 
-class Stepper:
-    """The scheme on a system; everything is multiplied by dt^2 where the module says so."""
+class StageSolver:
+    """The equations of a stage; everything is multiplied by dt^2 where the module says so."""
 
-    def __init__(self, equations: Equations, scheme: Scheme) -> None:
+    def __init__(self, equations: Equations, stage: Scheme | Stage) -> None:
         """Form the matrices and factorise the one of the joint forces."""
-        self.equations = equations
-        self.scheme = scheme
-        k = scheme.step**2 * equations.elastic
+        self.stage = stage
+        self.weight = implicit_weight(stage)
+        k = stage.step**2 * equations.elastic
         B = equations.B
-        S = effective_matrix(scheme, equations.mass, k)
+        S = effective_matrix(stage, equations.mass, k)
         self.k = equations.blockwise(k)
         self.B = B
         self.Bt = B.T.tocsr()
@@ -56,10 +67,10 @@ class Stepper:
         self.BS = (B @ self.inverse).tocsr()
         self.BSt = self.BS.T.tocsr()
         self.S = equations.blockwise(S)
-        self.C = equations.C / scheme.step**2
-        flexibility = joint_flexibility(scheme, self.C, B, self.inverse)
+        self.C = equations.C / stage.step**2
+        flexibility = joint_flexibility(stage, self.C, B, self.inverse)
         self.factor = factor(flexibility) if B.shape[0] else Factor(np.copy, 0)
-        stiff = scheme.alpha * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
+        stiff = self.weight * float(np.max(np.einsum("nii->ni", k) / np.einsum("nii->ni", equations.mass)))
         self.corrections = sum(stiff > limit for limit in _STIFF)
 
     def increments(self, r: Array, push: Array) -> tuple[Array, Array]:
@@ -70,7 +81,7 @@ class Stepper:
         """
         dD, dmu = self._solve(r, push)
         for _ in range(self.corrections):
-            residual = r - self.S @ dD - self.scheme.alpha * (self.Bt @ dmu)
+            residual = r - self.S @ dD - self.weight * (self.Bt @ dmu)
             correction = self._solve(residual, push - self.B @ dD + self.C @ dmu)
             dD = dD + correction[0]
             dmu = dmu + correction[1]
@@ -78,30 +89,56 @@ class Stepper:
 
     def _solve(self, r: Array, push: Array) -> tuple[Array, Array]:
         dmu = self.factor.solve(self.BS @ r - push)
-        return self.inverse @ r - self.scheme.alpha * (self.BSt @ dmu), dmu
+        return self.inverse @ r - self.weight * (self.BSt @ dmu), dmu
+
+
+class Stepper:
+    """The scheme on a system, stage by stage."""
+
+    def __init__(self, equations: Equations, scheme: Scheme) -> None:
+        """Form and factorise the matrices of all stages."""
+        self.equations = equations
+        self.scheme = scheme
+        self.stages = [StageSolver(equations, stage) for stage in scheme.stages]
 
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
-        """Return the observed rows of D and lambda at every step, (rows, steps)."""
+        """Return the observed rows of D and lambda at every step, (rows, steps).
+
+        Parameters
+        ----------
+        moved : (1 + stages * steps, 2) array
+            Displacement of what is fixed at t = 0 and at the end of each stage, over the size of the loads.
+        """
         e = self.equations
         s = self.scheme
         F = s.step**2 * e.F
-        pushes = np.diff(moved, axis=0) @ e.G.T
+        pushes = iter(np.diff(moved, axis=0) @ e.G.T)
         by_D = rows[0]
         by_mu = rows[1] / s.step**2
         D = np.zeros_like(F)
-        P = np.zeros_like(F)
         mu = -(s.step**2 * (e.kappa @ (e.G @ moved[0])))
-        internal = self.Bt @ mu
-        f = F - internal if s.start == "consistent" else 0 * F
+        force = F - self.stages[0].Bt @ mu
+        f = force if s.start == "consistent" else 0 * F
+        P = late_momentum(s, np.zeros_like(F), f)
         observed = np.empty((len(by_D), steps))
         for n in range(steps):
-            dD, dmu = self.increments(predictor(s, P, f) + s.alpha * (F - internal), pushes[n])
-            D = D + dD
-            mu = mu + dmu
-            internal = self.k @ D + self.Bt @ mu
-            f1 = F - internal
-            P = velocity_corrector(s, P, f, f1)
-            f = f1
+            P_0 = P
+            f_0 = f
+            force_0 = force
+            for number, solver in enumerate(self.stages):
+                stage = solver.stage
+                balance = predictor(stage, stage.d_u * P_0, f_0)
+                gained = 0.0
+                if number > 0:
+                    balance = balance + stage.d_g * P + stage.e_g * f
+                    gained = stage.g_g * f
+                balance = balance + stage.alpha * inertia_force(stage, force, force_0, f_0)
+                dD, dmu = solver.increments(balance, next(pushes))
+                D = D + dD
+                mu = mu + dmu
+                force = F - (solver.k @ D + solver.Bt @ mu)
+                f = inertia_force(stage, force, force_0, f_0)
+                P = velocity_corrector(stage, P_0, f_0, f) + gained
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 
@@ -133,6 +170,7 @@ class _ViscousStepper(Stepper):
         e = self.equations
         s = replace(self.damped_scheme, step=1.0)  # of v and q
         F = self.scheme.step**2 * e.F
+        solver = self.stages[0]
         still = np.zeros(len(e.pressure))
         observed_by = rows[0] + (e.B.T @ (e.kappa @ rows[1].T)).T
         D, v, G = np.zeros((3, len(F)))
@@ -143,12 +181,12 @@ class _ViscousStepper(Stepper):
             D, v = predictors(s, D, v, q)
             ahead = D + self.lag * v
             drag = self.drag * (self.M @ v)
-            internal = self.k @ G + self.Bt @ mu
+            internal = solver.k @ G + solver.Bt @ mu
             r = self.M @ (ahead - G) + self.scheme.alpha * (F - drag - internal)
-            dG, dmu = self.increments(r, still)
+            dG, dmu = solver.increments(r, still)
             G = G + dG
             mu = mu + dmu
-            q = self.inverse_mass @ (F - drag - self.k @ G - self.Bt @ mu) / self.mass_factor
+            q = self.inverse_mass @ (F - drag - solver.k @ G - solver.Bt @ mu) / self.mass_factor
             if self.beta:  # alpha q as a difference of what the springs feel: stiff ones keep their digits
                 D = D + s.alpha / self.beta * (G - ahead)
             v = v + s.delta * q
@@ -188,7 +226,7 @@ def solve_system(
     stepper = _ViscousStepper(equations, scheme) if scheme.damped else Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.step * np.arange(steps + 1.0)))
+        observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.instants(steps)))
         observed *= system.load_size
         observed += 0.0
         overflow = bound_overflow(observed, system.load_size)
@@ -196,9 +234,9 @@ def solve_system(
         **times_of(scheme, steps, began, ready),
         columns=dict(zip(columns, observed, strict=True)),
         unknowns=len(equations.F),
-        nonzeros=stepper.factor.nonzeros,
-        factorisations=1,
-        solves=steps * (1 + stepper.corrections),
+        nonzeros=stepper.stages[-1].factor.nonzeros,
+        factorisations=len(stepper.stages),
+        solves=steps * sum(1 + solver.corrections for solver in stepper.stages),
         notes=_savings(system, equations) + overflow,
     )
 

@@ -80,9 +80,12 @@ def _warm(march: Callable[..., Any]) -> None:
     """Compile for the types of a history, by one of no steps."""
     one = np.ones(1)
     square = np.ones((1, 1))
-    block = kernel.Block(one, one, one, square, square, square, one, np.ones((3, 1)), one, 0.5, 1.0, 1.0, 1.0)
+    numbers = [0.5] * (len(kernel.Block._fields) - 10)
+    block = kernel.Block(one, one, one, square, square, square, one, np.ones((3, 1)), one, *numbers, True)
     law = kernel.Law(square, one, one, 1.0, one, one, 1.0, 1, False)
-    state = kernel.ContactState(one, one, one, one, one, one, one, one, np.ones(1, np.int8), one, np.zeros(9))
-    base = np.zeros((0, 2))
+    state = kernel.ContactState(
+        one, one, one, one, one, one, one, one, np.ones(1, np.int8), one, np.zeros(kernel.TOTALS)
+    )
+    base = np.zeros((0, 1, 2))
     columns = np.zeros(1, dtype=np.int64)
-    march(block, law, state, base, columns, True, True, np.zeros((0, 1)), np.zeros((0, 5, 1)), None)
+    march((block,), (law,), state, base, columns, True, True, np.zeros((0, 1)), np.zeros((0, 5, 1)), None)

@@ -1,14 +1,17 @@
 r"""Steps of a block on contact points, as plain functions of arrays and numbers.
 
-With S = M + alpha dt^2 K of the block without the base's springs and B the rows of the points' gaps and slips::
+A step has the stages of its scheme (`fem_reference.problem.stages`), with u = gg V, b = beta / (1 - am) and
+E = (1 - am) A1 + am A, the acceleration of the equation of motion. With S = M + beta' dt^2 K of the block without the
+base's springs and B the rows of the points' gaps and slips, a stage is::
 
-    D* = D + gg dt V + dt^2 (1/2 - alpha) A
-    A1 = S^-1 (F - K D*) + S^-1 B' (N, T)          the free block, then the contact forces
-    D1 = D* + alpha dt^2 A1
-    V1 = gg V + dt ((1 - delta) A + delta A1)
+    D* = D + dt (d_u u + d_g Vg) + dt^2 (e_0 A + e_g Ag - b am A)
+    E  = S^-1 (F - K [(1 - af) D* + af D]) + S^-1 B' [(1 - af) (N, T) + af (N0, T0)]
+    D1 = D* + b dt^2 E,   A1 = (E - am A) / (1 - am),   V1 = u + dt (g_0 A + g_g Ag + gamma A1)
 
-so that M A1 = F - K D1 + B' (N, T) without a division by alpha dt^2. The gaps and slips at the end are those of the
-free block plus C (N, T), C = alpha dt^2 B S^-1 B'. Nothing depends on the contact states but the small problem of the
+the free block, then the contact forces of both ends of the step in the mean of the scheme, without a division by
+beta dt^2. For Newmark's scheme D* = D + gg dt V + dt^2 (1/2 - alpha) A, E = A1 and the forces are those of the end. The
+gaps and slips at the end are those of the free block plus C (N, T), C = beta' dt^2 B S^-1 B', zero where the scheme is
+explicit. Nothing depends on the contact states but the small problem of the
 forces. The displacement of a base that moves is taken from the gaps and slips. With implicit contact (Kane, Repetto,
 Ortiz and Marsden, 1999) A is the block's own, M A1 = F - K D1, under average acceleration, and the forces of the
 step's end throw it besides, D by dt^2 / 2 and V by dt times Q = M^-1 B' (N, T)::
@@ -80,7 +83,9 @@ BASE = 1
 INPUT = 3
 LOSSES = 4
 STARTED = 8
-"""Where `ContactState.totals` has its numbers."""
+UNDISCOUNTED = 9
+TOTALS = 10
+"""Where `ContactState.totals` has its numbers, and how many they are."""
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
 COUNTS = ("solves", "cuts")
@@ -111,25 +116,37 @@ POINTWISE = ("normal", "gap", "shear", "states", "slid")
 
 
 class Block(NamedTuple):
-    """The block and its scheme for one length of step; operators are diagonals, or know products with vectors."""
+    """The block in one stage of one length of step; operators are diagonals, or know products with vectors."""
 
     K: Any  # elastic stiffness without the springs of the base [N/m]
     M: Any  # mass [kg]
-    inverse: Any  # S^-1 [1/kg]
+    inverse: Any  # S^-1 of the stage [1/kg]
     B: Any  # rows of the gaps, then slips, of the points, shape (forces, unknowns)
     response: Any  # S^-1 B' of the forces, over 2 alpha for implicit contact, shape (unknowns, forces)
     impulse: Any  # M^-1 B' for implicit contact, shape (unknowns, forces)
     F: Array  # constant load [N], shape (unknowns,)
     rows: Array  # rows that give v, u and the rotation at the centroid, shape (3, unknowns)
     momentum: Array  # row that gives the velocity of the centre of mass upwards, shape (unknowns,)
-    alpha: float
-    delta: float
     gg: float  # factor on the velocity for this length of step [-]
     step: float  # length of step [s]
+    stagger: float  # time from that of the velocity to the end of the step [s]
+    duration: float  # of the stage, over the step [-]
+    beta: float  # numbers of the stage: `fem_reference.problem.stages.Stage`
+    gamma: float
+    d_u: float
+    d_g: float
+    e_0: float
+    e_g: float
+    g_0: float
+    g_g: float
+    am: float
+    af: float
+    end_weight: float  # of the forces at the end of the stage in the energy that points lose [-]
+    has_closed_loss: bool  # whether the scheme's own loss has Newmark's closed form
 
 
 class Law(NamedTuple):
-    """The contact of all points for one length of step."""
+    """The contact of all points for one stage of one length of step."""
 
     C: Array  # gaps, then slips, of unit forces [m/N], shape (forces, forces)
     compliance: Array  # 1 / k of each point [m/N], shape (points,)
@@ -155,7 +172,9 @@ class ContactState(NamedTuple):
     shear: Array  # tangential force T of each point on the block [N]
     states: States  # state of each point
     slid: Array  # sum of what the reference of each point has moved while it was closed [m]
-    totals: Array  # time [s], displacement of the base [m, m], its work on the block [J], four losses [J], started
+    totals: (
+        Array  # time [s], the base's displacement [m, m] and work on the block [J], losses [J], started, undiscounted
+    )
 
     @property
     def closed(self) -> NDArray[np.bool_]:
@@ -187,8 +206,8 @@ Fallback = Callable[[Law, Trial, Array, Array, States, States], tuple[Trial, Sta
 
 
 def march(
-    block: Block,
-    law: Law,
+    blocks: tuple[Block, ...],
+    laws: tuple[Law, ...],
     state: ContactState,
     base: Array,
     columns: NDArray[np.int64],
@@ -202,10 +221,10 @@ def march(
 
     Parameters
     ----------
-    block, law, state
-        The block, its contact and the state to begin with.
+    blocks, laws, state
+        The block and its contact in each stage of a step, and the state to begin with.
     base
-        Displacement of the base at the ends of the steps, normal to it and along it [m], shape (steps, 2).
+        Displacement of the base at the ends of the stages, normal to it and along it [m], shape (steps, stages, 2).
     columns
         Numbers of the columns that are kept, in the order of `UNILATERAL_COLUMNS`.
     energies, losses
@@ -215,7 +234,7 @@ def march(
     points
         What is kept of all points, `POINTWISE` (filled), shape (steps, 5, points) or (0, 5, points).
     fallback
-        What finds the contact of a step whose iteration does not end, `fall_back`; the march ends there if None.
+        What finds the contact of a stage whose iteration does not end, `fall_back`; the march ends there if None.
 
     Returns
     -------
@@ -223,12 +242,12 @@ def march(
         State after the completed steps, their number, solutions of the contact in the last step, how it has ended.
     """
     solves = 0
-    equations = equations_of(law, state.states, np.ones(len(state.gap)))
+    equations = equations_of(laws[0], state.states, np.ones(len(state.gap)))
     for n in range(len(table)):
-        following, equations, solves, outcome = advance(block, law, equations, state, base[n], losses, fallback)
+        following, equations, solves, outcome = advance(blocks, laws, equations, state, base[n], losses, fallback)
         if outcome != CONVERGED:
             return state, n, solves, outcome
-        row = observed(block, law, following, energies, float(solves))
+        row = observed(blocks[0], laws[0], following, energies, float(solves))
         for i in range(len(columns)):
             table[n, i] = row[columns[i]]
             if not np.isfinite(table[n, i]):
@@ -245,8 +264,8 @@ def march(
 
 
 def advance(
-    block: Block,
-    law: Law,
+    blocks: tuple[Block, ...],
+    laws: tuple[Law, ...],
     equations: Equations,
     state: ContactState,
     base: Array,
@@ -254,16 +273,53 @@ def advance(
     fallback: Fallback | None,
 ) -> tuple[ContactState, Equations, int, int]:
     """One step: the state at its end, equations for the next, number of solutions of the contact, how it has ended."""
-    D = state.D
-    V = state.V
-    A = state.A
-    alpha = block.alpha
-    delta = block.delta
-    gg = block.gg
+    latest = state
+    solves = 0
+    for stage in range(len(blocks)):
+        if len(blocks) > 1:
+            # Those of the stage before are of another matrix.
+            equations = equations_of(laws[stage], latest.states, np.ones(len(state.gap)))
+        latest, equations, stage_solves, outcome = advance_stage(
+            blocks[stage], laws[stage], equations, state, latest, base[stage], stage > 0, losses, fallback
+        )
+        solves += stage_solves
+        if outcome != CONVERGED:
+            return state, equations, solves, outcome
+    return latest, equations, solves, CONVERGED
+
+
+def advance_stage(
+    block: Block,
+    law: Law,
+    equations: Equations,
+    start: ContactState,
+    state: ContactState,
+    base: Array,
+    is_later: bool,
+    losses: bool,
+    fallback: Fallback | None,
+) -> tuple[ContactState, Equations, int, int]:
+    """One stage from the `start` of the step, the stage before having ended in `state`; as `advance`."""
+    D = start.D
+    V = start.V
+    A = start.A
     h = block.step
-    predicted = D + (gg * h) * V + (h**2 * (0.5 - alpha)) * A
-    free_acceleration = block.inverse * (block.F - block.K * predicted)
-    change = block.B @ (predicted - D + (alpha * h**2) * free_acceleration)
+    am = block.am
+    af = block.af
+    compliance = block.beta / (1 - am) * h**2
+    gg = 1.0 if start.totals[UNDISCOUNTED] > 0 else block.gg
+    predicted = D + (gg * h * block.d_u) * V + (h**2 * block.e_0) * A
+    if is_later:
+        predicted = predicted + (h * block.d_g) * state.V + (h**2 * block.e_g) * state.A
+    if am != 0:
+        predicted = predicted - (compliance * am) * A
+    strained = predicted
+    if af != 0:
+        strained = (1 - af) * predicted + af * D
+    free_acceleration = block.inverse * (block.F - block.K * strained)
+    if af != 0:
+        free_acceleration = free_acceleration + block.response @ (af * forces_of(law, start))
+    change = block.B @ (predicted - state.D + compliance * free_acceleration)
     if not np.isfinite(change).all():
         return state, equations, 0, OVERFLOW
     count = len(state.gap)
@@ -279,19 +335,39 @@ def advance(
     if outcome != CONVERGED:
         return state, trial.equations, solves, outcome
 
-    A1 = free_acceleration + block.response @ trial.forces
-    D1 = predicted + (alpha * h**2) * A1
+    balanced = free_acceleration + block.response @ ((1 - af) * trial.forces)
+    D1 = predicted + compliance * balanced
+    A1 = balanced
+    if am != 0:
+        A1 = (balanced - am * A) / (1 - am)
     if law.implicit:
         thrown = block.impulse @ trial.forces
-        A1 = A1 - thrown / (2 * alpha)
-        V1 = gg * V + h * ((1 - delta) * A + delta * A1 + thrown)
+        A1 = A1 - thrown / (2 * block.beta)
+        V1 = gg * V + h * (block.g_0 * A + block.gamma * A1 + thrown)
     else:
-        V1 = gg * V + h * ((1 - delta) * A + delta * A1)
+        V1 = gg * V + h * (block.g_0 * A + block.gamma * A1)
+    if is_later:
+        V1 = V1 + (h * block.g_g) * state.A
     totals = state.totals.copy()
+    totals[UNDISCOUNTED] = 0.0
     if losses:
-        add_block_losses(block, law, state, D1, A1, totals)
+        discounted = 0.0 if is_later else (1 - gg**2) * (V @ (block.M * V)) / 2
+        totals[LOSSES + 1] += discounted
+        if block.has_closed_loss:
+            add_block_losses(block, law, state, D1, A1, totals)
+        else:
+            add_balance_losses(block, law, state, trial.forces, D1, V1, A1, discounted, totals)
     following = moved_points(block, law, state, base, trial, change + trial.yielded, states, D1, V1, A1, totals)
     return following, trial.equations, solves, outcome
+
+
+def forces_of(law: Law, state: ContactState) -> Array:
+    """N, then T where there are shear springs, of the points [N]."""
+    forces = np.empty(len(law.C))
+    count = len(state.gap)
+    for i in range(len(forces)):
+        forces[i] = state.normal[i] if i < count else state.shear[i - count]
+    return forces
 
 
 def contact(
@@ -536,15 +612,15 @@ def moved_points(
 ) -> ContactState:
     r"""State at the end of a step, with the energies that its points lose and get added to `totals`.
 
-    With d( ) the change over the step, U the energy of a point's springs and forces weighted by delta, 1 at the end of
-    a step for implicit contact, a point loses -dU - dw [(1 - delta) N0 + delta N1] - ds [(1 - delta) T0 + delta T1].
-    -T1 dr of one that slides, whose reference moves by dr against T1, is the loss by friction. What a point loses
-    beside it while it stays closed belongs to the scheme's own loss, what it loses while it opens or closes is the
-    loss by switching.
+    With d( ) the change over the stage, U the energy of a point's springs and forces weighted by delta (1/2 where the
+    scheme is not Newmark's, 1 at the end of a step for implicit contact), a point loses
+    -dU - dw [(1 - delta) N0 + delta N1] - ds [(1 - delta) T0 + delta T1]. -T1 dr of one that slides, whose reference
+    moves by dr against T1, is the loss by friction. What a point loses beside it while it stays closed belongs to the
+    scheme's own loss, what it loses while it opens or closes is the loss by switching.
     """
     count = len(state.gap)
     has_shear = len(trial.forces) > count
-    late = 1.0 if law.implicit else block.delta
+    late = block.end_weight
     gaps = np.empty(count)
     slips = np.zeros(count)
     references = np.zeros(count)
@@ -596,12 +672,12 @@ def moved_points(
         sums[i] = slid
     totals[BASE] = base[0]
     totals[BASE + 1] = base[1]
-    totals[TIME] += block.step
+    totals[TIME] += block.step * block.duration
     return ContactState(D1, V1, A1, gaps, slips, references, normals, shears, states, sums, totals)
 
 
 def add_block_losses(block: Block, law: Law, state: ContactState, D1: Array, A1: Array, totals: Array) -> None:
-    r"""Add the scheme's loss in the block itself, and that of gg.
+    r"""Add the loss of Newmark's scheme in the block itself.
 
     With M A = F - K D + B' lambda at both ends of a step of length h, V0 the velocity after gg, c = alpha - delta/2 and
     d( ) the change over the step, the sum E of the energies of motion, strain, springs (U of each point) and loads
@@ -611,28 +687,55 @@ def add_block_losses(block: Block, law: Law, state: ContactState, D1: Array, A1:
              + sum over the points of dU + dw [(1 - delta) N0 + delta N1] + ds [(1 - delta) T0 + delta T1]
 
     A start with A0 = 0 is out of balance by F0 = F - K D0 + B' lambda0, which adds -(1 - delta) dD' F0 to the first
-    step. gg takes (1 - gg^2) of the energy of motion. With implicit contact N1 and T1 count alone.
+    step. With implicit contact N1 and T1 count alone.
     """
-    c = block.alpha - block.delta / 2
-    over = block.delta - 0.5
+    c = block.beta - block.gamma / 2
+    over = block.gamma - 0.5
     dD = D1 - state.D
     loss = over * (dD @ (block.K * dD))
     if totals[STARTED] == 0:
         # The points bear no forces at t = 0, and the block no strain.
-        loss += (1 - block.delta) * (dD @ (block.F - block.M * state.A))
+        loss += (1 - block.gamma) * (dD @ (block.F - block.M * state.A))
         totals[STARTED] = 1
     if c != 0:
         dA = A1 - state.A
         stored = (A1 @ (block.M * A1) - state.A @ (block.M * state.A)) / 2
         loss += c * block.step**2 * (stored + over * (dA @ (block.M * dA)))
     totals[LOSSES] += loss
-    totals[LOSSES + 1] += (1 - block.gg**2) * (state.V @ (block.M * state.V)) / 2
+
+
+def add_balance_losses(
+    block: Block,
+    law: Law,
+    state: ContactState,
+    forces: Array,
+    D1: Array,
+    V1: Array,
+    A1: Array,
+    discounted: float,
+    totals: Array,
+) -> None:
+    """Add what a stage takes of the energies of motion, strain and loads beside gg and the work of the points' forces.
+
+    These forces are weighted as in `moved_points`.
+    """
+    dD = D1 - state.D
+    V0 = state.V + block.stagger * state.A
+    V_end = V1 + block.stagger * A1
+    kinetic = (V_end @ (block.M * V_end) - V0 @ (block.M * V0)) / 2
+    strain = (D1 @ (block.K * D1) - state.D @ (block.K * state.D)) / 2
+    weight = block.end_weight
+    mean = (1 - weight) * forces_of(law, state) + weight * forces
+    work = (block.B @ dD) @ mean
+    totals[LOSSES] += block.F @ dD + work - kinetic - strain - discounted
 
 
 def observed(block: Block, law: Law, state: ContactState, energies: bool, solves: float) -> Array:
     """All columns of a step, in the order of `UNILATERAL_COLUMNS`; energies are zero where they are not asked for."""
     D = state.D
     V = state.V
+    if block.stagger != 0:
+        V = V + block.stagger * state.A
     motion = block.rows @ D
     row = np.zeros(len(UNILATERAL_COLUMNS))
     row[0] = motion[0]

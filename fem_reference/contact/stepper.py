@@ -18,13 +18,15 @@ from fem_reference.contact.kernel import (
     STARTED,
     STICK,
     TIME,
+    TOTALS,
+    UNDISCOUNTED,
     UNILATERAL_COLUMNS,
     UNSETTLED,
     ContactState,
 )
 from fem_reference.contact.points import ContactModel
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration
+from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration, start_velocity
 
 AVERAGE = (0.25, 0.5)
 """Alpha and delta of average acceleration."""
@@ -123,7 +125,7 @@ class ContactStepper:
         if self.modal:
             self._use_modes()
         self._impulse = self._responses(self._factor(self._M))[0] if implicit else None
-        self._lengths: dict[float, tuple[kernel.Block, kernel.Law]] = {}
+        self._lengths: dict[float, tuple[tuple[kernel.Block, ...], tuple[kernel.Law, ...]]] = {}
         self._length(self.scheme.step)
 
     def start(self, gap: float = 0.0, speed: float = 0.0) -> ContactState:
@@ -132,12 +134,14 @@ class ContactStepper:
         consistent = self.scheme.start == "consistent"
         mass = self._factor(self._M) if consistent else None
         solve = None if mass is None else (lambda right: mass * right)
-        totals = np.zeros(9)
+        totals = np.zeros(TOTALS)
         totals[STARTED] = consistent
+        totals[UNDISCOUNTED] = self.scheme.staggered
+        A = initial_acceleration(self._F, solve)
         return ContactState(
             D=np.zeros_like(self._F),
-            V=speed * self._upwards,
-            A=initial_acceleration(self._F, solve),
+            V=start_velocity(speed * self._upwards, A, self.scheme),
+            A=A,
             gap=np.full(points, float(gap)),
             slip=np.zeros(points),
             reference=np.zeros(points),
@@ -155,11 +159,12 @@ class ContactStepper:
 
         The rows of the completed steps are filled.
         """
-        block, law = self._length(self.scheme.step if length is None else length)
-        base = np.zeros((len(table), 2))
+        blocks, laws = self._length(self.scheme.step if length is None else length)
+        ends = np.array([stage.end for stage in self.scheme.stages])
+        base = np.zeros((len(table), len(ends), 2))
         if self.model.motion is not None:
-            times = state.totals[TIME] + block.step * np.arange(1, len(table) + 1)
-            base = self.model.motion(times) @ self.model.axes.T
+            times = state.totals[TIME] + blocks[0].step * (np.arange(float(len(table)))[:, None] + ends)
+            base = (self.model.motion(times.ravel()) @ self.model.axes.T).reshape(base.shape)
         numbers = np.array([UNILATERAL_COLUMNS.index(name) for name in self.columns], dtype=np.int64)
         energies = any(name in kernel.ENERGY_COLUMNS for name in self.columns)
         losses = any(name in kernel.LOSS_COLUMNS for name in self.columns)
@@ -172,14 +177,14 @@ class ContactStepper:
         while completed < len(table) and outcome == CONVERGED:
             rest = slice(completed, None)
             state, steps, solves, outcome = march(
-                block, law, state, base[rest], *arguments, table[rest], points[rest], fallback
+                blocks, laws, state, base[rest], *arguments, table[rest], points[rest], fallback
             )
             completed += steps
             if outcome == UNSETTLED:
                 # A fallback is rare, and not compiled.
                 one = slice(completed, completed + 1)
                 state, steps, solves, outcome = kernel.march(
-                    block, law, state, base[one], *arguments, table[one], points[one], kernel.fall_back
+                    blocks, laws, state, base[one], *arguments, table[one], points[one], kernel.fall_back
                 )
                 completed += steps
         return Marched(state, completed, solves, outcome)
@@ -208,17 +213,36 @@ class ContactStepper:
         """Inverse of M or S: of a diagonal, or as an operator."""
         return 1 / matrix if self.modal else Operator(self.work.factor(matrix))
 
-    def _length(self, length: float) -> tuple[kernel.Block, kernel.Law]:
+    def _length(self, length: float) -> tuple[tuple[kernel.Block, ...], tuple[kernel.Law, ...]]:
         if length in self._lengths:
             return self._lengths[length]
         if len(self._lengths) > KEPT:
             self._lengths = {self.scheme.step: self._lengths[self.scheme.step]}
         scheme = replace(self.scheme, step=length, gg=self.scheme.gg ** (length / self.scheme.step))
+        blocks: list[kernel.Block] = []
+        laws: list[kernel.Law] = []
+        weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
+        matrices: dict[int, tuple[Any, Any, Array]] = {}
+        begin = 0.0
+        for number, first in enumerate(scheme.stage_matrices):
+            if first == number:
+                inverse = self._factor(effective_matrix(self._M, self._K, scheme, number))
+                matrices[number] = (inverse, *self._responses(inverse, weight))
+            inverse, response, C = matrices[first]
+            end = scheme.stages[number].end
+            blocks.append(self._block(scheme, number, end - begin, inverse, response))
+            laws.append(self._law(scheme, number, C))
+            begin = end
+        self._lengths[length] = tuple(blocks), tuple(laws)
+        return self._lengths[length]
+
+    def _block(self, scheme: Scheme, number: int, duration: float, inverse: Any, response: Any) -> kernel.Block:
+        """The block in one stage."""
         implicit = self.rule == "implicit"
-        weight = 1 / (2 * scheme.alpha) if implicit else 1.0
-        inverse = self._factor(effective_matrix(self._M, self._K, scheme))
-        response, C = self._responses(inverse, weight)
-        block = kernel.Block(
+        stage = scheme.stages[number]
+        closed_loss = scheme.table is None
+        end_weight = stage.gamma if closed_loss else 0.5
+        return kernel.Block(
             K=self._K if self.modal else Operator(lambda vector: self._K @ vector),
             M=self._M if self.modal else Operator(lambda vector: self._M @ vector),
             inverse=inverse,
@@ -228,16 +252,31 @@ class ContactStepper:
             F=self._F,
             rows=self._rows,
             momentum=self._momentum,
-            alpha=float(scheme.alpha),
-            delta=float(scheme.delta),
             gg=float(scheme.gg),
-            step=float(length),
+            step=float(scheme.step),
+            stagger=scheme.step / 2 if scheme.staggered else 0.0,
+            duration=float(duration),
+            beta=float(stage.beta),
+            gamma=float(stage.gamma),
+            d_u=float(stage.d_u),
+            d_g=float(stage.d_g),
+            e_0=float(stage.e_0),
+            e_g=float(stage.e_g),
+            g_0=float(stage.g_0),
+            g_g=float(stage.g_g),
+            am=float(stage.am),
+            af=float(stage.af),
+            end_weight=1.0 if implicit else float(end_weight),
+            has_closed_loss=closed_loss,
         )
+
+    def _law(self, scheme: Scheme, number: int, C: Array) -> kernel.Law:
+        """The contact in one stage, C the gaps and slips of unit accelerations of the forces."""
         model = self.model
         friction = self.friction or Friction(0.0)
         glued = self.shear == "glued"
-        law = kernel.Law(
-            C=scheme.alpha * length**2 * (C + C.T) / 2,
+        return kernel.Law(
+            C=scheme.stages[number].stiffness_weight * scheme.step**2 * (C + C.T) / 2,
             compliance=1 / model.stiffness,
             shear_stiffness=model.shear_stiffness if glued else np.zeros_like(model.share),
             tangent=math.inf if self.friction is None else friction.tangent,
@@ -245,10 +284,8 @@ class ContactStepper:
             share=model.share,
             length=float(model.length),
             limit=self.limit,
-            implicit=implicit,
+            implicit=self.rule == "implicit",
         )
-        self._lengths[length] = block, law
-        return self._lengths[length]
 
     def _responses(self, inverse: Any, weight: float = 1.0) -> tuple[Any, Array]:
         """Weighted S^-1 B', an operator where it is not kept, and B times it; of M^-1 likewise."""

@@ -1,10 +1,11 @@
-r"""The bar on a spring that carries no tension: exact in space, Newmark in time.
+r"""The bar on a spring that carries no tension: exact in space, in time a scheme of one stage.
 
 Without its spring the bar is free at both ends, and its motion is one rigid mode and what it stretches besides. For
-the generating function D(z) = sum of D_n z^n of a history the scheme says s^2 D = A - r A_0, with
+the generating function D(z) = sum of D_n z^n of a history the scheme (`fem_reference.problem.stages`) says
+s^2 D = (psi / phi) (A - r A_0), with psi = 1 - am + am z, phi = 1 - af + af z and
 
-    s^2 = (1 - z) (1 - gg z) / (dt^2 b),   b = ((1/2 - alpha) z + alpha) (1 - gg z) + gg z ((1 - delta) z + delta)
-    r   = (alpha (1 - gg z) + gg z delta) / b
+    s^2 = (psi / phi) (1 - z) (1 - gg z) / (dt^2 b),   b = (e_0 z + beta) (1 - gg z) + d_u gg z (g_0 z + gamma)
+    r   = (beta (1 - gg z) + d_u gg z gamma) / b
 
 in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond
 the rigid mode and in units of H / E,
@@ -13,7 +14,7 @@ the rigid mode and in units of H / E,
 
 Their series in z are the weights of a convolution with the history of that pressure: nothing is cut off, in space
 or in modes. The weights come from one transform on a circle in the unit disk, and the contact force at the end of a
-step is the one unknown of the step: w = w_f + C N with C = alpha dt^2 coth(H / l) / (rho l), l = c dt sqrt(alpha).
+step is the one unknown of the step: w = w_f + C N with C = beta' dt^2 coth(H / l) / (rho l), l = c dt sqrt(beta').
 
 Lubich, Convolution quadrature and discretized operational calculus, Numer. Math. 52 (1988), is the theory.
 """
@@ -61,15 +62,17 @@ class OpeningBar(BarProblem):
         return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, *loads, gap, velocity)
 
     def solve(self, scheme: Scheme, steps: int) -> OpeningResult:
-        """History under the Newmark scheme; row 0 is step 1.
+        """History under a scheme; row 0 is step 1.
 
         Raises
         ------
         ValueError
-            If the scheme is not stable for every frequency, or `steps` is below one.
+            If the scheme has two stages or is not stable for every frequency, or `steps` is below one.
         """
         if steps < 1:
             raise ValueError(f"steps: must be at least 1, got {steps!r}")
+        if reason := steppable(scheme):
+            raise ValueError(f"scheme: must have one stage, but {reason}")
         if reason := modal.applicable(scheme):
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
@@ -114,6 +117,11 @@ def applicable(problem: Problem) -> str | None:
     return no_bar(problem)
 
 
+def steppable(scheme: Scheme) -> str | None:
+    """Why the bar cannot be stepped by a scheme where its base opens, in words; None if it can."""
+    return f"{scheme.name!r} has {len(scheme.stages)}" if len(scheme.stages) > 1 else None
+
+
 @dataclass(frozen=True)
 class _Series:
     """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E."""
@@ -142,15 +150,20 @@ class _Series:
 
 def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
     """x^2 of the scheme, and the image of a load that is one from t = 0 on, less r times the A_0 that it causes."""
-    alpha = scheme.alpha
-    delta = scheme.delta
+    stage = scheme.stages[0]
     gg = scheme.gg
     denominator = 1 - gg * z
-    b = ((0.5 - alpha) * z + alpha) * denominator + gg * z * ((1 - delta) * z + delta)
-    x2 = (travel / scheme.step) ** 2 * (1 - z) * denominator / b
+    carried = stage.d_u * gg * z
+    b = (stage.e_0 * z + stage.beta) * denominator + carried * (stage.g_0 * z + stage.gamma)
+    phi = 1 - stage.af + stage.af * z
+    lag = (1 - stage.am + stage.am * z) / phi
+    x2 = (travel / scheme.step) ** 2 * lag * (1 - z) * denominator / b
+    # What the first step takes of the load at t = 0, and of the acceleration that it causes where there is one.
+    late = 1 / (1 - z) - (1 - stage.af) / phi
     if scheme.start == "consistent":
-        return x2, 1 / (1 - z) - (alpha * denominator + gg * z * delta) / b
-    return x2, z / (1 - z)
+        r = (stage.beta * denominator + carried * stage.gamma) / b
+        return x2, late + (1 - stage.am) / phi - lag * r
+    return x2, late
 
 
 def closed_forms(x2: Array) -> tuple[Array, Array, Array]:
@@ -208,16 +221,18 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
     """
     count = len(loaded)
     dt = scheme.step
-    alpha = scheme.alpha
-    delta = scheme.delta
+    stage = scheme.stages[0]
     gg = scheme.gg
+    am = stage.am
+    af = stage.af
+    yielding = stage.compliance * dt**2
     surface = bar.density * bar.height
     compliance = bar.width / bar.base_stiffness
     load = -bar.pressure / surface - bar.gravity
     D = 0.0
     V = bar.velocity
     A = load if scheme.start == "consistent" else 0.0
-    C = alpha * dt**2 / surface + loaded[0]
+    C = stage.stiffness_weight * dt**2 / surface + loaded[0]
     backwards = loaded[::-1].copy()
     rigid = np.zeros(count)
     N = np.zeros(count)
@@ -226,7 +241,9 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
     speed = np.full(count, V)
     closed[0] = bar.gap == 0
     for n in range(1, count):
-        ahead = D + gg * dt * V + dt**2 * ((0.5 - alpha) * A + alpha * load)
+        balanced = load + af * N[n - 1] / surface  # (1 - am) a1 + am a, but for the force at the end of the step
+        predicted = D + stage.d_u * gg * dt * V + dt**2 * stage.e_0 * A - yielding * am * A
+        ahead = predicted + yielding * balanced
         past = N[1:n] @ backwards[count - n : -1]
         w = bar.gap + ahead + (free[n] + past)
         noise = NOTHING * (abs(ahead) + abs(free[n]) + abs(past))
@@ -238,9 +255,10 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
         if w < 0:
             N[n] = -w / (C + compliance)
         gap[n] = -compliance * N[n] if closed[n] else w
-        new = load + N[n] / surface
-        D = ahead + alpha * dt**2 * (new - load)
-        V = gg * V + dt * ((1 - delta) * A + delta * new)
+        balanced += (1 - af) * N[n] / surface
+        new = (balanced - am * A) / (1 - am)
+        D = predicted + yielding * balanced
+        V = gg * V + dt * (stage.g_0 * A + stage.gamma * new)
         A = new
         rigid[n] = D
         speed[n] = V

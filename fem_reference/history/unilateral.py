@@ -199,13 +199,13 @@ def _march(
         while completed < len(table):
             marched = stepper.march(state, table[completed:], points[completed:])
             completed += marched.steps
-            if marched.outcome != CONVERGED:
+            if marched.outcome != CONVERGED and not stepper.scheme.staggered:
                 marched = cut_step(
                     stepper, marched, contact, table[completed : completed + 1], points[completed : completed + 1]
                 )
-                if marched.outcome != CONVERGED:
-                    return completed, OUTCOMES[marched.outcome]
-                completed += 1
+                completed += marched.outcome == CONVERGED
+            if marched.outcome != CONVERGED:
+                return completed, OUTCOMES[marched.outcome]
             state = marched.state
     return completed, OUTCOMES[CONVERGED]
 

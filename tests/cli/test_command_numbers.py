@@ -21,8 +21,8 @@ from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.studies.paper.claims import page
-from validation.studies.paper.study import CLAIMS
+from validation.studies.claims import page
+from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER
 from validation.studies.work import record as work_record
 
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
@@ -200,7 +200,7 @@ def test_the_record_fails_on_two_per_cent_of_an_error_and_fifteen_of_a_count(
 @pytest.mark.parametrize("rest", [3e-15, -8e-14, 0.0])
 def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_same_everywhere(rest: float) -> None:
     numbers = {"verdict": 2.0, "rest": rest, "share": 0.0123456, "other": "undefined", "small": 3.456e-11}
-    text = page(CLAIMS[:1], [{"name": CLAIMS[0].id, "metrics": numbers}])
+    text = page(replace(CLAIMS_OF_THE_PAPER, claims=CLAIMS[:1]), [{"name": CLAIMS[0].id, "metrics": numbers}])
     assert f"## {CLAIMS[0].id}: confirmed\n" in text
     assert "**Measured:** rest below 1e-12; share 0.01235; other undefined; small 3.456e-11." in text
 
@@ -210,7 +210,9 @@ def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_s
 )
 def test_a_condition_is_told_of_what_holds_under_it_alone(verdict: float, head: str) -> None:
     claim = replace(CLAIMS[0], condition="only so")
-    assert f"## C1: {head}\n" in page([claim], [{"name": "C1", "metrics": {"verdict": verdict}}])
+    assert f"## C1: {head}\n" in page(
+        replace(CLAIMS_OF_THE_PAPER, claims=(claim,)), [{"name": "C1", "metrics": {"verdict": verdict}}]
+    )
 
 
 def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from dda import (
     Unilateral,
     UnilateralModel,
     UnilateralOptions,
+    named_scheme,
     opening_subdivided,
     solve_opening_system,
     solve_unilateral,
@@ -93,6 +94,13 @@ def models():
     yield random_model(5, glued=True), Scheme(0.5, 1.0, 0.99, 8e-3), {}  # some steps are cut
     yield random_model(2, glued=False), replace(SCHEMES[1], start="zero"), {"rule": "energy-conserving"}
     yield rubbing_model(1), SCHEMES[1], {"rule": "implicit"}
+    plain = random_model(2, glued=False)
+    damped = replace(plain.contact, damping=0.2 * plain.contact.stiffness * 1e-4)
+    yield replace(plain, contact=damped), SCHEMES[0], {}
+    yield replace(plain, contact=damped), named_scheme("composite", step=DT), {}
+    yield plain, SCHEMES[0], {"rule": "augmented"}
+    rigid = replace(plain.contact, stiffness=np.inf)
+    yield replace(plain, contact=rigid), Scheme(0.25, 0.5, 0.99, DT), {"rule": "impact", "restitution": 0.3}
 
 
 @pytest.mark.long

@@ -93,8 +93,8 @@ def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
 def test_the_matrices_of_a_grown_outline_are_those_of_its_polygon():
     model = RollingModel(QUADRILATERAL, FAR)
     body = rolling_equations(model.setting(RollingOptions(FIRST_ORDER)), Scheme(*CONSTANT, 1.0, 1e-3))
-    set_matrices(body, 1.0, 1.1 * turned(0.4), body.part)
-    larger, made = Block(model.body.xi * 1.1, MATERIAL), body.part
+    set_matrices(body, body.last, 1.0, 1.1 * turned(0.4), body.last.part)
+    larger, made = Block(model.body.xi * 1.1, MATERIAL), body.last.part
     assert np.allclose(made.M, larger.mass(), rtol=1e-12, atol=1e-9)
     assert np.allclose(made.K, larger.elastic()[3:, 3:], rtol=1e-12)
     S = larger.mass()
@@ -197,7 +197,7 @@ def test_a_step_without_a_contact_state_is_cut_and_then_ends_by_name():
     tried = []
 
     def refused(body, shear_law, state, after, base, part):
-        made = step.matrices_of(body, state.Q, part.ratio)
+        made = step.matrices_of(body, body.last, state.Q, part.ratio)
         tried.append(list(made.numbers))
         return NONE, 3
 

@@ -46,6 +46,7 @@ from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.problems import models
 from validation.runs import provenance
+from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
 from validation.solvers.columns import blocks as dda_columns
 
@@ -101,6 +102,7 @@ DDA_SOLVE = Seam(dda, dda.solve)
 DDA_OPENED = Seam(dda, dda.solve_unilateral)
 DDA_REFERENCES = Seam(unilateral_step, unilateral_step.refer)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
+DDA_SCHEME = Seam(dda_adapter, dda_adapter.scheme_of)
 
 # Answers to what vibrates
 DDA_ANSWERING = Seam(dda_vibration, dda_vibration.answering)

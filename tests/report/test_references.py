@@ -15,6 +15,7 @@ from validation.report.references import PAPER, SOURCES, identity, references
 from validation.report.typesetting import typeset
 from validation.studies.catalogue import STUDIES
 
+PLACES = {"book": "publisher", "phdthesis": "school", "mastersthesis": "school", "inproceedings": "booktitle"}
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
 
 
@@ -31,7 +32,7 @@ def test_every_source_says_who_wrote_what_when_and_where() -> None:
     sources = references()
     for key, source in sources.items():
         assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
-        assert source["title"] and source[{"book": "publisher", "phdthesis": "school"}.get(source["kind"], "journal")]
+        assert source["title"] and source[PLACES.get(source["kind"], "journal")]
     paper = sources["feng2017"]
     for words in (paper["title"], paper["journal"], paper["year"], f"article {paper['pages']}", "9 pages", "18 July"):
         assert words in PAPER

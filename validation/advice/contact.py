@@ -42,9 +42,9 @@ def omega(scene: Scene) -> float:
 def stepping(scene: Scene) -> Stepping | None:
     """Return the scheme of a landing; None where it is not known.
 
-    Energy-conserving contact is not linear between switches; the map of a landing is that of Newmark's scheme on springs
-    without dashpots, whose force is that of the step's end; a scheme with alpha = 0 has no contact force at the end of
-    its step, and only a rectangle lands as one strain.
+    Energy-conserving contact is not linear between switches; the map of a landing is that of Newmark's scheme on
+    springs without dashpots; a scheme with alpha = 0 has no contact force at the end of its step, and only a rectangle
+    lands as one strain.
     """
     scheme = Stepping.of(scene)
     c = scene.contact

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from validation.errors import InputError
+from validation.theory.restitution import damping_ratio, restitution
 from validation.theory.soft_contact import QUARTER, Impedance, SoftContact
 
 GRAVITY = 9.81  # m/s2
@@ -49,17 +50,6 @@ class Translation:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return asdict(self)
-
-
-def restitution(ratio: float) -> float:
-    """Return e of a clipped dashpot."""
-    if ratio < 1:
-        s = math.sqrt(1 - ratio * ratio)
-        return math.exp(-ratio / s * math.atan2(2 * ratio * s, 2 * ratio * ratio - 1))
-    if ratio == 1:
-        return math.exp(-2)
-    s = math.sqrt((ratio - 1) * (ratio + 1))
-    return math.exp(-ratio / s * 2 * math.log(ratio + s))
 
 
 def translate(
@@ -205,22 +195,10 @@ def _spring(mass: float, weight: float, step: float | None, parameters: Paramete
         raise InputError("one of them can be stated", field="damping, restitution", value="both")
     if e is not None:
         _require(0 < e <= 1, "must be above 0 and at most 1", "restitution", e, "a dashpot always returns something")
-        return SoftContact.of_ratio(mass, math.sqrt(stiffness / mass), damping_ratio_of(e))
+        return SoftContact.of_ratio(mass, math.sqrt(stiffness / mass), damping_ratio(e))
     damping = 0.0 if damping is None else damping
     _require(0 <= damping < math.inf, "must not be negative", "damping", damping)
     return SoftContact(mass, stiffness, damping)
-
-
-def damping_ratio_of(e: float) -> float:
-    """Return zeta of a restitution."""
-    from scipy.optimize import brentq
-
-    if e == 1:
-        return 0.0
-    high = 1.0
-    while restitution(high) > e:
-        high *= 2
-    return float(brentq(lambda ratio: restitution(ratio) - e, 0.0, high, xtol=1e-15))
 
 
 _CONTACTS = {"box2d": _box2d, "bullet": _bullet, "mujoco": _mujoco, "spring": _spring}

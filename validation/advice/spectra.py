@@ -1,8 +1,9 @@
 """The damping that a scene really has: total, algorithmic and kinetic, mode by mode.
 
 The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`; of schemes other than Newmark's the
-roots of `validation.theory.stepping`) are evaluated at the frequencies of the DDA block. The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that
-of the same scheme at gg = 1; the kinetic part is the rest.
+roots of `validation.theory.stepping`) are evaluated at the frequencies of the DDA block. The total damping ratio xi is
+that of the scheme with its discount gg; the algorithmic part is that of the same scheme at gg = 1; the kinetic part is
+the rest.
 """
 
 from __future__ import annotations

@@ -1,17 +1,14 @@
-"""The commands ``damping``, ``advise`` and ``claims``: damping, settings for a target, the paper's claims."""
+"""The commands ``damping`` and ``advise``: damping, and settings for a target."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.cli.app import (
-    RESULTS,
     JsonOption,
-    ResultsOption,
     SceneArgument,
     SetOption,
     _progress,
@@ -58,6 +55,17 @@ def advise(
             metavar="NAME",
         ),
     ] = "dt",
+    at: Annotated[
+        float | None,
+        typer.Option("--at", help="With --damping: frequency at which it is wanted, across all schemes.", metavar="HZ"),
+    ] = None,
+    across: Annotated[
+        bool, typer.Option("--across", help="With --damping: answer across all schemes, each at its own step.")
+    ] = False,
+    no_gain: Annotated[
+        bool | None,
+        typer.Option("--no-gain/--gain", help="Across schemes: impacts must gain nothing; so if contact opens."),
+    ] = None,
     fmax: Annotated[
         float | None,
         typer.Option(
@@ -81,6 +89,8 @@ def advise(
 
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.01 --fmax 20 --loss 0.1 --wavelengths 10[/bold]
 
+    Across schemes: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --at 5 --no-gain[/bold]
+
     Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
     """
     from validation.advice.columns import limits
@@ -88,6 +98,9 @@ def advise(
     from validation.scenes.features import refuse_nonlinear
 
     case = one_case(scene, assignments)
+    is_across = across or at is not None or no_gain is not None
+    if is_across and damping is None:
+        raise InputError("must be given with --at, --across and --no-gain", field="--damping", value="nothing")
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
@@ -95,6 +108,8 @@ def advise(
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
+    elif is_across:
+        _advise_across(case, float(damping or 0), at, no_gain, as_json)
     elif damping is None:
         _advise_wave(case, float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:
@@ -142,6 +157,43 @@ def _advise_wave(case: Scene, fmax: float, limits: tuple[float, float | None, fl
     print_table(rows)
 
 
+def _advise_across(case: Scene, damping: float, at: float | None, no_gain: bool | None, as_json: bool) -> None:
+    """Say which schemes have a damping ratio at a frequency, and what else they do."""
+    from validation.advice.across import advise_across
+
+    with _progress("advise", between_calls=True):
+        advice = advise_across(case, damping, at, no_gain)
+    if as_json:
+        echo_json(advice.as_dict())
+        return
+    echo(f"{broken(advice.sentence)}\n")
+    frequencies = [f"xi at {float(hertz):.4g} Hz" for hertz in (advice.offers[0].hidden if advice.offers else ())]
+    rows: list[tuple[str, ...]] = [
+        ("", "dt [s]", *frequencies, "first mode", "contact", "solves", "rebound", "at any step")
+    ]
+    for offer in advice.offers:
+        row = (
+            offer.name,
+            f"{offer.step:.5g}",
+            *(_in_percent(xi) for xi in (*offer.hidden.values(), offer.first_mode, offer.contact_mode)),
+            "-" if offer.cost is None else f"{offer.cost:.3g}",
+            f"{offer.rebound['most']:.3g}",
+            f"{offer.greatest_rebound:.3g}",
+        )
+        rows.append(row)
+    print_table(rows)
+    echo("\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed")
+    for offer in advice.offers:
+        if offer.fears:
+            echo(broken(f"{offer.name}: {'; '.join(offer.fears)}"))
+    for name, largest in advice.unreachable.items():
+        echo(broken(f"{name}: has {_in_percent(largest)} there at most, at any step"))
+
+
+def _in_percent(value: float | None) -> str:
+    return "real roots" if value is None else f"{100 * value + 0.0:.4g} %"
+
+
 def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) -> None:
     """Find the time step, discount or scheme that gives a target damping ratio."""
     from validation.advice.advice import advise as solve_for_damping
@@ -157,34 +209,6 @@ def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) 
         echo_json(data)
     else:
         _print_advice(advice, errors)
-
-
-@app.command()
-def claims(
-    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
-    results: ResultsOption = RESULTS,
-) -> None:
-    """List the paper's statements and slips with their verdicts, from the results of the study `paper`.
-
-    Example: [bold]dda-validate run paper && dda-validate claims[/bold]
-    """
-    from validation.errors import InputError
-    from validation.runs.files import write_atomically
-    from validation.runs.results import Results
-    from validation.studies.paper.claims import Finding, page
-    from validation.studies.paper.study import CLAIMS
-
-    rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == "claims"]
-    if not rows:
-        raise InputError("no results of the study paper", source=results, advice="run it first: dda-validate run paper")
-    measured = {row["name"]: row["metrics"].get("verdict") for row in rows}
-    for claim in CLAIMS:
-        verdict = measured.get(claim.id)
-        words = "not run" if verdict is None else Finding(int(verdict)).words
-        echo(f"{claim.id:<4} {words:<27} {claim.says} [{claim.place}]")
-    if out is not None:
-        text = page(CLAIMS, rows)
-        write_atomically(out, lambda stream: stream.write(text.encode()))
 
 
 def _print_damping(analysis: Damping) -> None:

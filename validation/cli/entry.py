@@ -12,6 +12,7 @@ from functools import cache
 import typer
 
 from validation.cli import (
+    claims,
     compare,
     contact,
     damping,
@@ -38,6 +39,7 @@ COMMANDS = (
     show,
     report,
     gallery,
+    claims,
     damping,
     contact,
     compare,

@@ -9,7 +9,7 @@ import numpy as np
 
 from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, largest
-from validation.runs.contact import LOST, STORED, ContactRecord
+from validation.runs.contact import LOST, LOST_AT_IMPACTS, STORED, ContactRecord
 from validation.runs.history import Array
 from validation.runs.row import Value
 
@@ -189,6 +189,7 @@ def imbalance(record: ContactRecord) -> Value:
     """Largest defect of the energy balance, stored + lost = start, over the largest energy in it."""
     energy = total(record)
     losses = [name for name in LOST if name in record.energies or name != "friction"]  # without friction: not reported
+    losses += [name for name in LOST_AT_IMPACTS if name in record.energies]
     if energy is None or not set(losses) <= set(record.energies):
         return NOT_REPORTED
     parts = [record.energies[name] for name in (*STORED, *losses)]
@@ -246,6 +247,6 @@ def parts() -> Iterator[tuple[str, str, str, Part]]:
         yield f"contact.restitution_{part}", "1", says, partial(of_rebounds, part=pick)
     for name in STORED:
         yield f"energy.{name}", "J", f"energy at the last step: {name}", partial(stored, name=name)
-    for name in LOST:
+    for name in (*LOST, *LOST_AT_IMPACTS):
         says = f"energy lost by then: {name} (negative: gained)"
         yield f"energy.lost_{name.replace(' ', '_')}", "J", says, partial(stored, name=name)

@@ -25,6 +25,8 @@ SOURCES = {  # study -> what the methods of its chapter rest on
     "scikit-fem @gustafsson2020; damping measured by the matrix pencil @hua1990.",
     "two-codes": "scikit-fem @gustafsson2020.",
     "paper": "the paper @feng2017; kinetic damping @jiang2013, @hatzor2004.",
+    "literature": "the claims @doolin2001, @doolin2002, @peng2014, @liu2023, @yu2019, @bao2014, @li2015, @peng2020, "
+    "@hatzor2004, @tsesarsky2005, @bao2012; transmitting bases @lysmer1969.",
     "stiff-contact": "Newmark's scheme @newmark1959, its algorithmic damping in DDA @doolin2004.",
     "opening": "exact switches in ball arithmetic @johansson2017; the bar by convolution quadrature @lubich1988; the "
     "states of a step as a complementarity problem @murty1974, which open-close iteration may cycle on "

@@ -13,6 +13,7 @@ from validation.runs.history import Array
 STORED = ("kinetic", "strain", "springs", "load")  # J; of the loads -F x
 # J, summed from t = 0 on; negative where energy was gained, as no friction does
 LOST = ("algorithmic", "kinetic damping", "switching", "friction")
+LOST_AT_IMPACTS = ("dashpot", "impact")  # J, likewise, of the contacts that have one
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class ContactRecord:
     rebounds
         The contacts that begin within the run, in the order of their beginning.
     energies
-        Name among `STORED` and `LOST` to the energy at each step [J], shape (steps,).
+        Name among `STORED`, `LOST` and `LOST_AT_IMPACTS` to the energy at each step [J], shape (steps,).
     start_energy, input_energy
         Kinetic energy at t = 0 [J]; that energy and what the loads put in statically, as the scale of changes [J].
     solves, cuts

@@ -57,6 +57,11 @@ class Outcome(WordWithSentence):
         "solve limit exceeded",
         "The open-close iteration of a step needs more solves than its limit; allow one more than there are contacts.",
     )
+    PASS_LIMIT = (
+        "pass limit exceeded",
+        "The passes of the augmented Lagrangian did not reach its penetration within their limit; use a stiffer "
+        "penalty, a greater penetration or a longer step.",
+    )
     HORIZON = (
         "exact up to a horizon",
         "The exact motion could be followed up to an instant only, its horizon; run no more steps than lead there.",

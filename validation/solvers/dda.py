@@ -16,7 +16,7 @@ from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers.blocks.closed import block_of, dda_limit, load_of
-from validation.solvers.blocks.opening import OPENING, OpeningBlock, OpeningSubBlocks
+from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
@@ -172,8 +172,8 @@ class SubBlocks(OneBlock):
             return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
-# Dashpots, impact law and augmented Lagrangian are written for Newmark's steps of one block on a base at rest.
-NOT_WITH_METHODS = features.SCHEMES | {features.SUB_BLOCKS, features.DEAD_BAND, features.BASE_MOTION, features.RAMP}
+# Dashpots, impact law and augmented Lagrangian are of the corners of one block, which open at once.
+NOT_WITH_METHODS = frozenset({features.SUB_BLOCKS, features.DEAD_BAND})
 
 
 class DDA(Solver):
@@ -192,7 +192,9 @@ class DDA(Solver):
     )
     apart: features.Apart = (
         (features.ROTATION, handles - COMPATIBLE),
-        *((method, NOT_WITH_METHODS) for method in sorted(features.CONTACT_METHODS)),
+        (features.DASHPOTS, NOT_WITH_METHODS),
+        (features.AUGMENTED, NOT_WITH_METHODS),
+        (features.IMPACT, NOT_WITH_METHODS | {features.BASE_MOTION}),
         (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
         (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
         (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
@@ -208,7 +210,7 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, AREA, *AT_HEIGHTS)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why a band and friction do not go together."""

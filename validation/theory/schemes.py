@@ -58,8 +58,8 @@ CARDS = (
         1,
         "locked contact: as chung-hulbert, with less choice",
         "gains energy from stiff contact that opens; damps stiff modes hardly more than soft ones",
-        "rho_inf = (1 - e)/(1 + e): alpha = -e, -1/3..0, of papers, alpha = 1 - e, 2/3..1, of OpenSees' HHT; 1: average "
-        "acceleration",
+        "rho_inf = (1 - e)/(1 + e): alpha = -e, -1/3..0, of papers, alpha = 1 - e, 2/3..1, of OpenSees' HHT; 1: "
+        "average acceleration",
     ),
     SchemeCard(
         "wbz",
@@ -85,8 +85,8 @@ CARDS = (
         "2",
         2,
         "damps the contact mode of locked contact at any step",
-        "two solves a step: at equal work average acceleration has half its error; gains energy from stiff contact that "
-        "opens",
+        "two solves a step: at equal work average acceleration has half its error; gains energy from stiff contact "
+        "that opens",
         "split 2 - sqrt 2, rho_inf 0: TR-BDF2 and Bathe's; split 1/2, rho_inf 0: trapezoidal rule and three-point "
         "backward Euler, DDA's CITI",
     ),

@@ -84,7 +84,9 @@ def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {', '.join(parts)}."
 
 
-def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
+def claims_table(
+    claims: Sequence[Mapping[str, Any]], rows: Mapping[str, Mapping[str, Any]], head: str = "The paper says"
+) -> Table:
     """Return the register: verdict, statement, reason and measured numbers."""
     lines = []
     for claim in claims:
@@ -99,7 +101,7 @@ def claims_table(claims: Sequence[Mapping[str, str]], rows: Mapping[str, Mapping
         (
             "Id",
             "Verdict",
-            TableColumn("The paper says", "fill"),
+            TableColumn(head, "fill"),
             TableColumn("Why", "fill"),
             TableColumn("Measured", "fill"),
         ),

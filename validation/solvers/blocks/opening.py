@@ -37,6 +37,7 @@ GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
 SLIDES = ("slide_m", "slide_n")  # m, along the base, less its own displacement
 STATES = ("state_m", "state_n")  # 0 open, 1 stick (closed without friction, too), 2 and -2 slip towards N and M
 COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
+PASSES = "passes"  # column: of an augmented Lagrangian, a step
 OPENING = (*GAPS, *FORCES, *SLIDES, *STATES, *COUNTS)
 
 
@@ -71,7 +72,8 @@ class OpeningBlock(Prepared):
         import dda
 
         no_fields("dda", self.scene, fields)
-        check_columns(self.scene, (*dda.COLUMNS, *OPENING))
+        passes = (PASSES,) if self.options.rule == "augmented" else ()
+        check_columns(self.scene, (*dda.COLUMNS, *OPENING, *passes))
         model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
         with naming(self.scene):
             result = self.solve(model_columns)
@@ -81,7 +83,9 @@ class OpeningBlock(Prepared):
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
         counts = {"solves": "step_solves", "cuts": "step_cuts"}
-        names = [name for name in self.scene.run.columns if name in OPENING]
+        if result.step_passes is not None:
+            counts[PASSES] = "step_passes"
+        names = [name for name in self.scene.run.columns if name in (*OPENING, *counts)]
         return {name: np.asarray(getattr(result, counts.get(name, name)), dtype=float) for name in names}
 
     def switches(self) -> tuple[Switch, ...]:
@@ -130,12 +134,15 @@ def options_of(scene: Scene, full: bool) -> dda.UnilateralOptions:
     import dda
 
     c = scene.contact
-    options = dda.UnilateralOptions(c.rule, c.solve_limit, c.cut, energies=True, full=full)
-    if c.rule == "impact":
-        return replace(options, restitution=c.restitution)
-    if c.rule == "augmented":
-        return replace(options, penetration=c.penetration)
-    return options
+    return dda.UnilateralOptions(
+        c.rule,
+        c.solve_limit,
+        c.cut,
+        energies=True,
+        full=full,
+        restitution=c.restitution if c.rule == "impact" else None,
+        penetration=c.penetration,
+    )
 
 
 def record_of_steps(

@@ -65,9 +65,8 @@ class BlockColumn(Prepared):
         return dda_limit(lambda: highest_frequency(self.column))
 
     def drive(self) -> Drive:
-        """Return what drives the column at t = 0 and at every step."""
-        instants = self.scheme.step * np.arange(self.scene.time.steps + 1.0)
-        return Drive(**vars(motion_at(self.scene, instants)))
+        """Return what drives the column at t = 0 and at the end of every stage."""
+        return Drive(**vars(motion_at(self.scene, self.scheme.instants(self.scene.time.steps))))
 
     def history_run(self, fields: Path | None) -> Run:
         """Run the scene."""

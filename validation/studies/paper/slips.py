@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from validation.runs.case_name import scene_of
-from validation.studies.paper.claims import Evidence, Tests, named
+from validation.studies.claims import Evidence, Tests, named
 from validation.studies.paper.register import MAP, SOFT
 
 LATERAL = next(iter(named("poisson-statics")))  # mu = 0.3, p = 1E

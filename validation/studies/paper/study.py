@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,25 @@ import numpy as np
 from dda.scheme.spectral import spectral_radius
 from validation.engine.finished import Derived
 from validation.gates.gate import Gate
-from validation.studies.bands import about, gate
+from validation.studies.claims import Register, number_gates, read_claims
 from validation.studies.declaration import Study
 from validation.studies.paper import friction, open_close, register, slips, viscous
-from validation.studies.paper.claims import REGISTER, read_claims
 
 CHAPTER_FIELDS = ("id", "place", "says", "why", "condition")  # of a claim
-CLAIMS = read_claims(register.TESTS | open_close.TESTS | viscous.TESTS | friction.TESTS | slips.TESTS)
+CLAIMS = read_claims(
+    Path(__file__).with_name("claims.toml"),
+    register.TESTS | open_close.TESTS | viscous.TESTS | friction.TESTS | slips.TESTS,
+)
+CLAIMS_OF_THE_PAPER = Register(
+    study="paper",
+    title="The paper's statements and slips",
+    page="docs/claims.md",
+    speaker="The paper",
+    introduction="Every line is computed: the verdict follows from the measured numbers and is a gate of the study "
+    "`paper`. This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh "
+    "run. Numbers below 1e-12 are written as 0.",
+    claims=CLAIMS,
+)
 FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
     "average acceleration (1/4, 1/2)": (0.25, 0.5),
@@ -29,16 +42,7 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 
 def gates() -> tuple[Gate, ...]:
     """Return the gates on the verdicts of all claims, and on the numbers behind them."""
-    return (*(claim.gate() for claim in CLAIMS), *numbers())
-
-
-def numbers() -> Iterator[Gate]:
-    """Yield the gates on numbers that an independent program gives."""
-    for claim in CLAIMS:
-        for number, value, half in claim.numbers:
-            why = "whole number" if half == 0 else "half a unit of its last digit"
-            reason = f"independent program: {why}"
-            yield gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half)
+    return (*(claim.gate() for claim in CLAIMS), *number_gates(CLAIMS))
 
 
 @functools.cache

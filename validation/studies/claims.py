@@ -1,15 +1,16 @@
-"""The register of the paper's statements and slips: what it says, how that is tested, what comes out.
+"""A register of claims: what somebody says, how that is tested, what comes out.
 
-A claim is data of the file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
+A claim is data of a file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
 *confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that
-carry the condition, and *refuted* otherwise. The expected verdict is a gate of the study `paper`.
+carry the condition, and *refuted* otherwise. The expected verdict is a gate of the register's study. There are two
+registers: of the paper (`studies.paper`) and of other publications (`studies.literature`).
 """
 
 from __future__ import annotations
 
 import enum
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import cases
+from validation.studies.bands import about, cases, gate
 
 REGISTER = "claims"  # the name under which gates find the register's rows
 READ = tuple(metric for metric in SOLO if metric != HORIZON)  # what claims may read: no two codes are compared
@@ -83,17 +84,18 @@ class Evidence:
 
 
 Measure = Callable[[Evidence], dict[str, float]]
-Tests = dict[str, tuple[Iterable[str], Measure]]  # by a claim's id: the cases that DDA runs for it, what it measures
+Tests = dict[str, tuple[Iterable[str | tuple[str, str]], Measure]]
+"""By a claim's id: the cases that it needs, of DDA where no solver is named, and what it measures."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement of the paper, in our words, and its test.
+    """One statement, in our words, and its test.
 
     Attributes
     ----------
     id, place, says
-        Stable id, place in the paper, the statement.
+        Stable id, place in the paper or who says it, the statement.
     needs
         The (case, solver) pairs that it is tested on.
     measure
@@ -106,6 +108,8 @@ class Claim:
         The condition under which it holds, and the bands that hold then.
     numbers
         What an independent program gives: number, value, and half a unit of its last digit.
+    sources, read, tested
+        Of a claim of other publications: keys of the bibliography, how much of them was read, and how it is tested.
     """
 
     id: str
@@ -119,6 +123,9 @@ class Claim:
     condition: str = ""
     conditional: tuple[Band, ...] = ()
     numbers: tuple[tuple[str, float, float], ...] = ()
+    sources: tuple[str, ...] = ()
+    read: str = ""
+    tested: str = ""
 
     def finding(self, numbers: Mapping[str, float]) -> Finding:
         """Return the verdict on measured numbers."""
@@ -159,45 +166,82 @@ def named(*scenes: str) -> dict[str, Scene]:
     return {case.name: case for case in cases(*scenes)}
 
 
-def read_claims(tests: Tests) -> tuple[Claim, ...]:
-    """Return the claims of ``claims.toml`` with their tests."""
+def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
+    """Return the claims of a file with their tests."""
     findings = {finding.words: finding for finding in Finding}
     claims = []
-    for entry in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["claim"]:
+    for entry in tomllib.loads(path.read_text(encoding="utf-8"))["claim"]:
         names, measure = tests[entry["id"]]
         claim = entry | {
-            "needs": tuple((name, "dda") for name in names),
+            "needs": tuple((need, "dda") if isinstance(need, str) else need for need in names),
             "measure": measure,
             "expected": findings[entry["expected"]],
             "printed": tuple(Band(*band) for band in entry["printed"]),
             "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
             "numbers": tuple(entry.get("numbers", ())),
+            "sources": tuple(entry.get("sources", ())),
         }
         claims.append(Claim(**claim))
     return tuple(claims)
 
 
+def number_gates(claims: Iterable[Claim]) -> Iterator[Gate]:
+    """Yield the gates on numbers that an independent program gives."""
+    for claim in claims:
+        for number, value, half in claim.numbers:
+            why = "whole number" if half == 0 else "half a unit of its last digit"
+            reason = f"independent program: {why}"
+            yield gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half)
+
+
 # ---- the page -----------------------------------------------------------------------------------------------------
 
 
-def page(claims: Iterable[Claim], rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return the register as a Markdown page, from the derived rows of the study `paper`."""
+@dataclass(frozen=True)
+class Register:
+    """A register of claims, as the command and the documentation show it."""
+
+    study: str
+    title: str
+    page: str  # in the documentation
+    speaker: str  # who says what it lists
+    introduction: str
+    claims: tuple[Claim, ...]
+
+
+def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the claims with their verdicts and measured numbers as plain data."""
     measured = {row["name"]: row["metrics"] for row in rows}
-    parts = [
-        "# The paper's statements and slips",
-        "Every line is computed: the verdict follows from the measured numbers and is a gate of the study `paper`. "
-        "This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run. "
-        "Numbers below 1e-12 are written as 0.",
-    ]
-    for claim in claims:
-        numbers = measured[claim.id]
-        listed = "; ".join(f"{k} {value_text(v)}" for k, v in numbers.items() if k != "verdict")
-        verdict = Finding(int(numbers["verdict"])).words
-        condition = f" ({claim.condition})" if verdict == Finding.CONDITIONAL.words else ""
+    listed = []
+    for claim in register.claims:
+        numbers = dict(measured.get(claim.id, {}))
+        verdict = numbers.pop("verdict", None)
+        fields = {name: getattr(claim, name) for name in ("id", "says", "place", "sources", "read", "tested")}
+        outcome = {
+            "verdict": None if verdict is None else Finding(int(verdict)).words,
+            "expected": claim.expected.words,
+            "condition": claim.condition,
+            "why": claim.why,
+            "numbers": numbers,
+        }
+        listed.append(fields | outcome)
+    return listed
+
+
+def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return a register as a Markdown page, from the derived rows of its study."""
+    parts = [f"# {register.title}", register.introduction]
+    for entry in entries(register, rows):
+        listed = "; ".join(f"{k} {value_text(v)}" for k, v in entry["numbers"].items())
+        condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
         parts += [
-            f"## {claim.id}: {verdict}{condition}",
-            f"**The paper** ({claim.place}): {claim.says}",
-            f"**Measured:** {listed}.",
-            f"**Why:** {claim.why}.",
+            f"## {entry['id']}: {entry['verdict']}{condition}",
+            f"**{register.speaker}** ({entry['place']}): {entry['says']}",
         ]
+        if entry["sources"]:
+            links = ", ".join(f"[{key}](references.md#{key})" for key in entry["sources"])
+            parts.append(f"**Source:** {links}; {entry['read']}.")
+        if entry["tested"]:
+            parts.append(f"**Tested:** {entry['tested']}.")
+        parts += [f"**Measured:** {listed}.", f"**Why:** {entry['why']}."]
     return "\n\n".join(parts) + "\n"

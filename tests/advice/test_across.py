@@ -1,0 +1,134 @@
+"""The adviser across schemes: each offer has the damping, what is said of it holds, and the order is what is asked."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from conftest import refused, typed
+
+from validation import InputError, advise_across, damping, load_scene
+from validation.advice.across import GAIN, STEPS, Offer, SchemeAdvice
+
+LOCKED = load_scene("figures-3-4").with_values({"time.step": 0.002})
+BASE = ("figures-3-4", "--set", "time.step=0.002")
+
+
+@pytest.fixture(scope="module")
+def five() -> SchemeAdvice:
+    return advise_across(LOCKED, damping=0.05, frequency=5.0, no_gain=True)
+
+
+def ratio(polynomial: list[complex]) -> float:
+    """Return xi of the complex pair of largest modulus of a polynomial in z."""
+    roots = np.roots(polynomial)
+    pair = max((z for z in roots if z.imag > 1e-12), key=abs)
+    log = np.log(pair)
+    return float(-log.real / abs(log))
+
+
+def step_polynomial(offer: Offer, W: float) -> list[complex]:
+    """Return the polynomial of a step: generalised alpha's, or trace and determinant of a Runge-Kutta method."""
+    settings = offer.settings
+    gg = settings.get("time.gg", 1.0)
+    scheme = settings.get("time.scheme", "newmark")
+    r = settings.get("time.rho_inf")
+    if scheme == "composite":
+        g = 2 - math.sqrt(2) if r == 0 else (2 - math.sqrt(2 + 2 * r)) / (1 - r)
+        q1 = (r + 1) / (2 * g * (r - 1) + 4)
+        q0 = (g - 1) * q1 + 0.5
+        q2 = 0.5 - g * q1
+        s = 1j * W
+        R = (1 + q0 * s + q1 * s * (1 + g * s / 2) / (1 - g * s / 2)) / (1 - q2 * s)
+        return [1, -2 * R.real, abs(R) ** 2]
+    am, af = {
+        "newmark": lambda: (0.0, 0.0),
+        "chung-hulbert": lambda: ((2 * r - 1) / (r + 1), r / (r + 1)),
+        "hht": lambda: (0.0, (1 - r) / (1 + r)),
+        "wbz": lambda: ((r - 1) / (r + 1), 0.0),
+    }[scheme]()
+    gamma = 0.5 - am + af
+    beta = (1 - am + af) ** 2 / 4
+    if scheme == "newmark":
+        beta = settings["time.alpha"]
+        gamma = settings["time.delta"]
+    inertia = np.polymul(np.polymul([1, -1], [1, -gg]), [1 - am, am])
+    kinematics = np.polyadd([gg * gamma, gg * (1 - gamma)], np.polymul([beta, 0.5 - beta], [1, -gg]))
+    return list(np.polyadd(inertia, W**2 * np.polymul([1 - af, af], kinematics)))
+
+
+@pytest.mark.parametrize(("target", "frequency"), [(0.05, 5.0), (0.02, 31.0), (0.2, 90.0)])
+def test_every_offer_has_the_damping_it_says(target: float, frequency: float) -> None:
+    advice = advise_across(LOCKED, target, frequency)
+    assert len(advice.offers) > 4
+    for offer in advice.offers:
+        W = 2 * math.pi * frequency * offer.step
+        assert offer.damping == pytest.approx(target, rel=1e-9)
+        assert ratio(step_polynomial(offer, W)) == pytest.approx(target, rel=1e-5), offer.name
+        for hertz, xi in offer.hidden.items():
+            if xi is not None and xi > 1e-4:
+                W = 2 * math.pi * float(hertz) * offer.step
+                assert ratio(step_polynomial(offer, W)) == pytest.approx(xi, rel=1e-4), (offer.name, hertz)
+
+
+def test_an_offer_is_what_the_solver_then_has() -> None:
+    other = LOCKED.with_values({"time.scheme": "wbz", "time.rho_inf": 0.3})
+    for scene in (LOCKED, other):
+        for offer in advise_across(scene, 0.05).offers:
+            first = damping(scene.with_values(offer.settings)).modes[0]
+            assert first.damping == pytest.approx(0.05, rel=1e-6), offer.name
+            assert first.damping == pytest.approx(offer.first_mode, rel=1e-6)
+
+
+def test_the_recommended_gain_nothing_and_resolve_the_frequency(five: SchemeAdvice) -> None:
+    assert five.offers[0].name == "chung-hulbert (rho_inf = 0)" and five.offers[1].name == "Newmark (0.5, 1)"
+    for offer in five.offers[:2]:
+        assert not offer.gains and offer.greatest_rebound <= 1 + GAIN and offer.gg == 1
+        assert 1 / (5.0 * offer.step) >= STEPS
+    assert "nothing gained on contact" in five.sentence
+    free = advise_across(LOCKED, damping=0.05, frequency=5.0, no_gain=False)
+    assert {offer.name for offer in free.offers} == {offer.name for offer in five.offers}
+
+
+def test_what_is_known_of_the_schemes(five: SchemeAdvice) -> None:
+    offers = {offer.name: offer for offer in five.offers}
+    greatest = {name: round(offer.greatest_rebound, 2) for name, offer in offers.items()}
+    assert greatest["composite (rho_inf = 0)"] == 2.12 and greatest["chung-hulbert (rho_inf = 0.5)"] == 2.36
+    assert greatest["Newmark (0.5, 1)"] == 0.99 and greatest["chung-hulbert (rho_inf = 0)"] == 1.0
+    constant = offers["Newmark (0.5, 1)"]
+    assert constant.cost == pytest.approx(0.002 / constant.step)
+    composite = offers["composite (rho_inf = 0)"]
+    assert composite.cost == pytest.approx(2 * 0.002 / composite.step)
+    assert five.unreachable["leapfrog"] == 0.0 and 0.03 < five.unreachable["chung-hulbert (rho_inf = 0.8)"] < 0.05
+    # xi = W/4 and W^3/2 for small W: a fifth of the frequency has a fifth, and a 125th
+    hidden = {name: list(offer.hidden.values()) for name, offer in offers.items()}
+    assert hidden["Newmark (0.5, 1)"][0] == pytest.approx(0.01, rel=0.02)
+    assert hidden["chung-hulbert (rho_inf = 0)"][0] < 0.001
+    assert all(offer.fears for offer in five.offers)
+
+
+def test_a_block_that_opens_must_not_gain_unless_allowed() -> None:
+    scene = load_scene("unlocked-constant").expand()[0]
+    assert advise_across(scene, 0.05).no_gain and not advise_across(scene, 0.05, no_gain=False).no_gain
+    assert not advise_across(LOCKED, 0.05).no_gain
+
+
+@pytest.mark.parametrize(
+    ("values", "field"),
+    [({"damping": 5.0}, "damping"), ({"damping": 0.0}, "damping"), ({"damping": 0.05, "frequency": -1.0}, "frequency")],
+)
+def test_what_is_refused(values: dict[str, float], field: str) -> None:
+    with pytest.raises(InputError) as error:
+        advise_across(LOCKED, **values)
+    assert error.value.field == field
+
+
+def test_the_command_is_the_function(five: SchemeAdvice) -> None:
+    done = typed("advise", *BASE, "--damping", 0.05, "--at", 5, "--no-gain", "--json")
+    assert json.loads(done.stdout) == json.loads(json.dumps(five.as_dict()))
+    page = typed("advise", *BASE, "--damping", 0.05, "--at", 5, "--no-gain").stdout
+    assert page.startswith(five.sentence) and "leapfrog: has 0 %" in page
+    assert "--damping" in refused("advise", *BASE, "--at", 5)
+    assert "column" in refused("advise", "columns-weight", "--damping", 0.05, "--across")

@@ -1,0 +1,523 @@
+"""Clipped dashpots, impulses with a restitution, passes of an augmented Lagrangian; and slips that each must notice."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.unilateral_checks import DT, apart, random_model, size
+
+import dda.contact.dashpot as dashpot
+import dda.contact.impact as impact
+import dda.one_block.impact_step as impact_step
+import dda.one_block.unilateral_step as step
+from dda import (
+    BaseMotion,
+    Block,
+    Material,
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    UnilateralOptions,
+    named_scheme,
+    opening_subdivided,
+    solve_opening_system,
+    solve_unilateral,
+)
+from dda.contact.kernel import FOUND
+from dda.one_block.unilateral_form import unilateral_form
+from dda.rotation.solution import RollingModel
+from validation.theory import stages
+from validation.theory.rebound import Advance, impact_steps, midpoints, rebounds, spring_steps
+from validation.theory.restitution import restitution
+
+MASS = 1.3 * 0.9 * 2350.0
+V = 0.7
+PHASES = midpoints(8)
+PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
+STORED = ("kinetic", "strain", "springs", "load")
+
+
+def average(dt, gg=1.0):
+    return Scheme(0.25, 0.5, gg, dt, "consistent")
+
+
+def rigid_rebound(scheme, omega, theta, zeta=0.0, rule="newmark", young=1e22, steps=None, **options):
+    """Return the speed after the impact of a rigid block over that before; its contact is one of stiffness 2p."""
+    dt = scheme.step
+    k = math.inf if math.isinf(omega) else MASS * (omega / dt) ** 2
+    damping = zeta * math.sqrt(k * MASS) if zeta else 0.0  # each of two corners: half of 2 zeta sqrt(k m)
+    law = Unilateral(k / 2, gap=(1 - theta) * V * dt, damping=damping)
+    model = UnilateralModel(Block.rectangle(1.3, 0.9, Material(2350.0, young, 0.0)), law, velocity=-V)
+    steps = steps or 110 + round(8 / omega)
+    result = solve_unilateral(model, scheme, steps, options=UnilateralOptions(rule, **options))
+    assert result.outcome == "completed"
+    return result.velocity[-1] / V
+
+
+def check_rebounds(scheme, advance: Advance, omega, tolerance=1e-6, **given):
+    expected = rebounds(advance, PHASES)
+    measured = [rigid_rebound(scheme, omega, float(theta), **given) for theta in PHASES]
+    assert measured == pytest.approx(expected, abs=tolerance)
+
+
+def balance(result):
+    """Return stored energy and the sum of all losses, each by its own formula [J]."""
+    total = sum(result.energies[name] for name in STORED)
+    lost = sum(values for name, values in result.energies.items() if name not in STORED)
+    return total, lost
+
+
+# ---- dashpot ---------------------------------------------------------------------------------------------------------
+
+SCHEMES = {
+    "constant": (Scheme(0.5, 1.0, 1.0, 1e-3), stages.newmark(0.5, 1.0)),
+    "average": (average(1e-3), stages.newmark(0.25, 0.5)),
+    "ch-0.5": (named_scheme("chung-hulbert", step=1e-3, rho_inf=0.5), stages.chung_hulbert(0.5)),
+    "wbz-0.3": (named_scheme("wbz", step=1e-3, rho_inf=0.3), stages.wbz(0.3)),
+    "composite": (named_scheme("composite", step=1e-3, rho_inf=0.2), stages.composite(0.2)),
+}
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize(("omega", "zeta"), [(0.3, 0.3), (1.3, 0.7), (4.0, 0.1)])
+def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, omega, zeta):
+    scheme, table = SCHEMES[name]
+    check_rebounds(scheme, spring_steps(table, omega, zeta=zeta), omega, zeta=zeta)
+
+
+def test_the_explicit_schemes_rebound_from_dashpots_too():
+    """Of a block whose strain rings at W = 0.9: it lands rigid to the share p/E of its speed."""
+    young = MASS * (0.9 / 1e-3) ** 2 / 12
+    for scheme, table in (
+        (named_scheme("leapfrog", step=1e-3), stages.LEAPFROG),
+        (Scheme(0.0, 0.5, 1.0, 1e-3, "consistent"), stages.newmark(0.0, 0.5)),
+    ):
+        advance = spring_steps(table, 0.03, zeta=0.2)
+        check_rebounds(scheme, advance, 0.03, tolerance=2e-3, zeta=0.2, young=young)
+
+
+@pytest.mark.parametrize("zeta", [0.1, 0.3, 0.9, 1.5])
+def test_small_steps_rebound_by_the_closed_form(zeta):
+    assert rigid_rebound(average(1e-3), 0.02, 0.4, zeta) == pytest.approx(restitution(zeta), abs=2e-3)
+
+
+def gap_rates(model, scheme, result):
+    """Return w' after every step [m/s], (contacts, steps)."""
+    form = unilateral_form(model, model.contact, model.velocity, False)
+    n = len(form.unknowns)
+    V = result.history.motion[1:, n : 2 * n] @ np.linalg.inv(form.M) / scheme.step
+    return V[:, n - form.contacts :].T
+
+
+def damped_model(seed):
+    model = random_model(seed, glued=False)
+    p = model.contact.stiffness
+    mass = model.block.material.density * model.block.section.area
+    zeta = (0.05, 0.3, 1.2)[seed % 3]
+    return replace(model, contact=replace(model.contact, damping=2 * zeta * math.sqrt(p * mass) / 2))
+
+
+def check_laws(seed, scheme):
+    model = damped_model(seed)
+    result = solve_unilateral(model, scheme, 300, options=UnilateralOptions(energies=True))
+    assert result.outcome == "completed"
+    law = model.contact
+    rate = gap_rates(model, scheme, result)
+    N = result.history.normal[1:].T
+    w = result.history.gap[1:].T
+    force = -(law.stiffness * w + law.damping * rate)
+    scale = np.max(np.abs(force))
+    pressed = N > 0
+    assert np.all(N >= 0) and pressed.any()
+    assert np.max(np.abs(N - force)[pressed]) < 1e-9 * scale
+    assert np.all((w >= 0)[~pressed] | (force <= 1e-9 * scale)[~pressed])
+    total, lost = balance(result)
+    first = model.block.material.density * model.block.section.area * model.velocity**2 / 2
+    assert np.max(np.abs(total + lost - first)) < 1e-11 * size(result)
+    assert result.energies["dashpot"][-1] > 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("name", ["constant", "average", "ch-0.5", "composite"])
+def test_random_blocks_keep_law_and_energy_of_their_dashpots(seed, name):
+    check_laws(seed, replace(SCHEMES[name][0], step=DT, gg=1.0 if seed % 2 else 0.98))
+
+
+def test_dashpots_that_vanish_leave_the_springs_as_they_are():
+    for seed in range(4):
+        model = random_model(seed, glued=False)
+        weak = replace(model, contact=replace(model.contact, damping=1e-9 * math.sqrt(model.contact.stiffness)))
+        for scheme in (Scheme(0.5, 1.0, 1.0, DT), average(DT)):
+            runs = [solve_unilateral(one, scheme, 60) for one in (model, weak)]
+            assert apart(runs[1].normal, runs[0].normal) < 1e-8
+
+
+def test_the_papers_block_lands_on_dashpots():
+    """Peaks [MPa] of an independent program: zeta = 0.2 of the landing block, a quarter of its mass on 2p."""
+    c = 0.2 * math.sqrt(2e9 * 10800.0) / 2
+    for alpha, delta, peaks in ((0.25, 0.5, (10.9545, 11.1816)), (0.5, 1.0, (9.1924, 10.4417))):
+        for dt, peak in zip((1e-3, 2e-4), peaks, strict=True):
+            model = replace(PAPER, contact=Unilateral(1e9, damping=c))
+            result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt, "consistent"), round(0.02 / dt))
+            assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=51.0)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(seed):
+    model = damped_model(seed)
+    speed = 0.3
+    moving = replace(model, velocity=model.velocity + speed, motion=BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, speed]]))
+    at_rest, moved = (solve_unilateral(one, average(DT), 100) for one in (model, moving))
+    assert apart(moved.normal, at_rest.normal) < 1e-9
+
+
+# ---- impulses --------------------------------------------------------------------------------------------------------
+
+
+def impulses(e):
+    return UnilateralOptions("impact", restitution=e, energies=True)
+
+
+@pytest.mark.parametrize("theta", [0.5, 0.75, 1.0])
+@pytest.mark.parametrize("e", [0.0, 0.37, 1.0])
+def test_impulses_return_e_at_every_phase(theta, e):
+    scheme = Scheme(theta**2, 2 * theta - 0.5, 1.0, 1e-3)
+    given = {"rule": "impact", "restitution": e, "steps": 12}
+    check_rebounds(scheme, impact_steps(e, theta), math.inf, tolerance=1e-10, **given)
+    assert rebounds(impact_steps(e, theta), PHASES) == pytest.approx(np.full(len(PHASES), e), abs=1e-12)
+
+
+def mean_penetration(theta):
+    """Return the mean gap after a plastic landing over its phase, in V dt."""
+    dt = 1e-3
+    scheme = Scheme(theta**2, 2 * theta - 0.5, 1.0, dt)
+    gaps = []
+    for phase in midpoints(20):
+        law = Unilateral(math.inf, gap=(2 - phase) * V * dt)
+        model = UnilateralModel(Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0)), law, velocity=-V)
+        gaps.append(solve_unilateral(model, scheme, 6, options=impulses(0.0)).gap_m[-1] / (V * dt))
+    assert np.ptp(gaps) == pytest.approx(0.95, abs=1e-9)
+    return np.mean(gaps)
+
+
+def check_penetration():
+    """Uniform in (-1, 0) at theta = 1/2 and in (-1/2, 1/2) at theta = 1."""
+    assert mean_penetration(0.5) == pytest.approx(-0.5, abs=1e-9)
+    assert mean_penetration(1.0) == pytest.approx(0.0, abs=1e-9)
+
+
+def check_restitution_under_load():
+    """A heavy load does not change e of the contact's rate."""
+    model = replace(PAPER, contact=Unilateral(math.inf), gravity=9.81)
+    scheme = average(2e-4)
+    result = solve_unilateral(model, scheme, 100, options=impulses(0.5))
+    rate = gap_rates(model, scheme, result)[0]
+    hits = 1 + np.flatnonzero(result.impulses[0][1:] > 0)
+    assert len(hits) > 3
+    assert rate[hits] == pytest.approx(-0.5 * rate[hits - 1], rel=1e-9, abs=1e-10)
+
+
+def test_what_a_landing_leaves_of_penetration():
+    check_penetration()
+
+
+def test_the_restitution_counts_from_the_rate_before_the_impact():
+    check_restitution_under_load()
+
+
+@pytest.mark.parametrize(("e", "peaks"), [(0.0, (10.98, 28.89, 106.0)), (1.0, (26.7, 82.5, 322.9))])
+def test_pressure_of_impulses_grows_as_the_step_falls(e, peaks):
+    for dt, peak in zip((1e-3, 2e-4, 5e-5), peaks, strict=True):
+        model = replace(PAPER, contact=Unilateral(math.inf))
+        result = solve_unilateral(model, average(dt), round(0.1 / dt), options=impulses(e))
+        assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=6e4)
+        total, lost = balance(result)
+        assert np.max(np.abs(total + lost)) < 1e-12 * size(result)
+        assert e < 1 or np.max(np.abs(total)) < 1e-12 * size(result)
+        assert e == 1 or result.energies["impact"][-1] > 0.3 * 5e4
+        assert result.impulses == pytest.approx(dt * result.normal, rel=1e-15)
+
+
+def test_impulses_tend_to_the_plastic_answer_and_displacements_on_a_rigid_stop_do_not():
+    """Exact (piecewise closed form): v at 0.01, 0.02 and 0.05 s, and m/4 times the speed of the first landing."""
+    exact = np.array([-0.00350963748, -0.00744841152, -0.00275254957])
+    model = replace(PAPER, contact=Unilateral(math.inf))
+
+    def run(n, alpha, delta, options=None):
+        scheme = Scheme(alpha, delta, 1.0, 0.05 / n, "consistent")
+        result = solve_unilateral(model, scheme, n, ("displacement",), options)
+        times = np.array([n // 5, 2 * n // 5, n]) - 1
+        return result, np.max(np.abs(result.columns["displacement"][times] - exact)) / np.max(np.abs(exact))
+
+    errors = [run(n, 0.25, 0.5, UnilateralOptions("impact", restitution=0.0)) for n in (800, 12800)]
+    assert errors[0][1] < 0.03 and errors[1][1] < 0.004
+    landing = np.flatnonzero(errors[1][0].impulses[0])[0]
+    assert 2 * errors[1][0].impulses[0][landing] == pytest.approx(10145.031, rel=1e-2)
+    assert min(run(n, 0.5, 1.0)[1] for n in (800, 1600, 3200, 6400, 12800)) > 0.015
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_two_corners_keep_newtons_law_each(seed):
+    model = replace(random_model(seed, glued=False), contact=Unilateral(math.inf))
+    scheme = Scheme(0.5625, 1.0, 0.99, DT, "consistent")
+    result = solve_unilateral(model, scheme, 300, options=impulses(0.3))
+    rate = gap_rates(model, scheme, result)
+    w = result.history.gap[1:].T
+    P = scheme.step * result.history.normal[1:].T
+    u = 0.99 * rate[:, :-1]
+    near = w[:, :-1] + scheme.step * u / 2 <= 0
+    excess = rate[:, 1:] + 0.3 * u
+    speed = np.max(np.abs(rate))
+    assert np.all(P >= 0) and np.all(P[:, 1:][~near] == 0) and near.any()
+    assert np.all(excess[near] >= -1e-9 * speed)
+    assert np.max(np.abs(excess[P[:, 1:] > 0])) < 1e-9 * speed
+    total, lost = balance(result)
+    first = model.block.material.density * model.block.section.area * model.velocity**2 / 2
+    assert np.max(np.abs(total + lost - first)) < 1e-10 * size(result)
+    assert np.max(result.step_solves) <= 3
+
+
+# ---- passes ----------------------------------------------------------------------------------------------------------
+
+
+def check_passes():
+    """A pass leaves 1/(1 + r C) of the penetration, and the history is that of the rigid stop."""
+    scheme = Scheme(0.5, 1.0, 1.0, 1e-3, "consistent")
+    rigid = solve_unilateral(replace(PAPER, contact=Unilateral(math.inf)), scheme, 50)
+    for ratio, passes in ((0.1, 495.42), (1.0, 55.66), (10.0, 10.54), (100.0, 4.72)):
+        springs = replace(PAPER, contact=Unilateral(ratio * 1e9))
+        result = solve_unilateral(springs, scheme, 50, options=UnilateralOptions("augmented", energies=True))
+        assert result.outcome == "completed"
+        assert np.min(result.gap_m) >= -1e-9
+        assert apart(result.columns["displacement"], rigid.columns["displacement"]) < 3e-7
+        assert result.step_passes.mean() == pytest.approx(passes, abs=0.1)
+        assert np.all(result.step_solves >= result.step_passes) and np.all(result.step_passes >= 1)
+        total, lost = balance(result)
+        assert np.max(np.abs(total + lost)) < 1e-12 * size(result) and np.all(result.energies["springs"] == 0)
+
+
+def test_passes_lead_to_the_rigid_stop():
+    check_passes()
+
+
+@pytest.mark.parametrize(("dt", "rC"), [(1e-2, 9.75042), (2e-3, 0.715198), (1e-3, 0.271164), (1e-4, 0.00368836)])
+def test_what_a_pass_leaves_of_the_penetration(dt, rC):
+    """Passes of a first step: ln(|w_f| / tolerance) / ln(1 + r C) with r = 2p of both corners."""
+    model = replace(PAPER, contact=Unilateral(1e9), pressure=0.0, velocity=-1.0)
+    scheme = Scheme(0.5, 1.0, 1.0, dt)
+    options = UnilateralOptions("augmented", penetration=1e-6 * dt)
+    result = solve_unilateral(model, scheme, 1, options=options)
+    assert result.step_passes[0] == math.ceil(math.log(1e6) / math.log(1 + rC))
+    limited = solve_unilateral(model, scheme, 1, options=replace(options, pass_limit=2))
+    assert limited.outcome == "pass limit exceeded" and len(limited.time) == 0
+    assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_passes_of_every_scheme_lead_to_its_rigid_stop(name, seed):
+    model = random_model(seed, glued=False)
+    scheme = replace(SCHEMES[name][0], step=DT)
+    options = UnilateralOptions("augmented", penetration=1e-13)
+    passes = solve_unilateral(model, scheme, 12, options=options)
+    rigid = solve_unilateral(replace(model, contact=replace(model.contact, stiffness=math.inf)), scheme, 12)
+    assert apart(passes.gap, rigid.gap) < 1e-5
+    assert apart(passes.normal, rigid.normal) < 1e-5
+
+
+def test_kanes_force_enters_the_velocity_whole():
+    """A rigid block under the implicit rule rebounds as under (1/2, 1)."""
+    for omega in (0.3, 1.0, 4.0):
+        check_rebounds(average(1e-3), spring_steps(stages.newmark(0.5, 1.0), omega), omega, rule="implicit")
+
+
+# ---- what excludes each other ----------------------------------------------------------------------------------------
+
+DAMPED = Unilateral(1e9, damping=1e5)
+ECCENTRIC = {"eccentricity": 0.2}
+GOOD = average(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "field"),
+    [
+        ({"stiffness": math.inf, "damping": 1.0}, "damping"),
+        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "damping": 1.0}, "damping"),
+        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "cohesion": 1.0, "damping": 1.0}, "damping"),
+        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "rules": "lagged", "damping": 1.0}, "damping"),
+        ({"stiffness": 1e9, "band": (1e-6, 0.0), "damping": 1.0}, "damping"),
+        ({"stiffness": 1e9, "damping": -1.0}, "damping"),
+        ({"stiffness": 1e9, "damping": math.nan}, "damping"),
+    ],
+)
+def test_laws_that_take_no_dashpot(law, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        Unilateral(**law)
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"rule": "impact"}, "restitution"),
+        ({"rule": "newmark", "restitution": 0.5}, "restitution"),
+        ({"rule": "impact", "restitution": 1.1}, "restitution"),
+        ({"rule": "impact", "restitution": math.nan}, "restitution"),
+        ({"rule": "augmented", "penetration": 0.0}, "penetration"),
+        ({"rule": "augmented", "pass_limit": 0}, "pass_limit"),
+        ({"rule": "uzawa"}, "rule"),
+    ],
+)
+def test_options_out_of_range(options, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        UnilateralOptions(**options)
+
+
+@pytest.mark.parametrize(
+    ("change", "scheme", "options", "field"),
+    [
+        ({"contact": DAMPED}, GOOD, {"rule": "implicit"}, "damping"),
+        ({"contact": DAMPED}, GOOD, {"rule": "energy-conserving"}, "damping"),
+        ({"contact": DAMPED}, GOOD, {"rule": "augmented"}, "damping"),
+        ({"contact": replace(DAMPED, shear=1e9)} | ECCENTRIC, GOOD, {}, "damping"),
+        (
+            {"contact": Unilateral(math.inf)},
+            Scheme(0.5, 1.0, 1.0, 1e-3),
+            {"rule": "impact", "restitution": 0.5},
+            "rule",
+        ),
+        ({}, GOOD, {"rule": "impact", "restitution": 0.5}, "rule"),
+        (
+            {"contact": Unilateral(math.inf)},
+            named_scheme("composite", step=1e-3),
+            {"rule": "impact", "restitution": 0.5},
+            "rule",
+        ),
+        (
+            {"contact": Unilateral(math.inf, shear=1e9)} | ECCENTRIC,
+            GOOD,
+            {"rule": "impact", "restitution": 0.5},
+            "rule",
+        ),
+        (
+            {"contact": Unilateral(math.inf, shear=1e9, friction=0.3)},
+            GOOD,
+            {"rule": "impact", "restitution": 0.5},
+            "rule",
+        ),
+        (
+            {"contact": Unilateral(math.inf), "motion": BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 0.1]])},
+            GOOD,
+            {"rule": "impact", "restitution": 0.5},
+            "rule",
+        ),
+        ({"contact": Unilateral(math.inf)}, GOOD, {"rule": "augmented"}, "rule"),
+        ({"contact": Unilateral(1e9, band=(1e-6, 0.0))}, GOOD, {"rule": "augmented"}, "rule"),
+        ({"contact": Unilateral(1e9, shear=1e9)} | ECCENTRIC, GOOD, {"rule": "augmented"}, "rule"),
+        ({}, Scheme(0.0, 0.5, 1.0, 1e-4), {"rule": "augmented"}, "rule"),
+    ],
+)
+def test_what_excludes_each_other_is_named(change, scheme, options, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        solve_unilateral(replace(PAPER, **change), scheme, 3, options=UnilateralOptions(**options))
+
+
+def test_sub_blocks_and_blocks_that_turn_refuse_dashpots_and_these_rules():
+    damped = replace(PAPER, contact=DAMPED)
+    rigid = replace(PAPER, contact=Unilateral(math.inf))
+    for model, options, field in (
+        (damped, None, "damping"),
+        (PAPER, UnilateralOptions("augmented"), "rule"),
+        (rigid, UnilateralOptions("impact", restitution=0.5), "rule"),
+    ):
+        with pytest.raises(ValueError, match=f"^{field}: "):
+            solve_opening_system(opening_subdivided(model, 2, 1, 1e12), GOOD, 3, options=options)
+    with pytest.raises(ValueError, match=r"^damping: "):
+        RollingModel(PAPER.block, DAMPED)
+
+
+# ---- slips -----------------------------------------------------------------------------------------------------------
+
+
+def dashpot_map():
+    scheme, table = SCHEMES["average"]
+    check_rebounds(scheme, spring_steps(table, 1.3, zeta=0.3), 1.3, zeta=0.3)
+
+
+def unclipped(monkeypatch):
+    """Contact pulls until the gap is zero."""
+    monkeypatch.setattr(dashpot, "would_pull", lambda after, i: False)
+
+
+def old_velocity(monkeypatch):
+    """The dashpot's force is that of the velocity before the step."""
+
+    def set_retarded(block, stage, length):
+        length.numbers[3] = 0.0
+        step.copy_matrix(length.C, length.retarded.C)
+
+    monkeypatch.setattr(step, "set_retarded", set_retarded)
+    monkeypatch.setattr(step, "momentum_at_end", lambda block, stage, length, before, D, pressed, i: block.room.P[i])
+
+
+def six_passes(monkeypatch):
+    real = step.augmented
+
+    def faulty(law, penetration, limit, *given):
+        _, solves, passes = real(law, penetration, 6, *given)
+        return FOUND, solves, passes
+
+    monkeypatch.setattr(step, "augmented", faulty)
+
+
+def no_forecast(monkeypatch):
+    """A contact is closed by its gap before the step."""
+    monkeypatch.setattr(impact, "is_near", lambda gap, rate, length: gap <= 0)
+
+
+def predicted_rate(monkeypatch):
+    """The restitution counts from the rate at the end of the step without impulses."""
+    real = impact_step.impulses
+
+    def faulty(law, e, length, before, rate, free, *given):
+        for i in range(len(rate)):
+            free.gap[i] *= 1 + e
+        return real(law, 0.0, length, before, rate, free, *given)
+
+    monkeypatch.setattr(impact_step, "impulses", faulty)
+
+
+def half_a_force(monkeypatch):
+    """Half of Kane's contact force enters the velocity."""
+    real = step.velocity_corrector
+    monkeypatch.setattr(step, "accept", half_accept(step.accept, real))
+
+
+def half_accept(real, _):
+    def accept(block, shear_law, stage, length, before, after):
+        real(block, shear_law, stage, length, before, after)
+        if block.rule != 0:
+            h2 = length.numbers[2] ** 2
+            for i in range(len(block.K)):
+                pressed = sum(row[i] * N for row, N in zip(block.B, block.room.forces, strict=True))
+                after.P[i] -= h2 * block.multiplicity * pressed / 2 / length.numbers[0]
+
+    return accept
+
+
+@pytest.mark.parametrize(
+    ("slip", "check"),
+    [
+        (unclipped, dashpot_map),
+        (old_velocity, dashpot_map),
+        (six_passes, check_passes),
+        (no_forecast, check_penetration),
+        (predicted_rate, check_restitution_under_load),
+        (half_a_force, test_kanes_force_enters_the_velocity_whole),
+    ],
+)
+def test_each_slip_is_noticed(monkeypatch, slip, check):
+    check()
+    slip(monkeypatch)
+    with pytest.raises(AssertionError):
+        check()

@@ -1,0 +1,408 @@
+"""Schemes by name where contact stays locked: roots, histories, operators, responses, and what is refused."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from faults.steps import notices
+from oracles.staged import System, march
+
+import dda
+from dda import (
+    SCHEMES,
+    BaseMotion,
+    Block,
+    Contact,
+    Load,
+    Material,
+    Scheme,
+    TwoBlockModel,
+    diagnostics,
+    modes,
+    named_scheme,
+    one_step_operator,
+    response,
+    solve,
+    solve_adaptive,
+    solve_textbook,
+    textbook_applicable,
+)
+from dda.scheme import named, newmark, roots
+from dda.scheme.stages import Stage, Table
+
+CASES = (
+    ("chung-hulbert", {"rho_inf": 0.8}),
+    ("chung-hulbert", {"rho_inf": 0.0}),
+    ("hht", {"rho_inf": 0.65}),
+    ("wbz", {"rho_inf": 0.35}),
+    ("leapfrog", {}),
+    ("composite", {}),
+    ("composite", {"rho_inf": 0.45}),
+    ("composite", {"rho_inf": 0.3, "split": 0.4}),
+)
+IDS = [f"{name} {' '.join(f'{value:g}' for value in values.values())}".strip() for name, values in CASES]
+every_scheme = pytest.mark.parametrize(("name", "values"), CASES, ids=IDS)
+
+# name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1
+TABLE = (
+    ("chung-hulbert", {"rho_inf": 0.8}, 0.000204377188, 0.00525081541),
+    ("chung-hulbert", {"rho_inf": 0.5}, 0.00481254497, 0.0629939002),
+    ("chung-hulbert", {"rho_inf": 0.0}, 0.0653581789, 0.34382019),
+    ("hht", {"rho_inf": 0.9 / 1.1}, 0.00268898716, 0.0355191965),
+    ("hht", {"rho_inf": 0.7 / 1.3}, 0.00477740987, 0.0625812319),
+    ("wbz", {"rho_inf": 0.5}, 0.015778184, 0.131989534),
+    ("composite", {"split": 0.5}, 0.00106935112, 0.033023397),
+    ("composite", {}, 0.00113358244, 0.0349251819),
+    ("composite", {"rho_inf": 0.5}, 0.000599972642, 0.0192233401),
+)
+
+
+def scheme_of(name, values, step, gg=1.0, start="consistent"):
+    return named_scheme(name, step=step, gg=gg, start=start, **values)
+
+
+def truth_of(values):
+    """Return the parameters as the independent program takes them."""
+    return {"rho": values.get("rho_inf", 0.0), "split": values.get("split")}
+
+
+def square(ratio=1.0, mu=0.0, **load):
+    block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, mu, "plane stress"))
+    return TwoBlockModel(block, Contact(ratio * 1e9, 0.4e9), Load(5e6, **load))
+
+
+def frequencies_of(model):
+    return sorted(mode.frequency for mode in modes(model, Scheme(0.25, 0.5, 1.0, 1e-3)))
+
+
+# ---- names -----------------------------------------------------------------------------------------------------------
+
+
+def test_the_names_are_those_of_scenes():
+    assert SCHEMES == ("newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite")
+    assert all(named_scheme(name, step=1e-3, **values).name == name for name, values in CASES)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "field"),
+    [
+        ("houbolt", {}, "name"),
+        ("newmark", {}, "name"),
+        ("hht", {}, "rho_inf"),
+        ("hht", {"rho_inf": 0.4}, "rho_inf"),
+        ("wbz", {"rho_inf": 1.1}, "rho_inf"),
+        ("chung-hulbert", {"rho_inf": -0.1}, "rho_inf"),
+        ("chung-hulbert", {"rho_inf": math.nan}, "rho_inf"),
+        ("chung-hulbert", {"rho_inf": 0.5, "split": 0.5}, "split"),
+        ("leapfrog", {"rho_inf": 0.5}, "rho_inf"),
+        ("leapfrog", {"start": "zero"}, "start"),
+        ("leapfrog", {"gg": 0.0}, "gg"),
+        ("composite", {"split": 1.0}, "split"),
+        ("composite", {"rho_inf": 2.0}, "rho_inf"),
+        ("composite", {"step": 0.0}, "step"),
+    ],
+)
+def test_a_bad_value_is_named(name, values, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        named_scheme(name, **{"step": 1e-3, **values})
+
+
+def test_damping_of_newmark_alone_is_refused_beside_another_scheme():
+    scheme = named_scheme("hht", step=1e-3, rho_inf=0.8)
+    with pytest.raises(ValueError, match="mass_damping, stiffness_damping: go with newmark only"):
+        replace(scheme, mass_damping=1.0)
+    with pytest.raises(ValueError, match="self-adaptive damping goes with newmark only"):
+        solve_adaptive(square(), scheme, 5)
+    assert "hht" in str(textbook_applicable(square(), scheme))
+    with pytest.raises(ValueError, match="printed recursion"):
+        solve_textbook(square(), scheme, 5)
+
+
+# ---- roots -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "values", "first", "contact"), TABLE)
+def test_damping_ratios_of_the_two_block_model(name, values, first, contact):
+    scheme = scheme_of(name, values, 2e-3)
+    xi = [roots.damping_ratio(scheme, w * 2e-3) for w in frequencies_of(square())]
+    assert xi == pytest.approx([first, contact], rel=6e-9)
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.93])
+@pytest.mark.parametrize("omega", [0.05, 0.7, 3.0, 40.0])
+@every_scheme
+def test_roots_are_those_of_a_step_written_as_in_the_papers(name, values, omega, gg):
+    scheme = scheme_of(name, values, 1.0, gg)
+    one = np.ones((1, 1))
+    if name == "leapfrog":
+        expected = np.roots([1.0, omega**2 - 1 - gg, gg])
+    elif name == "composite":
+        rho = values.get("rho_inf", 0.0)
+        split = values.get("split") or 2 / (2 + math.sqrt(2 + 2 * rho))
+        q1 = (rho + 1) / (2 * split * (rho - 1) + 4)
+        z = 1j * omega
+        inner = (1 + split * z / 2) / (1 - split * z / 2)
+        R = (1 + ((split - 1) * q1 + 0.5) * z + q1 * z * inner) / (1 - (0.5 - split * q1) * z)
+        expected = np.roots([1.0, -(1 + gg) * R.real, gg * abs(R) ** 2])
+    else:
+        stage = scheme.stages[0]
+        am, af = stage.am, stage.af
+        gamma, beta = 0.5 - am + af, (1 - am + af) ** 2 / 4
+        free = np.polymul(np.polymul([1, -1], [1, -gg]), [1 - am, am])
+        moved = np.polyadd([gg * gamma, gg * (1 - gamma)], np.polymul([beta, 0.5 - beta], [1, -gg]))
+        expected = np.roots(np.polyadd(free, omega**2 * np.polymul([1 - af, af], moved)))
+    order = np.argsort(-np.abs(expected), kind="stable")
+    found = roots.roots(scheme, omega)
+    assert np.sort(np.abs(found)) == pytest.approx(np.sort(np.abs(expected[order])), abs=1e-9, rel=1e-9)
+    assert np.sum(found) == pytest.approx(np.sum(expected), abs=1e-10, rel=1e-10)
+    operator = one_step_operator_of(scheme, omega**2 * one)
+    largest = np.sort(np.abs(np.linalg.eigvals(operator)))[::-1][: len(found)]
+    assert largest == pytest.approx(np.abs(found), abs=2e-6)
+
+
+def one_step_operator_of(scheme, K):
+    from dda.one_block.modes import _staged_operator
+
+    return _staged_operator(scheme, np.ones((1, 1)), K, tuple(np.eye(3).reshape(3, 1, 3)))
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "leading", "period"),
+    [
+        ("chung-hulbert", {"rho_inf": 0.8}, 0.000685871, 0.0879629630),
+        ("chung-hulbert", {"rho_inf": 0.5}, 0.0185185185, 0.125),
+        ("chung-hulbert", {"rho_inf": 0.0}, 0.5, 0.458333333),
+        ("hht", {"rho_inf": 0.9 / 1.1}, 0.010125, 0.104583333),
+        ("wbz", {"rho_inf": 0.5}, 0.0740740741, 0.180555556),
+        ("composite", {"split": 0.5}, 1 / 288, 1 / 24),
+        ("composite", {}, 0.00367965644, 0.0404401145),
+        ("composite", {"rho_inf": 0.5}, 0.00193304105, 0.029485756),
+        ("leapfrog", {}, 0.0, -1 / 24),
+    ],
+)
+def test_leading_terms_of_damping_and_period(name, values, leading, period):
+    scheme = scheme_of(name, values, 1.0)
+    for W in (0.04, 0.02):
+        assert roots.damping_ratio(scheme, W) / W**3 == pytest.approx(leading, rel=8 * W * W, abs=1e-9)
+        assert roots.period_elongation(scheme, W) / W**2 == pytest.approx(period, rel=8 * W * W)
+        discounted = scheme_of(name, values, 1.0, 0.9999)
+        assert roots.damping_ratio(discounted, W) - roots.damping_ratio(scheme, W) == pytest.approx(5e-5 / W, rel=0.01)
+
+
+def test_the_same_schemes_under_two_names():
+    pairs = [
+        (("chung-hulbert", {"rho_inf": 0.0}), ("wbz", {"rho_inf": 0.0})),
+        (("chung-hulbert", {"rho_inf": 0.5}), ("hht", {"rho_inf": 0.5})),
+    ]
+    for pair in pairs:
+        for w in (0.1, 1.0, 10.0):
+            first, second = (roots.damping_ratio(scheme_of(*case, 1.0), w) for case in pair)
+            assert first == pytest.approx(second, rel=1e-9)
+    euler = Scheme(1.0, 1.5, 1.0, 1e-3)  # from A0 = 0 implicit Euler even as a history
+    history = solve(square(), euler, 20, ("displacement",)).columns["displacement"]
+    M, K, F = (getattr(square(), part) for part in ("mass", "stiffness", "force"))
+    D, V = np.zeros((2, 6))
+    for value in history:
+        V = np.linalg.solve(M + 1e-6 * K, M @ V + 1e-3 * (F - K @ D))
+        D = D + 1e-3 * V
+        assert value == pytest.approx(D[1], rel=1e-10)
+
+
+@every_scheme
+def test_stability_limit(name, values):
+    for gg in (1.0, 0.9):
+        scheme = scheme_of(name, values, 1.0, gg)
+        limit = roots.stability_limit(scheme)
+        assert limit == (pytest.approx(math.sqrt(2 * (1 + gg))) if name == "leapfrog" else math.inf)
+        for W in (0.999 * limit,) if limit < math.inf else (0.1, 3.0, 1e3):
+            assert abs(roots.roots(scheme, W)[0]) < 1 + 1e-12
+    if name == "leapfrog":
+        assert abs(roots.roots(scheme, 1.001 * limit)[0]) > 1
+        assert math.isnan(roots.damping_ratio(scheme, 1.001 * limit))
+
+
+# ---- histories -------------------------------------------------------------------------------------------------------
+
+
+def dense(model):
+    """Return the model in all six unknowns, and the row of the displacement."""
+    return System(model.mass, model.stiffness, lambda t: model.force * 1.0), 1
+
+
+def check_history(name, values, gg=0.97, steps=60, **load):
+    step = 3e-4
+    model = square(1.7, 0.2, **load)
+    ramp = model.load.ramp
+    system, row = dense(model)
+    if ramp:
+        system.F = lambda t: model.force * min(t / ramp, 1.0)
+    D, _, _ = march(system, name, step, steps, np.zeros(6), np.zeros(6), gg, **truth_of(values))
+    for full in (False, True):
+        result = solve(model, scheme_of(name, values, step, gg), steps, ("displacement",), full)
+        assert np.max(np.abs(result.columns["displacement"] - D[1:, row])) < 1e-12 * np.max(np.abs(D[:, row]))
+    return result
+
+
+@every_scheme
+def test_histories_are_those_written_as_in_the_papers(name, values):
+    check_history(name, values)
+    check_history(name, values, ramp=4.1e-3)
+
+
+@every_scheme
+def test_a_moving_base(name, values):
+    step, steps = 4e-4, 80
+    scheme = scheme_of(name, values, step, 0.98)
+    t = scheme.instants(steps)
+    shape = np.column_stack([1e-3 * np.sin(90 * t) ** 2, 2e-3 * np.sin(70 * t) ** 2])
+    model = square(1.3, 0.2, motion=BaseMotion(t, shape))
+    spring = square(1.3, 0.2)
+    R = np.zeros((6, 2))
+    R[:2] = np.eye(2)
+    K = spring.stiffness
+
+    def load(now):
+        y = np.array([np.interp(now, t, part) for part in shape.T])
+        return spring.force + K @ R @ y
+
+    D, _, _ = march(System(spring.mass, K, load), name, step, steps, np.zeros(6), np.zeros(6), 0.98, **truth_of(values))
+    result = solve(model, scheme, steps, ("displacement", "horizontal_displacement"))
+    for column, row in (("displacement", 1), ("horizontal_displacement", 0)):
+        assert np.max(np.abs(result.columns[column] - D[1:, row])) < 1e-11 * np.max(np.abs(D[:, row])), column
+
+
+@every_scheme
+def test_long_histories_are_blocked_where_a_step_has_two_numbers_a_mode(name, values):
+    scheme = scheme_of(name, values, 2e-4, 0.999)
+    result = solve(square(), scheme, 3000)
+    stepped = solve(square(), scheme, 3000, full=True)
+    note = " ".join(result.notes)
+    assert ("carries the acceleration" in note) == scheme.averages and ("blocked" in note) != scheme.averages
+    assert result.solves == (3000 if scheme.averages else 0) and stepped.solves == 3000 * len(scheme.stages)
+    for column, values_of in stepped.columns.items():
+        assert np.max(np.abs(values_of - result.columns[column])) < 1e-11 * np.max(np.abs(values_of))
+    static = square().static()["displacement"]
+    assert np.mean(result.columns["displacement"]) == pytest.approx(static, rel=0.1)
+
+
+def test_what_grows_is_stepped_and_overflows_by_name():
+    result = solve(square(100.0), named_scheme("leapfrog", step=5e-3), 300)
+    assert "stepped: a mode grows" in result.notes and any("overflow" in note for note in result.notes)
+
+
+@every_scheme
+def test_diagnostics_and_operator(name, values):
+    scheme = scheme_of(name, values, 3e-4, 0.99)
+    measured = diagnostics(square(2.0, 0.2), scheme)
+    assert measured.spectral_radius == pytest.approx(measured.predicted_radius, rel=1e-9)
+    operator = one_step_operator(square(2.0, 0.2), scheme)
+    assert np.max(np.abs(np.linalg.eigvals(operator))) == pytest.approx(measured.predicted_radius, rel=1e-8)
+    for mode in modes(square(2.0, 0.2), scheme):
+        assert abs(mode.eigenvalues[0]) == pytest.approx(abs(roots.roots(scheme, mode.frequency * 3e-4)[0]), rel=1e-9)
+
+
+def order_of(name, values, start="consistent"):
+    """Return the order in dt of a locked history, from rest."""
+    model = square()
+    T = 0.02
+    errors = []
+    form = dda.modal_form(model.gap_form.reduced())
+    w = form.frequencies
+    amplitudes = model.load_size * (model.gap_form.reduced().observers["displacement"] @ form.shapes) * form.load / w**2
+    for steps in (160, 320):
+        scheme = scheme_of(name, values, T / steps, start=start)
+        result = solve(model, scheme, steps, ("displacement",))
+        exact = (1 - np.cos(np.outer(result.time, w))) @ amplitudes
+        errors.append(np.linalg.norm(result.columns["displacement"] - exact) / math.sqrt(steps))
+    return math.log2(errors[0] / errors[1])
+
+
+@every_scheme
+def test_every_scheme_is_of_second_order(name, values):
+    assert order_of(name, values) == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("along", [None, (0.3, 1.0)])
+@every_scheme
+def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along):
+    frequency = 25.0
+    step = 4e-4
+    scheme = scheme_of(name, values, step, 0.9)
+    steps = 400
+    t = scheme.instants(steps)
+    cosine = np.cos(2 * np.pi * frequency * t)
+    motion = None if along is None else BaseMotion(t, 1e-3 * np.outer(cosine - 1, along))
+    model = square(1.3, 0.2, motion=motion)
+    amplitude = response(model, scheme, [frequency], ("displacement",), along)["displacement"][0]
+    if motion is None:
+        system, row = dense(square(1.3, 0.2))
+        force = system.F(0)
+        system.F = lambda now: force * math.cos(2 * math.pi * frequency * now)
+        D, _, _ = march(system, name, step, steps, np.zeros(6), np.zeros(6), 0.9, **truth_of(values))
+        late = D[1:, row]
+    else:
+        alone = replace(model, load=Load(motion=motion))
+        late = solve(alone, scheme, steps, ("displacement",)).columns["displacement"] * 1e3
+        late = late + along[1]  # counted from where the base is at t = 0
+    expected = (amplitude * np.exp(2j * np.pi * frequency * step * np.arange(1, steps + 1))).real
+    tail = slice(steps - 60, steps)
+    assert np.max(np.abs(late - expected)[tail]) < 1e-6 * abs(amplitude)
+
+
+# ---- seeded faults ---------------------------------------------------------------------------------------------------
+
+
+def with_table(monkeypatch, name, change):
+    """Put other numbers in the place of a scheme's own."""
+    sound = named.TABLES[name]
+    monkeypatch.setitem(named.TABLES, name, lambda rho_inf=0.0, split=None: change(sound, rho_inf, split))
+
+
+def exchanged(sound, rho_inf, split):
+    stage = sound(rho_inf).stages[0]
+    return Table((stage._replace(am=stage.af, af=stage.am),))
+
+
+def q_of_another_split(sound, rho_inf, split):
+    """gamma = 1/2 with the q of 2 - sqrt 2."""
+    other = sound(rho_inf)
+    q0, q1, q2 = other.stages[1].g_0, other.stages[1].g_g, other.stages[1].delta
+    first = sound(rho_inf, 0.5).stages[0]
+    e_0, e_g = q2 * q0 - 0.0625, q2 * q1 - 0.0625
+    return Table((first, Stage(q2 * q2, q2, e_0, q0, q0 + q2 - 0.5, q1, e_g, q1)))
+
+
+def test_seeded_faults_of_the_numbers_are_noticed(monkeypatch):
+    name, values, first, contact = TABLE[0]
+    with monkeypatch.context() as patch:  # 1: am and af exchanged
+        with_table(patch, "chung-hulbert", exchanged)
+        assert notices(lambda: test_damping_ratios_of_the_two_block_model(name, values, first, contact))
+        assert roots.damping_ratio(scheme_of(name, values, 1.0), 0.5) == pytest.approx(0.0533, abs=1e-4)
+    assert roots.damping_ratio(scheme_of(name, values, 1.0), 0.5) == pytest.approx(8.1505e-5, rel=1e-4)
+    with monkeypatch.context() as patch:  # 4: gamma of another q
+        with_table(patch, "composite", q_of_another_split)
+        assert roots.damping_ratio(scheme_of("composite", {}, 1.0), 0.5) < 0
+        assert notices(lambda: test_stability_limit("composite", {}))
+    # 5: A0 = 0
+    assert order_of("chung-hulbert", {"rho_inf": 0.5}, "zero") < 1.3
+
+
+def test_gg_in_both_stages_is_noticed(monkeypatch):
+    scheme = scheme_of("composite", {}, 1.0, 0.98)
+    assert roots.damping_ratio(scheme, 0.5) == pytest.approx(0.020850, abs=1e-6)
+    assert roots.damping_ratio(replace(scheme, gg=0.98**2), 0.5) == pytest.approx(0.041252, abs=2e-4)
+    check_history("composite", {"split": 0.5})
+    sound = newmark.predictor
+
+    def twice(stage, P, f):
+        return sound(stage._replace(gg=stage.gg**2) if stage.end == 1 else stage, P, f)
+
+    monkeypatch.setattr(newmark, "predictor", twice)
+    assert notices(lambda: check_history("composite", {"split": 0.5}))
+
+
+def test_a_leapfrog_without_its_first_half_step_is_noticed(monkeypatch):
+    monkeypatch.setattr(newmark, "late_momentum", lambda scheme, P, f: P)
+    assert order_of("leapfrog", {}) == pytest.approx(1.0, abs=0.1)
+    assert notices(lambda: test_every_scheme_is_of_second_order("leapfrog", {}))

@@ -1,0 +1,144 @@
+"""Columns under schemes of stages: steps against the frequency response, the block on points and finer steps."""
+
+import functools
+import math
+
+import numpy as np
+import pytest
+from oracles.elements import make
+
+from fem_reference import Scheme, Unilateral, named_scheme, solve_unilateral
+from fem_reference.column.contacts import ColumnContact, ContactColumn, solve_contacts
+from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.column.stepping import solve_line
+from fem_reference.column.vibration import line_response
+
+IMPLICIT = [
+    ("chung-hulbert", {"rho_inf": 0.8}),
+    ("chung-hulbert", {"rho_inf": 0.2}),
+    ("hht", {"rho_inf": 0.6}),
+    ("wbz", {"rho_inf": 0.5}),
+    ("composite", {"split": 0.5}),
+    ("composite", {"rho_inf": 0.4}),
+]
+EVERY = [*IMPLICIT, ("leapfrog", {})]
+STRATA = (Stratum(4.0, 2000.0, 5e7, 0.3), Stratum(3.0, 1900.0, 2e7, 0.25))
+
+
+def rest(scheme, steps, **parts):
+    """What drives a column at the ends of the stages, nothing where no part says so."""
+    t = scheme.stage_times(steps)
+    return Excitation(**{
+        name: parts.get(name, np.zeros_like)(t) for name in ("displacement", "velocity", "acceleration", "pressure")
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize("base", ["half-space", "prescribed"])
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_steps_settle_in_the_frequency_response(name, options, base):
+    """A wave below and a pressure on top that vibrate; what begins dies in the half-space, or by gg."""
+    explicit = name == "leapfrog"
+    if explicit and base == "half-space":
+        return
+    scheme = named_scheme(name, step=1e-3, gg=0.96, **options)
+    ground = Ground(STRATA, "shear", ((2.0, 1e8),), 2e5 if base == "half-space" else None)
+    frequency = 12.0
+    w = 2 * math.pi * frequency
+    steps = 1300
+    names = ("displacement", "contact_pressure")
+    moving = rest(
+        scheme,
+        steps,
+        displacement=lambda t: np.cos(w * t),
+        velocity=lambda t: -w * np.sin(w * t),
+        acceleration=lambda t: -w * w * np.cos(w * t),
+    )
+    pressing = rest(scheme, steps, pressure=lambda t: 1e6 * np.cos(w * t))
+    for drive, at_top, size in ((moving, False, 1.0), (pressing, True, 1e6)):
+        history = solve_line(ground, [3, 2], 2, scheme, drive, names)
+        amplitudes = line_response(ground, [3, 2], 2, scheme, np.array([frequency]), at_top, names)
+        late = slice(-90, None)
+        for column in names:
+            expected = (size * amplitudes[column][0] * np.exp(1j * w * history.time[late])).real
+            # Above a half-space the beginning may have shifted the whole column for good.
+            change = np.diff(history.columns[column][late])
+            assert np.abs(change - np.diff(expected)).max() < 1e-8 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_a_column_on_a_contact_is_the_block_on_its_point(name, options):
+    """One stratum as wide as the block, dropped on its base."""
+    scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 5e-4, gg=0.99, **options)
+    steps = 60
+    contact = Unilateral(gap=1e-4, velocity=-0.5)
+    block = solve_unilateral(make(elements=4), scheme, steps, contact).columns
+    ground = Ground((Stratum(2.0, 2700.0, 1e9, 0.0),), "pressure")
+    column = ContactColumn(ground, "unilateral", (ColumnContact(0.0, 1e9, 1e-4),), (-0.5,))
+    drive = rest(scheme, steps, pressure=lambda t: np.full_like(t, 5e6))
+    result = solve_contacts(column, [4], 2, scheme, drive, ("contact_pressure",))
+    assert result.outcome == "completed"
+    largest = np.abs(block["contact_pressure"]).max()
+    assert largest > 0
+    np.testing.assert_allclose(result.columns["contact_pressure"], block["contact_pressure"], atol=1e-9 * largest)
+    np.testing.assert_allclose(result.mean_velocity, block["velocity"], atol=1e-10)
+    assert result.step_solves == pytest.approx(block["solves"], abs=0) or name == "composite"
+    assert result.step_solves.min() == len(scheme.stages)
+
+
+END = 0.04  # s
+FINEST = 2560
+
+
+def switching_history(law, scheme, steps):
+    """Top of two elements on contacts that open under a pressure that turns, or slip under a shear."""
+    opens = law == "unilateral"
+    ground = Ground((Stratum(1.0, 2000.0, 1e8, 0.0), Stratum(1.0, 2000.0, 1e8, 0.0)), "pressure" if opens else "shear")
+    strengths = (math.inf, math.inf) if opens else (3e3, 2e3)
+    contacts = tuple(ColumnContact(float(j), 2e8, strength=strength) for j, strength in enumerate(strengths))
+    w = 120.0
+
+    def pressure(t):
+        return 1e4 * np.sin(w * t) ** 2 * np.sign(np.sin(w * t)) if opens else 8e3 * np.sin(w * t) ** 2
+
+    column = ContactColumn(ground, law, contacts, (0.0, 0.0))
+    drive = rest(scheme, steps, pressure=pressure)
+    return solve_contacts(column, [1, 1], 1, scheme, drive, ("displacement",))
+
+
+@functools.cache
+def finest_history(law):
+    scheme = Scheme(0.25, 0.5, 1.0, END / FINEST, "consistent")
+    return switching_history(law, scheme, FINEST).columns["displacement"]
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize("law", ["unilateral", "frictional"])
+def test_orders_with_contacts_that_open_or_slip(law, name, options):
+    """Second order through the switches, against average acceleration in steps 8 times shorter."""
+    reference = finest_history(law)
+    errors = []
+    for steps in (160, 320):
+        ratio = FINEST // steps
+        result = switching_history(law, named_scheme(name, step=END / steps, **options), steps)
+        assert len(np.unique(result.states)) > 1
+        errors.append(np.linalg.norm(result.columns["displacement"] - reference[ratio - 1 :: ratio]) / math.sqrt(steps))
+    assert errors[0] < 0.02 * np.abs(reference).max()
+    assert math.log2(errors[0] / errors[1]) > 1.6
+
+
+def test_what_has_no_velocity_at_the_ends_of_steps_has_no_dashpot():
+    scheme = named_scheme("leapfrog", step=1e-4)
+    ground = Ground(STRATA, "shear", (), 5e5)
+    drive = rest(scheme, 3)
+    with pytest.raises(ValueError, match=r"^scheme: .*'leapfrog'"):
+        solve_line(ground, [1, 1], 1, scheme, drive)
+    column = ContactColumn(ground, "frictional", (ColumnContact(4.0, 1e8),), (0.0, 0.0))
+    with pytest.raises(ValueError, match=r"^scheme: .*'leapfrog'"):
+        solve_contacts(column, [1, 1], 1, scheme, drive)
+
+
+def test_a_rigid_contact_needs_an_implicit_scheme():
+    scheme = named_scheme("leapfrog", step=1e-4)
+    column = ContactColumn(Ground(STRATA, "pressure"), "unilateral", (ColumnContact(0.0, math.inf),), (0.0, 0.0))
+    with pytest.raises(ValueError, match=r"^scheme: "):
+        solve_contacts(column, [1, 1], 1, scheme, rest(scheme, 3))

@@ -1,0 +1,231 @@
+"""Schemes of stages on a base that opens: against exact motion, printed rebounds and each other."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import thinned
+from oracles.elements import make
+
+from fem_reference import (
+    UNILATERAL_COLUMNS,
+    Friction,
+    Problem,
+    Scheme,
+    Unilateral,
+    named_scheme,
+    solve,
+    solve_unilateral,
+)
+from fem_reference.contact.points import build
+from fem_reference.contact.stepper import ContactStepper
+from fem_reference.events.block_events import solve as exact_motion
+from fem_reference.events.block_model import BlockProblem
+from fem_reference.exact.opening_bar import OpeningBar
+from fem_reference.problem.stages import StageTable
+
+HHT_TENTH = 0.9 / 1.1
+IMPLICIT = [
+    ("chung-hulbert", {"rho_inf": 0.8}),
+    ("chung-hulbert", {"rho_inf": 0.5}),
+    ("chung-hulbert", {"rho_inf": 0.0}),
+    ("hht", {"rho_inf": HHT_TENTH}),
+    ("wbz", {"rho_inf": 0.5}),
+    ("composite", {"split": 0.5}),
+    ("composite", {}),
+    ("composite", {"rho_inf": 0.5}),
+]
+EVERY = [*IMPLICIT, ("leapfrog", {})]
+STORED = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
+LOST = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
+START_ENERGY = 5e4  # J: the unit of the printed energies
+
+
+def unlocked(name, options, step, steps, p=1e9, gg=1.0, columns=UNILATERAL_COLUMNS):
+    """The block of one strain, one linear element, that lifts off under its pressure."""
+    scheme = named_scheme(name, step=step, gg=gg, **options)
+    return solve_unilateral(make(p=p, elements=1, degree=1), scheme, steps, columns=columns).columns
+
+
+@pytest.fixture(scope="module")
+def exact():
+    """Exact motion of the unlocked block."""
+    return exact_motion(BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6), 0.06)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "peak", "energy", "error"),
+    [
+        ("chung-hulbert", {"rho_inf": 0.8}, 13.01, -0.1041, 0.0824),
+        ("chung-hulbert", {"rho_inf": 0.5}, 12.38, -0.4380, 0.0783),
+        ("chung-hulbert", {"rho_inf": 0.0}, 10.71, -0.9922, 0.1305),
+        ("hht", {"rho_inf": HHT_TENTH}, 12.59, -0.3690, 0.0786),
+        ("wbz", {"rho_inf": 0.5}, 11.43, -0.5935, 0.0859),
+        ("composite", {"split": 0.5}, 12.98, -0.2141, 0.0679),
+        ("composite", {}, 12.94, -0.2271, 0.0671),
+        ("composite", {"rho_inf": 0.5}, 12.99, -0.1270, 0.0519),
+        ("leapfrog", {}, 13.46, -0.1242, 0.1200),
+    ],
+)
+def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, error, exact):
+    """Peak pressure [MPa], energy at 0.1 s and error of v over 0.05 s, which another program gave."""
+    columns = unlocked(name, options, 1e-3, 100)
+    assert columns["contact_pressure"].max() / 1e6 == pytest.approx(peak, abs=0.006)
+    stored = sum(columns[column] for column in STORED)
+    assert stored[-1] / START_ENERGY == pytest.approx(energy, abs=6e-5)
+    v = exact.at(1e-3 * np.arange(1, 51)).displacement[1]
+    assert np.linalg.norm(columns["displacement"][:50] - v) / np.linalg.norm(v) == pytest.approx(error, abs=6e-5)
+    # the energies that are kept and lost are those at the start
+    assert np.abs(stored + sum(columns[column] for column in LOST)).max() < 1e-10 * START_ENERGY
+    solves = columns["solves"]
+    assert solves.min() == (2 if name == "composite" else 1)
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_orders_through_switching(name, options, exact):
+    """Second order from lift-off to after landing."""
+    v = exact.at(np.linspace(0.001, 0.03, 30)).displacement[1]
+    errors = []
+    for steps in (480, 960):
+        history = unlocked(name, options, 0.03 / steps, steps, columns=("displacement",))["displacement"]
+        errors.append(np.linalg.norm(history[steps // 30 - 1 :: steps // 30] - v))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.25)
+
+
+def rebounds(scheme, contact_omega, phases):
+    """Velocity after the rebound of an almost rigid block that falls with 1 m/s, by the phase of its landing."""
+    mass = 2700.0 * 4.0
+    k = mass * (contact_omega / scheme.step) ** 2
+    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+    problem = Problem(square, 0, 2, 2700.0, 1e6 * k, 0.0, "plane stress", k / 2, 0.0, 0.0, elements=1, degree=1)
+    velocities = []
+    for phase in phases:
+        contact = Unilateral(gap=(1 + phase) * scheme.step, velocity=-1.0)
+        columns = solve_unilateral(problem, scheme, 90, contact, columns=("velocity",)).columns
+        velocities.append(columns["velocity"][-1])
+    return np.array(velocities)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "omega", "mean", "least", "greatest"),
+    thinned(
+        [
+            ("chung-hulbert", {"rho_inf": 0.5}, 1.0, 0.9788, 0.879, 1.079),
+            ("composite", {}, 10.0, 0.9557, 0.332, 1.792),
+            ("chung-hulbert", {"rho_inf": 0.8}, 10.0, 1.5507, 0.366, 2.724),
+            ("chung-hulbert", {"rho_inf": 0.0}, 1.9, 0.6691, 0.549, 0.788),
+            ("wbz", {"rho_inf": 0.5}, 4.0, 0.9904, 0.456, 1.517),
+            ("hht", {"rho_inf": HHT_TENTH}, 4.0, 1.2230, 0.469, 1.972),
+            ("composite", {"split": 0.5}, 1.9, 0.9649, 0.867, 1.051),
+            ("composite", {"rho_inf": 0.5}, 10.0, 1.2158, 0.351, 2.210),
+        ],
+        2,
+    ),
+)
+def test_rebounds_of_a_rigid_block(name, options, omega, mean, least, greatest):
+    """Mean and range over a hundred phases, which another program gave, from ten."""
+    phases = (np.arange(10) + 0.5) / 10
+    velocities = rebounds(named_scheme(name, step=1e-3, **options), omega, phases)
+    assert velocities.mean() == pytest.approx(mean, abs=0.02)
+    assert velocities.min() > least - 2e-3
+    assert velocities.max() < greatest + 2e-3
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@pytest.mark.parametrize(("name", "options"), [case for case in IMPLICIT if case[0] != "composite"])
+def test_the_opening_bar_is_the_limit_of_the_mesh(name, options, gg):
+    """Convolution quadrature of the bar that is exact in space, against the elements."""
+    scheme = named_scheme(name, step=2.5e-4, gg=gg, **options)
+    bar = OpeningBar.of(make(), 1e-4, -0.1).solve(scheme, 120)
+    mesh = solve_unilateral(make(elements=24), scheme, 120, Unilateral(gap=1e-4, velocity=-0.1)).columns
+    for column in ("displacement", "contact_pressure", "velocity"):
+        reference = getattr(bar, column)
+        assert np.abs(mesh[column] - reference).max() < 1e-3 * np.abs(reference).max()
+
+
+def test_the_opening_bar_takes_one_stage():
+    with pytest.raises(ValueError, match=r"^scheme: must have one stage, .*'composite' has 2"):
+        OpeningBar.of(make()).solve(named_scheme("composite", step=1e-3), 3)
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_a_block_that_stays_closed_moves_as_on_locked_springs(name, options):
+    """Under a weight that keeps the base closed, with the springs in the contact and in the stiffness."""
+    scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 1e-3, gg=0.9, **options)
+    base = make(elements=3, degree=1, poisson=0.2, foundation="nodes", p=1e8, shear=0.0)
+    problem = replace(base, pressure=0.0, gravity=9.81)
+    opened = solve_unilateral(problem, scheme, 30, columns=("displacement", "open_share")).columns
+    assert not opened["open_share"].any()
+    locked = solve(problem, scheme, 30, full=True).columns["displacement"]
+    np.testing.assert_allclose(opened["displacement"], locked, atol=1e-11 * np.abs(locked).max())
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_a_motion_does_not_depend_on_how_it_is_stepped(name, options):
+    """One column of elements and the whole block, plain and in natural modes; energies balance with friction."""
+    explicit = name == "leapfrog"
+    scheme = named_scheme(name, step=2e-5 if explicit else 5e-4, gg=0.99, **options)
+    problem = make(elements=3, degree=1, traction=1e6, gravity=9.81, poisson=0.3)
+    contact = Unilateral(shear="glued", friction=Friction(20.0, 1e4))
+    stepper_columns = UNILATERAL_COLUMNS
+    tables = []
+    for modal in (False, True):
+        stepper = ContactStepper(
+            build(problem), scheme, "glued", friction=contact.friction, columns=stepper_columns, modal=modal
+        )
+        table = np.zeros((60, len(stepper_columns)))
+        marched = stepper.march(stepper.start(), table)
+        assert marched.steps == 60
+        tables.append(table)
+    sizes = np.abs(tables[0]).max(axis=0) + 1e-300
+    kept = [stepper_columns.index(column) for column in ("displacement", "contact_pressure", "base_shear")]
+    assert (np.abs(tables[1] - tables[0]) / sizes)[:, kept].max() < 1e-7
+    stored = sum(tables[0][:, stepper_columns.index(column)] for column in STORED)
+    lost = sum(tables[0][:, stepper_columns.index(column)] for column in LOST)
+    assert np.abs(stored + lost).max() < 1e-9 * np.abs(tables[0][:, stepper_columns.index("load_energy")]).max()
+
+
+def test_the_discount_acts_once_a_step_and_not_on_the_first_half_step():
+    """In free fall with v = 1 m/s upwards each whole step keeps gg of the velocity, the leapfrog's first one all."""
+    contact = Unilateral(gap=10.0, velocity=1.0)
+    problem = Problem(((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)), 0, 2, 2700.0, 1e9, 0.0, "plane stress",
+                      1e9, 0.0, 0.0, elements=1, degree=1)  # fmt: skip
+    for name, options in EVERY:
+        scheme = named_scheme(name, step=1e-4, gg=0.9, **options)
+        velocity = solve_unilateral(problem, scheme, 5, contact).columns["velocity"]
+        first = 1.0 if name == "leapfrog" else 0.9
+        assert velocity == pytest.approx(first * 0.9 ** np.arange(5), rel=1e-9)
+
+
+def test_a_cut_step_keeps_the_acceleration():
+    """Two half steps of generalised alpha are those of half the step, from the state that the first has left."""
+    problem = make(elements=2, degree=1, poisson=0.2)
+    whole = ContactStepper(build(problem), named_scheme("chung-hulbert", step=2e-4, rho_inf=0.5))
+    short = ContactStepper(build(problem), named_scheme("chung-hulbert", step=1e-4, rho_inf=0.5))
+    state = whole.start()
+    same = short.start()
+    for _ in range(2):
+        state = whole.advance(state, 1e-4)[0]
+        same = short.advance(same)[0]
+    np.testing.assert_allclose(state.A, same.A, rtol=1e-12)
+    np.testing.assert_allclose(state.D, same.D, rtol=1e-12)
+
+
+def test_implicit_contact_goes_with_average_acceleration_only():
+    scheme = named_scheme("chung-hulbert", step=1e-3, rho_inf=1.0)
+    with pytest.raises(ValueError, match=r"^alpha, delta: "):
+        solve_unilateral(make(), scheme, 3, Unilateral(rule="implicit"))
+
+
+def test_another_scheme_costs_its_numbers():
+    """A table of one's own goes through contact as it stands: here average acceleration in two equal stages."""
+    first = named_scheme("composite", step=2e-3, split=0.5).stages[0]
+    # x1 = xg + h vg + h^2 (ag + a1) / 4 and vg = u + h (a + ag) / 2, with h half of the step
+    second = replace(first, d_u=0.5, d_g=0.5, e_0=1 / 16, e_g=1 / 8, g_0=0.25, g_g=0.5, end=1.0)
+    twice = Scheme(math.nan, math.nan, 1.0, 2e-3, "consistent", table=StageTable("twice", (first, second)))
+    halved = Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")
+    problem = make(elements=1, degree=1)
+    columns = solve_unilateral(problem, twice, 25).columns["displacement"]
+    expected = solve_unilateral(problem, halved, 50).columns["displacement"][1::2]
+    np.testing.assert_allclose(columns, expected, rtol=1e-9)

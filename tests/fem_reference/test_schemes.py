@@ -1,0 +1,407 @@
+"""Schemes of stages on a locked base: roots, hidden damping, orders and responses against closed forms."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import thinned
+from oracles.elements import error, make, stepped
+from scipy.linalg import eigh
+from scipy.sparse import csr_array
+
+import fem_reference
+from fem_reference import SCHEMES, Bar, Motion, Scheme, named_scheme, solve
+from fem_reference.exact.vibration import response as bar_response
+from fem_reference.history.response import response
+from fem_reference.mesh.model import build
+from fem_reference.problem.schemes import catalogue
+from fem_reference.scheme import modal, staged
+from fem_reference.scheme.diagnostics import diagnostics
+from fem_reference.scheme.eigen import eigenvalues
+from fem_reference.scheme.limits import stability_limit
+from fem_reference.scheme.newmark import State, Stepper
+
+HHT = {0.1: 0.9 / 1.1, 0.3: 0.7 / 1.3}  # rho_inf of alpha = -0.1 and -0.3
+IMPLICIT = [
+    ("chung-hulbert", {"rho_inf": 0.8}),
+    ("chung-hulbert", {"rho_inf": 0.37}),
+    ("chung-hulbert", {"rho_inf": 0.0}),
+    ("hht", {"rho_inf": HHT[0.1]}),
+    ("wbz", {"rho_inf": 0.5}),
+    ("composite", {"split": 0.5}),
+    ("composite", {}),
+    ("composite", {"rho_inf": 0.5}),
+    ("composite", {"rho_inf": 0.3, "split": 0.7}),
+]
+EVERY = [*IMPLICIT, ("leapfrog", {})]
+
+
+def generalised_alpha(name, rho):
+    """Return am, af, beta and gamma in the words of the papers."""
+    am, af = {
+        "chung-hulbert": ((2 * rho - 1) / (rho + 1), rho / (rho + 1)),
+        "hht": (0.0, (1 - rho) / (1 + rho)),
+        "wbz": ((rho - 1) / (rho + 1), 0.0),
+    }[name]
+    return am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af
+
+
+def amplification(rho, split, omega):
+    """Return R(i W) of the composite scheme as a Runge-Kutta method."""
+    z = 1j * omega
+    q1 = (rho + 1) / (2 * split * (rho - 1) + 4)
+    q0 = (split - 1) * q1 + 0.5
+    q2 = 0.5 - split * q1
+    middle = (1 + split * z / 2) / (1 - split * z / 2)
+    return (1 + q0 * z + q1 * z * middle) / (1 - q2 * z)
+
+
+def characteristic(name, options, omega, gg):
+    """Coefficients of the characteristic polynomial of one mode, highest power first, by closed forms."""
+    square = omega**2
+    if name == "leapfrog":
+        return np.array([1.0, -(1 + gg - square), gg])
+    if name == "composite":
+        rho = options.get("rho_inf", 0.0)
+        split = options.get("split", (2 - math.sqrt(2 + 2 * rho)) / (1 - rho) if rho < 1 else 0.5)
+        R = amplification(rho, split, omega)
+        return np.array([1.0, -(1 + gg) * R.real, gg * abs(R) ** 2])
+    am, af, beta, gamma = generalised_alpha(name, options["rho_inf"])
+    free = np.polymul(np.polymul([1, -1], [1, -gg]), [1 - am, am])
+    moved = np.polyadd(gg * np.array([gamma, 1 - gamma]), np.polymul([beta, 0.5 - beta], [1, -gg]))
+    return np.polyadd(free, square * np.polymul([1 - af, af], moved))
+
+
+def one_mode(omega, scheme, steps, load=0.0):
+    """Displacement of one mode of mass one from x = 1, v = 0.3 in equilibrium, at t = 0 and after every step."""
+    w = omega / scheme.step
+    stepper = Stepper(csr_array([[1.0]]), csr_array([[w**2]]), np.array([load]), scheme)
+    A = np.array([load - w**2])
+    state = State(np.ones(1), np.array([0.3 * w]), A)
+    if scheme.staggered:
+        state = replace(state, V=state.V - scheme.step / 2 * A, undiscounted=True)
+    x = [1.0]
+    for _ in range(steps):
+        state = stepper.advance(state)
+        x.append(float(state.D[0]))
+    return np.array(x)
+
+
+def damping_ratio(root):
+    log = np.log(root)
+    return -log.real / abs(log)
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.93])
+@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize("omega", [0.05, 0.7, 1.8, 40.0])
+def test_a_stepped_mode_obeys_the_closed_characteristic_polynomial(name, options, omega, gg):
+    scheme = named_scheme(name, step=2e-3, gg=gg, **options)
+    if scheme.explicit and omega > stability_limit(scheme):
+        return
+    polynomial = characteristic(name, options, omega, gg)
+    x = one_mode(omega, scheme, 40)[3:]
+    order = len(polynomial)
+    windows = np.lib.stride_tricks.sliding_window_view(x, order)[:, ::-1]
+    sizes = np.abs(windows) @ np.abs(polynomial)
+    assert np.max(np.abs(windows @ polynomial) / sizes) < 2e-13
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.93])
+@pytest.mark.parametrize(("name", "options"), IMPLICIT)
+def test_the_roots_of_a_mode_are_those_of_the_closed_forms(name, options, gg):
+    scheme = named_scheme(name, step=1e-3, gg=gg, **options)
+    for omega in (1e-3, 0.34456, 2.63, 17.3):
+        closed = np.roots(characteristic(name, options, omega, gg))
+        for roots in (modal.roots(omega, scheme), eigenvalues(omega / scheme.step, scheme)):
+            distances = np.min(np.abs(closed[:, None] - roots), axis=1)
+            assert np.max(distances) < (1e-8 if omega == 1e-3 else 1e-11)
+            assert roots[0].imag != 0 or (gg < 1 and omega == 1e-3)  # a slow mode that gg overdamps
+    # of the slowest mode, whose roots nearly meet, the closed forms say more than their numbers
+    if gg == 1 and name != "composite":
+        am, af, _, _ = generalised_alpha(name, options["rho_inf"])
+        leading = (af - am) * (1 - am - af) ** 2 * 1e-6 / 8
+        assert damping_ratio(modal.roots(1e-2, scheme)[0]) == pytest.approx(leading, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "p", "step", "first", "contact"),
+    [
+        ("chung-hulbert", {"rho_inf": 0.8}, 1e11, 1e-3, 9.34125611e-5, 0.0243384411),
+        ("chung-hulbert", {"rho_inf": 0.5}, 1e10, 2e-3, 0.0118670379, 0.118455233),
+        ("chung-hulbert", {"rho_inf": 0.0}, 1e9, 1e-2, 0.408696341, 0.654455795),
+        ("hht", {"rho_inf": HHT[0.1]}, 1e10, 1e-2, 0.0562147538, 0.0660538446),
+        ("hht", {"rho_inf": HHT[0.3]}, 1e9, 2e-3, 0.00477740987, 0.0625812319),
+        ("wbz", {"rho_inf": 0.5}, 1e11, 1e-3, 0.00812976494, 0.220434922),
+        ("composite", {"split": 0.5}, 1e9, 2e-3, 0.00106935112, 0.033023397),
+        ("composite", {}, 1e11, 1e-3, 0.000511292083, 0.25730859),
+        ("composite", {"rho_inf": 0.5}, 1e10, 1e-2, 0.0633825604, 0.681652103),
+    ],
+)
+def test_hidden_damping_of_the_block_of_one_strain(name, options, p, step, first, contact):
+    """One linear element is the block of one strain on its springs, whose damping ratios two other programs gave."""
+    modes = fem_reference.modes(make(p=p, elements=1, degree=1), named_scheme(name, step=step, **options))
+    ratios = [damping_ratio(mode.eigenvalues[0]) for mode in sorted(modes, key=lambda mode: mode.frequency)]
+    assert ratios == pytest.approx([first, contact], rel=1e-8)
+
+
+def test_identities_of_schemes():
+    def histories(*schemes, steps=60):
+        return [one_mode(1.3, scheme, steps, load=0.2) for scheme in schemes]
+
+    step = 1e-3
+    ch, wbz = (named_scheme(name, step=step, rho_inf=0.0, gg=0.97) for name in ("chung-hulbert", "wbz"))
+    assert modal.roots(1.3, ch) == pytest.approx(modal.roots(1.3, wbz), abs=1e-13)
+    ch, hht = (named_scheme(name, step=step, rho_inf=0.5) for name in ("chung-hulbert", "hht"))
+    assert ch.stages == hht.stages
+    trapezoidal = Scheme(0.25, 0.5, 0.98, step, "consistent")
+    for same in (
+        named_scheme("hht", step=step, gg=0.98, rho_inf=1.0),
+        named_scheme("wbz", step=step, gg=0.98, rho_inf=1.0),
+    ):
+        assert np.ptp(histories(trapezoidal, same), axis=0).max() < 1e-13
+    explicit = Scheme(0.0, 0.5, 1.0, step, "consistent")
+    assert np.ptp(histories(explicit, named_scheme("leapfrog", step=step)), axis=0).max() < 1e-12
+
+
+def test_newmark_from_no_acceleration_is_implicit_euler():
+    """Newmark (1, 3/2) moves as x1 = x + dt v1, v1 = v + dt a1 where it starts with A0 = 0."""
+    omega = 1.7
+    scheme = Scheme(1.0, 1.5, 1.0, 1e-3)
+    stepper = Stepper(csr_array([[1.0]]), csr_array([[(omega / 1e-3) ** 2]]), np.array([3.0]), scheme)
+    state = stepper.start()
+    x = v = 0.0
+    for _ in range(50):
+        state = stepper.advance(state)
+        v = (v + 1e-3 * (3.0 - (omega / 1e-3) ** 2 * x)) / (1 + omega**2)
+        x += 1e-3 * v
+        assert state.D[0] == pytest.approx(x, rel=1e-12)
+
+
+def test_chung_hulbert_at_zero_is_houbolt():
+    """(2 x1 - 5 x + 4 x_-1 - x_-2) / dt^2 + w^2 x1 = 0 once both run."""
+    omega = 0.9
+    x = one_mode(omega, named_scheme("chung-hulbert", step=1e-3, rho_inf=0.0), 40)[3:]
+    left = (2 + omega**2) * x[3:] - 5 * x[2:-1] + 4 * x[1:-2] - x[:-3]
+    assert np.abs(left).max() < 1e-13
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_orders_on_a_locked_base(name, options):
+    """Second order from rest, on a mesh whose exact motion is the sum of its modes."""
+    problem = make(elements=1, degree=1)
+    model = build(problem)
+    squares, shapes = eigh(model.K.toarray(), model.M.toarray())
+    row = model.observers["displacement"] @ shapes
+    end = 0.03
+    errors = []
+    for steps in (480, 960):
+        times = end * np.arange(1, steps + 1) / steps
+        exact = (row * (shapes.T @ model.F) / squares) @ (1 - np.cos(np.sqrt(squares)[:, None] * times))
+        scheme = named_scheme(name, step=end / steps, **options)
+        history = solve(problem, scheme, steps, ("displacement",)).columns["displacement"]
+        errors.append(np.linalg.norm(history - problem.load_size * exact) / np.sqrt(steps))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_start_without_acceleration_costs_an_order():
+    problem = make(elements=1, degree=1)
+    finest = 7680
+    reference = solve(problem, named_scheme("chung-hulbert", rho_inf=0.5, step=0.03 / finest), finest)
+    errors = []
+    for steps in (480, 960):
+        scheme = named_scheme("chung-hulbert", rho_inf=0.5, step=0.03 / steps, start="zero")
+        history = solve(problem, scheme, steps).columns["displacement"]
+        ratio = finest // steps
+        errors.append(np.linalg.norm(history - reference.columns["displacement"][ratio - 1 :: ratio]) / np.sqrt(steps))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_every_path_gives_the_stepped_history(name, options):
+    """Without and with the savings in space and time, and the work that is counted."""
+    explicit = name == "leapfrog"
+    scheme = named_scheme(name, step=1e-5 if explicit else 1e-3, gg=0.99, **options)
+    steps = 80
+    for change in ({"elements": 6}, {"elements": 3, "poisson": 0.3}):
+        problem = make(**change)
+        result = solve(problem, scheme, steps)
+        assert error(result.columns.values(), stepped(problem, scheme, steps)) < 1e-10
+        whole = solve(problem, scheme, steps, full=True)
+        assert error(result.columns.values(), list(whole.columns.values())) < 1e-9
+        stages = len(scheme.stages)
+        assert whole.solves == stages * steps + 1
+        assert whole.factorisations == len(set(scheme.stage_matrices)) + (not explicit)
+
+
+def test_stages_share_a_matrix_where_they_can():
+    assert named_scheme("composite", step=1.0).stage_matrices == (0, 0)
+    assert named_scheme("composite", step=1.0, rho_inf=0.6).stage_matrices == (0, 0)
+    assert named_scheme("composite", step=1.0, split=0.5).stage_matrices == (0, 1)
+
+
+@pytest.mark.parametrize("ramp", [0.0, 0.0123])
+@pytest.mark.parametrize(("name", "options"), IMPLICIT)
+def test_the_bar_is_the_limit_of_the_mesh(name, options, ramp):
+    scheme = named_scheme(name, step=1e-3, gg=0.97, **options)
+    bar = Bar.of(make(ramp=ramp)).solve(scheme, 60)
+    coarse, fine = (solve(make(elements=count, ramp=ramp), scheme, 60) for count in (16, 32))
+    assert error(fine.columns.values(), list(bar.columns.values())) < 1e-5
+    assert error(fine.columns.values(), list(bar.columns.values())) < 0.1 * error(
+        coarse.columns.values(), list(bar.columns.values())
+    )
+
+
+def test_an_explicit_scheme_is_refused_by_the_bar():
+    scheme = named_scheme("leapfrog", step=1e-3)
+    assert "explicit" in str(modal.applicable(scheme))
+    with pytest.raises(ValueError, match=r"^scheme: "):
+        Bar.of(make()).solve(scheme, 10)
+
+
+def test_a_moving_base_is_sampled_at_the_ends_of_the_stages():
+    """The composite scheme meets a sine of the base with its second order."""
+    w = 200.0
+    t = np.linspace(0, 0.05, 20001)
+    motion = Motion(tuple(t), tuple(0 * t), tuple(1e-3 * np.sin(w * t) ** 2))
+    problem = make(elements=1, degree=1, motion=motion, poisson=0.0)
+    fine = solve(problem, Scheme(0.25, 0.5, 1.0, 0.04 / 5120, "consistent"), 5120).columns["displacement"]
+    errors = []
+    for steps in (80, 160):
+        coarse = solve(problem, named_scheme("composite", step=0.04 / steps, split=0.5), steps)
+        picked = fine[5120 // steps - 1 :: 5120 // steps]
+        errors.append(np.linalg.norm(coarse.columns["displacement"] - picked) / np.sqrt(steps))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
+
+
+def steady(problem, scheme, frequency):
+    """Amplitudes of the motion with the load's own frequency, by the map of one step."""
+    model = build(problem)
+    size = len(model.F)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+
+    def step(x, loads):
+        state = State(x[:size], x[size : 2 * size] / scheme.step, x[2 * size :] / scheme.step**2)
+        end = stepper.advance(state, loads)
+        return np.concatenate([end.D, scheme.step * end.V, scheme.step**2 * end.A])
+
+    phases = np.exp(2j * np.pi * frequency * scheme.step * np.array([0.0, *(stage.end for stage in scheme.stages)]))
+    free = np.array([step(unit, 0 * phases.real[:, None] * model.F) for unit in np.eye(3 * size)]).T
+    none = np.zeros(3 * size)
+    forced = step(none, phases.real[:, None] * model.F) + 1j * step(none, phases.imag[:, None] * model.F)
+    motion = np.linalg.solve(phases[-1] * np.eye(3 * size) - free, forced)
+    return problem.load_size * (model.observers["displacement"] @ motion[:size])
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.95])
+@pytest.mark.parametrize(("name", "options"), EVERY)
+def test_the_frequency_response_is_the_periodic_motion_of_the_steps(name, options, gg):
+    scheme = named_scheme(name, step=1e-4 if name == "leapfrog" else 1e-3, gg=gg, **options)
+    problem = make(elements=2, poisson=0.3)
+    frequencies = np.array([0.5, 20.0, 77.0, 310.0])
+    amplitudes = response(problem, scheme, frequencies)["displacement"]
+    expected = [steady(problem, scheme, frequency) for frequency in frequencies]
+    np.testing.assert_allclose(amplitudes, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "options"), thinned(IMPLICIT, 4))
+def test_the_response_of_the_bar_is_that_of_a_fine_mesh(name, options):
+    scheme = named_scheme(name, step=1e-3, gg=0.97, **options)
+    frequencies = np.array([0.0, 13.0, 60.0])
+    exact = bar_response(Bar.of(make()), scheme, frequencies)
+    mesh = response(make(elements=48), scheme, frequencies)
+    for column, amplitudes in exact.items():
+        np.testing.assert_allclose(amplitudes, mesh[column], rtol=1e-7)
+    assert exact["contact_pressure"][0] == pytest.approx(5e6, rel=1e-9)
+
+
+def test_stability_limits():
+    for gg in (1.0, 0.9, 0.3, 0.0):
+        assert stability_limit(named_scheme("leapfrog", step=1.0, gg=gg)) == pytest.approx(math.sqrt(2 * (1 + gg)))
+    for name, options in IMPLICIT:
+        for gg in (1.0, 0.9):
+            assert stability_limit(named_scheme(name, step=1.0, gg=gg, **options)) == math.inf
+    assert stability_limit(Scheme(0.0, 0.5, 1.0, 1.0)) == pytest.approx(2.0)
+
+
+def test_the_radius_for_infinitely_fast_modes_is_the_parameter():
+    for name in ("chung-hulbert", "hht", "wbz", "composite"):
+        for rho in (0.5, 0.62, 0.9):
+            radius = staged.radii(np.array([1e7]), named_scheme(name, step=1.0, rho_inf=rho))[0]
+            assert radius == pytest.approx(rho, abs=2e-5)
+
+
+def test_diagnostics_agree_with_themselves():
+    found = diagnostics(make(elements=3, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
+    assert found.spectral_radius == pytest.approx(found.predicted_radius, abs=1e-9)
+    assert found.spectral_radius < 1
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("name", {"name": "bathe"}),
+        ("name", {"name": "newmark"}),
+        ("rho_inf", {"name": "chung-hulbert"}),
+        ("rho_inf", {"name": "wbz", "rho_inf": 1.01}),
+        ("rho_inf", {"name": "hht", "rho_inf": 0.49}),
+        ("rho_inf", {"name": "composite", "rho_inf": math.nan}),
+        ("rho_inf", {"name": "leapfrog", "rho_inf": 1.0}),
+        ("split", {"name": "composite", "split": 1.0}),
+        ("split", {"name": "chung-hulbert", "rho_inf": 0.5, "split": 0.5}),
+        ("start", {"name": "leapfrog", "start": "zero"}),
+        ("gg", {"name": "composite", "gg": 1.1}),
+        ("step", {"name": "composite", "step": 0.0}),
+    ],
+)
+def test_bad_values_are_named(field, arguments):
+    with pytest.raises(ValueError, match=rf"^{field}: .*got "):
+        named_scheme(**{"step": 1e-3, **arguments})
+
+
+def test_what_goes_with_newmark_only():
+    scheme = named_scheme("chung-hulbert", step=1e-3, rho_inf=0.5)
+    with pytest.raises(ValueError, match=r"^mass_damping: "):
+        replace(scheme, mass_damping=1.0)
+    with pytest.raises(ValueError, match=r"^scheme: "):
+        fem_reference.solve_adaptive(make(), scheme, 3)
+    assert SCHEMES == ("newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite")
+
+
+# Seeded faults in the numbers of a table, and what one of them changes.
+
+
+def test_exchanged_shares_are_seen(monkeypatch):
+    """Am and af exchanged (CH .8, W = .5): a damping ratio of 0.053 in place of 8.15e-5."""
+
+    def ratio():
+        return damping_ratio(modal.roots(0.5, named_scheme("chung-hulbert", step=1.0, rho_inf=0.8))[0])
+
+    assert ratio() == pytest.approx(8.1505e-5, rel=1e-4)
+    sound = catalogue.TABLES["chung-hulbert"]
+
+    def exchanged(rho_inf, split):
+        table = sound(rho_inf, split)
+        stage = table.stages[0]
+        return replace(table, stages=(replace(stage, am=stage.af, af=stage.am),))
+
+    monkeypatch.setitem(catalogue.TABLES, "chung-hulbert", exchanged)
+    assert ratio() == pytest.approx(0.0533, rel=1e-2)
+
+
+def test_weights_of_another_split_are_seen(monkeypatch):
+    """The second stage of 2 - sqrt 2 after a first one of 1/2 grows."""
+    halves, default = (named_scheme("composite", step=1.0, split=split) for split in (0.5, None))
+    table = replace(halves.table, stages=(halves.stages[0], default.stages[1]))
+    monkeypatch.setitem(catalogue.TABLES, "composite", lambda rho_inf, split: table)
+    mixed = named_scheme("composite", step=1.0, split=0.5)
+    assert damping_ratio(modal.roots(0.5, mixed)[0]) == pytest.approx(-0.0144, rel=1e-2)
+    assert stability_limit(mixed) < 1
+
+
+def test_the_discount_acts_once_a_step():
+    """Composite, W = .5, gg = .98: 0.020850; once in every stage it were 0.041252."""
+    scheme = named_scheme("composite", step=1.0, gg=0.98)
+    assert damping_ratio(modal.roots(0.5, scheme)[0]) == pytest.approx(0.020850, rel=1e-4)
+    assert damping_ratio(eigenvalues(0.5, scheme)[0]) == pytest.approx(0.020850, rel=1e-4)

@@ -1,0 +1,146 @@
+"""The study `methods`: its gates hold, each is bitten by a fault, and it says what its scenes show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from faults import seams
+from faults.fault import Fault, energy_changed, told
+from faults.kill_matrix import cases_of, check_kill_matrix
+
+from validation import solve
+from validation.studies.methods import study as methods
+from validation.studies.methods.methods import METHODS, SCHEMES, method
+from validation.theory import rebound
+
+DDA = ("dda",)
+SHORT = ("methods-locked-ch-0.5[", "methods-locked-tr-bdf2[", "methods-locked-leapfrog[", "methods-sliding-ch-0.5[")
+
+
+def of_scheme(change: Callable[[Any], Any]) -> Callable[..., Callable[..., Any]]:
+    """Change the scheme that the adapter hands to DDA."""
+    return lambda sound: lambda scene: change(sound(scene))
+
+
+def of_table(change: Callable[[Any], Any]) -> Callable[..., Callable[..., Any]]:
+    """Change the stages of a scheme other than Newmark's."""
+    return of_scheme(lambda scheme: scheme if scheme.table is None else replace(scheme, table=change(scheme.table)))
+
+
+def exchanged(table: Any) -> Any:
+    """Exchange am and af."""
+    return table._replace(stages=tuple(stage._replace(am=stage.af, af=stage.am) for stage in table.stages))
+
+
+def half_split(table: Any) -> Any:
+    """Let the first stage of a composite scheme end at half the step, with the numbers of another split."""
+    if len(table.stages) < 2:
+        return table
+    first = table.stages[0]._replace(alpha=1 / 16, delta=1 / 4, e_0=1 / 16, g_0=1 / 4, d_u=1 / 2, end=1 / 2)
+    return table._replace(stages=(first, *table.stages[1:]))
+
+
+def from_rest(scheme: Any) -> Any:
+    """Begin without the acceleration of the load."""
+    return scheme if scheme.lag else replace(scheme, start="zero")
+
+
+def growing(result: Any) -> dict[str, Any]:
+    """Multiply the columns of a history by a factor that grows with the step."""
+    factor = 1 + 8e3 * (result.time[1] - result.time[0])
+    return {"columns": {name: factor * values for name, values in result.columns.items()}}
+
+
+FAULTS = [
+    Fault("steps 1 % long", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, step=1.01 * scheme.step))),
+    Fault("gg = 0.999", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, gg=0.999))),
+    Fault("am and af exchanged", DDA, seams.DDA_SCHEME, of_table(exchanged)),
+    Fault("composite: split 1/2 with the numbers of another", DDA, seams.DDA_SCHEME, of_table(half_split)),
+    Fault("A0 = 0", DDA, seams.DDA_SCHEME, of_scheme(from_rest)),
+    Fault("leapfrog without its first half step", DDA, seams.DDA_SCHEME,
+          of_table(lambda table: table._replace(lag=0.0))),
+    Fault("a few joules too many", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: e + 9e4)),
+    Fault("histories that grow with the step", DDA, seams.DDA_OPENED, told(growing)),
+    Fault("columns that grow with the step", DDA, seams.CONTACT_COLUMN, told(growing)),
+    Fault("every solve counted twenty times", DDA, seams.CONTACT_COLUMN,
+          told(lambda result: {"step_solves": 20 * result.step_solves})),
+]  # fmt: skip
+
+
+def check(faults: list[Fault], words: tuple[str, ...], tmp_path: Path, finished_cases: Path) -> None:
+    declared = methods.study()
+    gates = [gate for gate in declared.gates() if gate.pair[0] != methods.RIGID_MAP]
+    if words:
+        gates = [gate for gate in gates if gate.scene.startswith(words)]
+    check_kill_matrix(declared, cases_of(declared, gates), gates, faults, tmp_path, finished_cases)
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check(FAULTS, (), tmp_path, finished_cases)
+
+
+def test_gates_of_four_scenes_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+    check(FAULTS[:5], SHORT, tmp_path, finished_cases)
+
+
+def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+    gates = [gate for gate in methods.gates() if gate.pair[0] == methods.RIGID_MAP]
+    rows = {row.scene: row for row in methods.derived() if row.name == methods.RIGID_MAP}
+
+    def failing() -> set[str]:
+        values = {gate.id: rows[gate.scene].compute(None)[gate.metric] for gate in gates}  # type: ignore[arg-type]
+        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}  # type: ignore[operator]
+
+    assert len(gates) > 40 and not failing()
+    sound = rebound.rebound_statistics
+
+    def faulty(*arguments: Any, **named: Any) -> Any:
+        return rebound.ReboundStatistics(*(value + 0.01 for value in sound(*arguments, **named)))
+
+    methods.rigid_statistics.cache_clear()
+    with monkeypatch.context() as patch:
+        patch.setattr(rebound, "rebound_statistics", faulty)
+        assert failing() == {gate.id for gate in gates}
+    methods.rigid_statistics.cache_clear()
+
+
+def test_what_gains_is_what_rebounds_faster_than_it_lands() -> None:
+    for one in METHODS:
+        if one.group != "explicit" and one.id != "conserving":
+            assert (methods.rigid_statistics(one).most > 1) == one.gains, one.id
+            assert (methods.rigid_statistics(one).mean_square > 1) == one.gains, one.id
+
+
+def test_every_method_is_one_scheme_of_the_theory() -> None:
+    assert len({one.id for one in METHODS}) == len(METHODS)
+    assert {one.group for one in SCHEMES} == {"Newmark", "generalised-alpha", "composite", "explicit"}
+    for one in SCHEMES:
+        assert methods.locked(one).time.scheme == one.stepping.scheme
+        # 2 W0 dt of a step from rest: the scheme takes the load as its stages say
+        assert one.stepping.solves == (0 if one.group == "explicit" else one.solves)
+
+
+def test_gains_make_chaos_of_what_is_not_gated() -> None:
+    """The load changed in its thirteenth digit changes the peak pressure of 0.1 s by percents."""
+    peaks = {}
+    for name in ("ch-0.8", "ch-0"):
+        case = methods.unlocked(method(name)).expand()[3]
+        runs = [solve(case.with_values({"load.pressure": 5e6 * (1 + change)}), "dda") for change in (0.0, 1e-13, 3e-13)]
+        pressures = np.array([float(run.contact_pressure.max()) for run in runs])
+        peaks[name] = float(np.ptp(pressures) / pressures.mean())
+    assert peaks["ch-0"] < 1e-9 < 1e-3 < peaks["ch-0.8"]
+    assert ("ch-0.8", 3) in methods.CHAOTIC and ("ch-0", 3) not in methods.CHAOTIC
+
+
+def test_the_exact_locked_block_is_that_of_the_exact_solver() -> None:
+    case = methods.locked(method("average")).expand()[4]
+    exact = solve(case, "block-events").displacement
+    assert np.abs(methods.exact_locked(case) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert math.isclose(case.time.duration, methods.LOCKED_TIME)
