@@ -309,8 +309,9 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
         return True
     if candidate is scene_fit or v == scene_fit.variant:
         return candidate.misfit <= NEGLIGIBLE
-    # rounded constants leave that much; of other schemes and contact methods some come as near to another by chance
-    is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact)
+    # rounded constants leave that much, and the passes of an augmented Lagrangian; of the other schemes and contact
+    # methods some come as near to another one by chance
+    is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
     if is_usual and candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
         return True
     noise = MARGIN * target.spread
