@@ -14,7 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
-from validation.diagnosis.causes import LISTED, benign_springs
+from validation.diagnosis.causes import CONTACT_METHODS, LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
@@ -59,6 +59,8 @@ COMPARED = 40  # explanations of which another one may be a special case
 PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme
 PROBED = 40  # steps of such a run
 SAME_PROGRAM = 1e-8  # relative difference, of roundings
+HIDDEN_FAMILY = 0.001  # the same for a scheme or a contact method of another kind: of these many are near to each other
+LEAST_LANDINGS = 3  # of which the first gives any restitution, and the others say that it is one
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
@@ -341,16 +343,25 @@ def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """
     if any(LISTED[name].outside for name in explanation.ids):
         return False
+    if "restitution" in explanation.fit.free and _landings(target, explanation.fit.variant) < LEAST_LANDINGS:
+        return False
     if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
         return True
     single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
-    if all(
-        name == "scheme" or LISTED[name].family for name in explanation.ids
-    ):  # any other integrator is near to some scheme
+    if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
         return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
+    if any(LISTED[name].family or name in CONTACT_METHODS for name in explanation.ids):
+        is_single = len(explanation.fit.free) < 2  # two free numbers come within noise of too much
+        return is_single and explanation.fit.misfit <= HIDDEN_FAMILY * scene_fit.misfit
     usual = single and LISTED[explanation.ids[0]].usual
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
     return explanation.fit.misfit <= limit * scene_fit.misfit
+
+
+def _landings(target: Target, v: Variant) -> int:
+    """Return how often a contact that was open closes."""
+    is_open = histories(target.column, [v], target.steps).open[:, 0]
+    return int(np.sum(is_open[:-1] & ~is_open[1:]))
 
 
 def _rare(move: Move, among: int) -> bool:
