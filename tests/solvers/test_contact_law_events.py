@@ -1,4 +1,4 @@
-"""The exact block on dashpots and under an impact law through its adapter: what it reports, and that steps tend to it."""
+"""The exact block on dashpots and under an impact law through its adapter, to which steps tend."""
 
 import math
 
