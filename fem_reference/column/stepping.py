@@ -208,11 +208,10 @@ class DampedStepper:
 
     def advance(self, state: State, loads: Sequence[Array]) -> State:
         """One step under the loads at its start and at the end of each stage."""
-        before = None
-        for stage in range(len(self.scheme.stages)):
-            before = self._advance_stage(state, before, loads, stage)
-        assert before is not None  # a scheme has a stage
-        return before
+        end = self._advance_stage(state, None, loads, 0)
+        for stage in range(1, len(self.solves)):
+            end = self._advance_stage(state, end, loads, stage)
+        return end
 
     def _advance_stage(self, state: State, before: State | None, loads: Sequence[Array], stage: int) -> State:
         s = self.scheme
