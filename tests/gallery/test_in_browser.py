@@ -257,6 +257,10 @@ def test_formulas_of_every_scheme(opened: Callable[..., Any], method: str) -> No
                 shown = page.evaluate(f"v => [{', '.join(f'formulas.{name}(...v)' for name in names)}]", [s, omega])
                 known = [stepping.damping_ratio(omega), stepping.spectral_radius(omega), stepping.period_error(omega)]
                 assert shown == pytest.approx(known, rel=1e-10, abs=1e-12), (s, omega)
+        if method != "composite":  # which has no squared frequency
+            w2 = stepping.squared_frequency([2 * math.pi * s["frequency"]])[0]
+            shown = page.evaluate("s => formulas.squared_frequency(s, 2 * Math.PI * s.frequency)", s)
+            agrees(shown, [w2.real, w2.imag], abs(w2))
         limit = page.evaluate("s => formulas.step_limit(s)", s)
         agrees(limit, stepping.critical_omega)
         assert page.evaluate("s => formulas.solves(s)", s) == stepping.solves

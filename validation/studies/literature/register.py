@@ -184,10 +184,10 @@ def rigid_stop(e: Evidence) -> dict[str, float]:
     """Return peak pressure and energy gained on a rigid stop in displacements, and its rebounds at every step."""
     numbers: dict[str, float] = {}
     for name, case in RIGID.items():
-        scheme = f"delta = {case.time.delta:g}, dt = {1e3 * case.time.step:g} ms"
-        numbers[f"energy gained at 0.1 s over W0, {scheme}"] = gained(e, name)
+        values = f"delta = {case.time.delta:g}, dt = {1e3 * case.time.step:g} ms"
+        numbers[f"energy gained at 0.1 s over W0, {values}"] = gained(e, name)
         pressure = e.finished.needed_history(name, "dda").contact_pressure
-        numbers[f"peak pressure, {scheme}, MPa"] = float(pressure.max()) / 1e6
+        numbers[f"peak pressure, {values}, MPa"] = float(pressure.max()) / 1e6
     numbers["most solves of a step"] = whole(max(e.number(name, "contact.most_solves") for name in RIGID))
     numbers["greatest penetration, m"] = max(e.number(name, "contact.penetration") for name in RIGID)
     for word, scheme in SCHEMES.items():
