@@ -266,9 +266,7 @@ def area_growth(body: RollingEquations, Q: Matrix) -> float:
     return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
-def set_matrices(
-    body: RollingEquations, stage: RollingStage, ratio: float, Q: Matrix, matrices: StepMatrices
-) -> None:
+def set_matrices(body: RollingEquations, stage: RollingStage, ratio: float, Q: Matrix, matrices: StepMatrices) -> None:
     """Write the matrices of a stage of a step of some length, of an outline that has grown with Q."""
     room = body.room
     growth = area_growth(body, Q)

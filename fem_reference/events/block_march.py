@@ -518,6 +518,10 @@ class March:
         z = hops.pushed(z, rest.speeds, rest.length.upper() + 2 * time.rad())
         second_order = 2 * (hops.rate * time.rad()) ** 2 * norm(flow, flow.G * z) / hops.rate
         z = z + box(flow, second_order.upper())
+        entries = z.entries()
+        for c, reference in enumerate(flow.references):  # springs aside begin where the corners are
+            entries[12 + c] = (reference * z)[0, 0]
+        z = arb_mat(SIZE, 1, entries)
         self.spread.restart(radii_of(z))
         projection = hops.contact.rest()
         self.z = z.mid()

@@ -156,8 +156,8 @@ class BlockProblem:
             raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
         if not self.rigid_contact:
             raise ValueError(f"stiffness: must be infinite with restitution, got {self.stiffness!r}")
-        if self.friction is not None or self.shear_stiffness or self.locked:
-            raise ValueError("restitution: must be without friction, shear_stiffness and locked, got one of them")
+        if self.friction is not None or self.locked:
+            raise ValueError("restitution: must be without friction and locked, got one of them")
         if self.eccentricity or self.traction or self.slope or self.base is not None:
             rule = "must be without eccentricity, traction, slope and base, so that both corners do the same"
             raise ValueError(f"restitution: {rule}, got one of them")
@@ -357,7 +357,7 @@ class RigidContact:
         self.rate = rate_row(n)  # w' [m/s]
         self.acceleration = model.mobility * arb_mat([n]).transpose()  # W n', shape (6, 1) [1/kg]
         self.compliance = (arb_mat([n]) * self.acceleration)[0, 0]  # C [1/kg]
-        # the force of both corners that keeps w'' = 0 over z: -n W (F - K x) / C [N]
+        # the force of both corners that keeps w'' = 0 over z: -n W (F - K x) / C [N]; springs aside do not move the gap
         loads = [[-x for x in line] + [arb(0)] * 8 + [f] for line, f in zip(model.elastic, model.load, strict=True)]
         self.force = self.acceleration.transpose() * arb_mat(loads) * (-1 / self.compliance)
         # what changes the gap's rate by one [-]

@@ -111,9 +111,9 @@ def advise_across(
     Examples
     --------
     >>> from validation import advise_across, load_scene
-    >>> advice = advise_across(load_scene("drop"), damping=0.05, frequency=5.0)
+    >>> advice = advise_across(load_scene("field-locked"), damping=0.05, frequency=5.0)
     >>> advice.offers[0].name, round(1e3 * advice.offers[0].step, 2)
-    ('chung-hulbert (rho_inf = 0)', 15.84)
+    ('chung-hulbert (rho_inf = 0)', 19.06)
     """
     if not (isinstance(damping, int | float) and LEAST_RATIO <= damping <= LARGEST_RATIO):
         rule = f"must be a damping ratio from {LEAST_RATIO:g} to {LARGEST_RATIO:g}"

@@ -136,7 +136,7 @@ class OpeningBar(Prepared):
 
 
 class ExactBar(Solver):
-    """Exact in space, Newmark in time."""
+    """Exact in space, in time a scheme's."""
 
     name = "bar"
     handles: frozenset[str] = features.SCHEMES | frozenset(
@@ -159,8 +159,12 @@ class ExactBar(Solver):
         from fem_reference.exact import bar, opening_bar
         from fem_reference.scheme import modal
 
-        exact = opening_bar if features.UNILATERAL in features.of(scene) else bar
-        return exact.applicable(problem_of(scene)) or modal.applicable(scheme_of(scene))
+        scheme = scheme_of(scene)
+        if features.UNILATERAL in features.of(scene):
+            reason = opening_bar.applicable(problem_of(scene)) or opening_bar.steppable(scheme)
+        else:
+            reason = bar.applicable(problem_of(scene))
+        return reason or modal.applicable(scheme)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the bar, on a locked spring or on one that carries no tension."""

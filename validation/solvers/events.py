@@ -262,10 +262,11 @@ class BlockMotion(Motion):
         if motion.simultaneous:
             yield f"both corners switch within one ball {len(motion.simultaneous)} times"
         if motion.impacts:
-            first = motion.impacts[0]
-            yield f"{len(motion.impacts)} impacts, the first at {first.time:.9g} s with {first.impulse:.6g} N s"
-        for cascade in motion.cascades:
-            yield f"infinitely many impacts accumulate at {cascade.time:.9g} s, after which the block rests"
+            impulses = ", ".join(f"{impact.impulse:.9g}" for impact in motion.impacts[:SWITCHES_LISTED])
+            yield f"{len(motion.impacts)} impacts, whose impulses are no part of the forces; the first: {impulses} N s"
+        for cascade in motion.cascades[:SWITCHES_LISTED]:
+            rest = f"accumulate at {cascade.time:.9g} s, within {cascade.radius:.1e} s, and the contact rests"
+            yield f"proven: the impacts after {cascade.start:.9g} s {rest}; their impulse is {cascade.impulse:.9g} N s"
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
@@ -304,11 +305,12 @@ class BlockMotion(Motion):
         return stored | no_loss | losses
 
     def _rebounds(self, contacts: Iterable[tuple[float, float | None, int]]) -> tuple[Rebound, ...]:
-        """Return the landings in the order of time; under a law of impact each impact is one, of both corners."""
+        """Return the landings of all corners in the order of time; under a law of impact those that its impacts are."""
         restitution = self.motion.problem.restitution
-        if restitution is not None:
-            return tuple(Rebound(impact.approach, restitution * impact.approach) for impact in self.motion.impacts)
-        return landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0)))
+        if restitution is None:
+            return landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0)))
+        impacts = [impact for impact in self.motion.impacts if impact.time > 0]
+        return landings(Rebound(impact.approach, restitution * impact.approach) for impact in impacts for _ in "MN")
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
