@@ -178,7 +178,8 @@ def rigid(stop: str) -> Scene:
     rigid_stop: dict[str, Any] = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     counts = [RIGID_COARSEST * 2**level for level in range(RIGID_LEVELS)]
-    sweep: dict[str, Any] = {"mode": "zip", "time.step": [REFINED_TIME / count for count in counts], "time.steps": counts}
+    steps = [REFINED_TIME / count for count in counts]
+    sweep: dict[str, Any] = {"mode": "zip", "time.step": steps, "time.steps": counts}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
