@@ -22,7 +22,7 @@ from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adapti
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.scheme import spectral
+from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, shared_edges
@@ -68,6 +68,7 @@ __all__ = [
     "one_step_operator",
     "opening_subdivided",
     "response",
+    "roots",
     "shared_edges",
     "solve",
     "solve_adaptive",
