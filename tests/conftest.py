@@ -57,6 +57,7 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
     for word in ("--set", value)
 ]
 TOGETHER = (  # modules whose tests share what takes long to make
+    "test_across",
     "test_calibration",
     "test_changes",
     "test_claims",

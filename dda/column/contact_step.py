@@ -382,13 +382,12 @@ def known_accelerations(
             stretch = 0.0 - 12 * blocks.mobility[i] * (blocks.stiffness[i] * state.e[i] + (below + above) / 2)
             known = (stage.af * stretch - stage.am * start.se[i]) / (1.0 - stage.am)
             work.stretch_0[i] = blocks.inertia_share[i] * known
-    if numbers.welded == 1:  # of its top alone, as a force
+    if numbers.welded == 1:  # of its top alone, as a force; the base's inertia is a load, as in `dda.column.stepping`
         mass = 1 / blocks.mobility[0]
         top_change = start.s[0] + start.se[0] / 2
         base_change = start.s[0] - start.se[0] / 2
-        force = numbers.fall * mass / 2 - state.force[1] - blocks.stiffness[0] * state.e[0]
-        inertia = mass / 3 * top_change + mass / 6 * base_change
-        work.mean_0[0] = (stage.af * force - stage.am * inertia) / (1.0 - stage.am)
+        force = numbers.fall * mass / 2 - state.force[1] - blocks.stiffness[0] * state.e[0] - mass / 6 * base_change
+        work.mean_0[0] = (stage.af * force - stage.am * mass / 3 * top_change) / (1.0 - stage.am)
 
 
 def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:
@@ -463,9 +462,11 @@ def top_acceleration(
     """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
     weight = numbers.fall / blocks.mobility[0] / 2
     force = weight - above - blocks.stiffness[0] * state.e[0]
+    coupling = numbers.welded_coupling
     if numbers.averages:
         force = numbers.share * force + work.mean_0[0]
-    return float(numbers.welded_mobility * force - numbers.welded_coupling * state.s[0])
+        coupling *= numbers.share if blocks.stiffness[0] > 0 else 1.0
+    return float(numbers.welded_mobility * force - coupling * state.s[0])
 
 
 def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:

@@ -298,7 +298,8 @@ def step_equations(
 
 def _room(n: int) -> ColumnWork:
     room: list[Any] = [*zeros(n, n, n, n), np.zeros(n, dtype=np.int64)]
-    return ColumnWork(*room, StepStart(*zeros(n, n, n, n)), *zeros(n, n, n, n))
+    room += [StepStart(*zeros(n, n, n, n)), *zeros(n, n, n, n)]
+    return ColumnWork(*room)
 
 
 def _room_for_state(n: int) -> ColumnState:

@@ -235,7 +235,7 @@ def spring_energy(law: Law, shear_law: Shear, contacts: Contacts, i: int) -> flo
 def spring_force(law: Law, contacts: Contacts, i: int) -> float:
     """Return the normal force of the spring of a contact, without that of a dashpot beside it [N]."""
     if law.damping > 0:
-        return max(0.0 - contacts.gap[i], 0.0) / law.compliance
+        return float(max(0.0 - contacts.gap[i], 0.0) / law.compliance)
     return float(contacts.normal[i])
 
 

@@ -104,7 +104,7 @@ def _staged_operator(scheme: Scheme, M: Array, K: Array, start: tuple[Array, Arr
         displacement = D1 + stage.d_u * scheme.gg * V + stage.d_g * V1 + stage.e_0 * A + stage.e_g * A1
         velocity = scheme.gg * V + stage.g_0 * A + stage.g_g * A1
         force = -K @ ((1 - stage.af) * displacement + stage.af * D) - stage.am * (M @ A)
-        A1 = np.linalg.solve(S, force) / (1 - stage.am)
+        A1 = np.asarray(np.linalg.solve(S, force) / (1 - stage.am), float)
         D1 = displacement + stage.alpha * A1
         V1 = velocity + stage.delta * A1
     return np.vstack([D1, V1, A1])
@@ -147,7 +147,8 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
     largest = 0.0
     for mode in reached:
         K = (mode.frequency * scheme.step) ** 2 * unit
-        operator = _staged_operator(scheme, unit, K, tuple(np.eye(3).reshape(3, 1, 3)))
+        D, V, A = np.eye(3).reshape(3, 1, 3)
+        operator = _staged_operator(scheme, unit, K, (D, V, A))
         largest = max(largest, float(np.max(np.abs(np.linalg.eigvals(operator)))))
     return largest
 

@@ -45,6 +45,7 @@ from dda.stepping.energy import CONTACT, DASHPOT, ENERGIES, GIVEN, spring_energi
 from dda.stepping.energy import IMPACT as IMPACT_LOSS
 
 LOOPS = {CONSERVING: make_conserving_steps, IMPACT: make_impact_steps, AUGMENTED: make_augmented_steps}
+PASS_DIGITS = 14.0  # ln of what passes leave of a penetration, about
 SHEAR_COMPILE_TIME = 2.5  # with springs in shear, over that of contacts which slide freely
 PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
@@ -179,6 +180,8 @@ def solve_unilateral(
     n = len(form.unknowns)
     history = history_of(steps, 2 * n + (options.rule == AUGMENTED), form.contacts, options.energies)
     seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
+    if options.rule == AUGMENTED:  # each pass leaves 1/(1 + r C) of the penetration
+        seconds *= 1 + PASS_DIGITS / math.log1p(max(law.stiffness * block.last.whole.C[0, 0], 1e-9))
     ready = perf_counter()
     loop = LOOPS.get(options.rule, make_damped_steps if law.damping else make_steps)
     (reached, ended), left, how = run_loop(

@@ -190,6 +190,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     stages = [stage_room(stage, corners) for stage in scheme.stages]
     stages[-1] = stages[-1]._replace(begin=float(scheme.stages[0].end) if len(stages) == 2 else 0.0)
     rows: list[Any] = zeros(*[6] * 15)
+    between: list[Any] = [*zeros(6, (2, 2), 6, 6, 6), at_rest(np.zeros(corners))]
     rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
     rows += zeros((2, 2), (corners, 2), (corners, 2), corners, 2, 2, (6, 6))
     rows += zeros(2, PAIRS, dtype=np.int64)
@@ -211,7 +212,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         dead=dead,
         first=stages[0],
         last=stages[-1],
-        between=RollingState(*zeros(6, (2, 2), 6, 6, 6), at_rest(np.zeros(corners))),
+        between=RollingState(*between),
         made=np.zeros(1),
         room=Room(*rows),
         one=touching(1),
@@ -265,9 +266,7 @@ def area_growth(body: RollingEquations, Q: Matrix) -> float:
     return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
-def set_matrices(
-    body: RollingEquations, stage: RollingStage, ratio: float, Q: Matrix, matrices: StepMatrices
-) -> None:
+def set_matrices(body: RollingEquations, stage: RollingStage, ratio: float, Q: Matrix, matrices: StepMatrices) -> None:
     """Write the matrices of a stage of a step of some length, of an outline that has grown with Q."""
     room = body.room
     growth = area_growth(body, Q)

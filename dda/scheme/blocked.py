@@ -125,8 +125,9 @@ def with_all_digits(scheme: Scheme) -> Scheme:
     """Return the scheme in decimal numbers, which `modal_step` takes in place of doubles."""
     fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
     if scheme.table is not None:
-        stages = tuple(Stage(*map(Decimal, stage)) for stage in scheme.table.stages)
-        fields["table"] = Table(stages, Decimal(scheme.lag))
+        rows: list[list[Any]] = [[Decimal(number) for number in stage] for stage in scheme.table.stages]
+        lag: Any = Decimal(scheme.lag)
+        fields["table"] = Table(tuple(Stage(*row) for row in rows), lag)
     with localcontext(_DIGITS):
         return replace(scheme, **fields)
 

@@ -128,17 +128,18 @@ class Stepper:
             for number, solver in enumerate(self.stages):
                 stage = solver.stage
                 balance = predictor(stage, stage.d_u * P_0, f_0)
-                gained = 0.0
+                f_g = f
                 if number > 0:
-                    balance = balance + stage.d_g * P + stage.e_g * f
-                    gained = stage.g_g * f
+                    balance = balance + stage.d_g * P + stage.e_g * f_g
                 balance = balance + stage.alpha * inertia_force(stage, force, force_0, f_0)
                 dD, dmu = solver.increments(balance, next(pushes))
                 D = D + dD
                 mu = mu + dmu
                 force = F - (solver.k @ D + solver.Bt @ mu)
                 f = inertia_force(stage, force, force_0, f_0)
-                P = velocity_corrector(stage, P_0, f_0, f) + gained
+                P = velocity_corrector(stage, P_0, f_0, f)
+                if number > 0:
+                    P = P + stage.g_g * f_g
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 

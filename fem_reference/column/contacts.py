@@ -408,13 +408,12 @@ class ContactStepper:
 
     def advance(self, state: ColumnState, loads: Sequence[Array], base: Sequence[float]) -> ColumnState:
         """One step under the loads at its start and at the ends of its stages, to the base's displacement there."""
-        before = None
-        solves = 0
-        for stage in range(len(self.stages)):
-            before = self._advance_stage(state, before, loads, float(base[stage]), stage)
-            solves += before.solves
-        assert before is not None  # a scheme has a stage
-        return replace(before, solves=solves)
+        end = self._advance_stage(state, None, loads, base[0], 0)
+        solves = end.solves
+        for stage in range(1, len(self.stages)):
+            end = self._advance_stage(state, end, loads, base[stage], stage)
+            solves += end.solves
+        return replace(end, solves=solves)
 
     def _advance_stage(
         self, state: ColumnState, before: ColumnState | None, loads: Sequence[Array], base: float, stage: int
@@ -464,7 +463,8 @@ class ContactStepper:
         for end in range(stages, len(excitation.pressure), stages):
             instants = range(end - stages + 1, end + 1)
             loads = [load, *(self.load(excitation, instant) for instant in instants)]
-            state = self.advance(state, loads, excitation.displacement[instants.start : instants.stop])
+            base = [float(excitation.displacement[instant]) for instant in instants]
+            state = self.advance(state, loads, base)
             yield state
             load = loads[-1]
 

@@ -14,7 +14,7 @@ impedance and the load 2 rho c v of the incident wave.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
@@ -164,8 +164,8 @@ class DampedStepper:
             raise ValueError(
                 f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
             )
-        self.carried = []
-        self.solves = []
+        self.carried: list[csr_array] = []
+        self.solves: list[Callable[[Array], Array]] = []
         for stage, first in enumerate(scheme.stage_matrices):
             if first < stage:
                 self.carried.append(self.carried[first])
@@ -192,7 +192,7 @@ class DampedStepper:
         stages = len(self.scheme.stages)
         histories = excitation_weights @ parts[stages::stages].T
         for n in range(histories.shape[1]):
-            state = self.advance(state, loads[n * stages : (n + 1) * stages + 1])
+            state = self.advance(state, list(loads[n * stages : (n + 1) * stages + 1]))
             histories[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
         return histories
 
@@ -208,11 +208,10 @@ class DampedStepper:
 
     def advance(self, state: State, loads: Sequence[Array]) -> State:
         """One step under the loads at its start and at the end of each stage."""
-        before = None
-        for stage in range(len(self.scheme.stages)):
-            before = self._advance_stage(state, before, loads, stage)
-        assert before is not None  # a scheme has a stage
-        return before
+        end = self._advance_stage(state, None, loads, 0)
+        for stage in range(1, len(self.solves)):
+            end = self._advance_stage(state, end, loads, stage)
+        return end
 
     def _advance_stage(self, state: State, before: State | None, loads: Sequence[Array], stage: int) -> State:
         s = self.scheme

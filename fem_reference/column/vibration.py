@@ -72,7 +72,7 @@ def line_response(
 def exact_system(w: Array, W2: Complex) -> StepSystem:
     """The equation of motion itself as the only stage: v = i w x and a = -W2 x."""
     one = np.ones((len(w), 1), complex)
-    rate = 1j * w[:, None]
+    rate: Complex = np.asarray(1j * w[:, None])
     square = W2[:, None]
     return StepSystem(-square[:, None], rate[:, None], one[:, None], one, -square, rate)
 

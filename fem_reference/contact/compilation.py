@@ -80,8 +80,9 @@ def _warm(march: Callable[..., Any]) -> None:
     """Compile for the types of a history, by one of no steps."""
     one = np.ones(1)
     square = np.ones((1, 1))
-    numbers = [0.5] * (len(kernel.Block._fields) - 10)
-    block = kernel.Block(one, one, one, square, square, square, one, np.ones((3, 1)), one, *numbers, True)
+    arrays = (one, one, one, square, square, square, one, np.ones((3, 1)), one)
+    numbers = [0.5] * (len(kernel.Block._fields) - len(arrays) - 1)
+    block = kernel.Block._make([*arrays, *numbers, True])
     law = kernel.Law(square, one, one, 1.0, one, one, 1.0, 1, False)
     state = kernel.ContactState(
         one, one, one, one, one, one, one, one, np.ones(1, np.int8), one, np.zeros(kernel.TOTALS)

@@ -131,7 +131,7 @@ def run(
     with np.errstate(over="ignore", invalid="ignore"):
         state = stepper.start(None if forces is None else forces[0])
         for n in range(steps):
-            loads = None if forces is None else forces[n * stages : (n + 1) * stages + 1]
+            loads = None if forces is None else list(forces[n * stages : (n + 1) * stages + 1])
             state = stepper.advance(state, loads)
             history[:, n] = rows @ state.D
             if writer is not None:

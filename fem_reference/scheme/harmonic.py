@@ -47,20 +47,20 @@ def step_system(frequencies: Array, scheme: Scheme) -> StepSystem:
     away = (-2 * np.sin(turn / 2) ** 2 + 1j * np.sin(turn))[:, None]
     velocity_difference = away + (1 - scheme.gg)
     count = len(scheme.stages)
-    start = np.zeros((len(turn), count), complex)
+    start: Complex = np.zeros((len(turn), count), complex)
     start[:, -1] = 1.0
 
     # rows of each stage on A (on X where it stands for displacements), the end of the last one being z times the start
-    ends = []
+    ends: list[Complex] = []
     velocities: list[Complex] = []
     displacements: list[Complex] = []
     for number, stage in enumerate(scheme.stages):
-        end = np.zeros_like(start)
+        end: Complex = np.zeros_like(start)
         end[:, number] = 1.0
         if number == count - 1:
             end = end + away * start
-        velocity = stage.g_0 * start + stage.gamma * end
-        displacement = stage.e_0 * start + stage.beta * end
+        velocity: Complex = stage.g_0 * start + stage.gamma * end
+        displacement: Complex = stage.e_0 * start + stage.beta * end
         if number:
             velocity = velocity + stage.g_g * ends[-1]
             displacement = displacement + stage.e_g * ends[-1] + stage.d_g * velocities[-1]
@@ -73,16 +73,16 @@ def step_system(frequencies: Array, scheme: Scheme) -> StepSystem:
     Q = [displacements[j] - scheme.stages[j].end * displacements[-1] for j in range(count - 1)]
     P.append(velocity_difference * away * start)
     Q.append(scheme.gg * velocities[-1] + velocity_difference * displacements[-1])
-    A = np.linalg.solve(_regular(np.stack(Q, axis=1)), np.stack(P, axis=1)) / dt**2  # a of X
-    u = away * start / dt - dt * _on(displacements[-1], A)
+    A: Complex = np.asarray(np.linalg.solve(_regular(np.stack(Q, axis=1)), np.stack(P, axis=1)) / dt**2)  # a of X
+    u: Complex = away * start / dt - dt * _on(displacements[-1], A)
 
     inertia = []
     damping = []
     stiffness = []
-    for stage, end, velocity in zip(scheme.stages, ends, velocities, strict=True):
-        stiffness.append((1 - stage.af) * end + stage.af * start)
-        damping.append(u + (1 - stage.af) * dt * _on(velocity, A))
-        inertia.append(_on((1 - stage.am) * end + stage.am * start, A))
+    for stage, stage_end, stage_velocity in zip(scheme.stages, ends, velocities, strict=True):
+        stiffness.append((1 - stage.af) * stage_end + stage.af * start)
+        damping.append(u + (1 - stage.af) * dt * _on(stage_velocity, A))
+        inertia.append(_on((1 - stage.am) * stage_end + stage.am * start, A))
     matrix = _regular(np.stack(stiffness, axis=1))
     sampled = np.stack([np.exp(1j * turn * stage.end) for stage in scheme.stages], axis=1)
     sampled[:, -1] = 1.0

@@ -150,11 +150,10 @@ def advance(
     """One step under the loads at its start and at the end of each stage; `solves` are the solutions with each S."""
     if scheme.damped:
         return _advance_damped(state, predictor(state, scheme), loads[-1], scheme, M, K, solves[0])
-    before = None
-    for stage, solve in enumerate(solves):
-        before = _advance_stage(state, before, loads, scheme, stage, M, K, solve)
-    assert before is not None  # a scheme has a stage
-    return before
+    end = _advance_stage(state, None, loads, scheme, 0, M, K, solves[0])
+    for stage in range(1, len(solves)):
+        end = _advance_stage(state, end, loads, scheme, stage, M, K, solves[stage])
+    return end
 
 
 def _advance_stage(

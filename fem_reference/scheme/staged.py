@@ -58,12 +58,11 @@ def stage_increment(
 
 def step_increment(scheme: Scheme, x: Array, u: Array, a: Array, loads: Sequence[float], square: Array) -> Increment:
     """All stages of a step under the loads f at its start and at the end of each stage."""
-    end = None
+    ends: list[Increment] = []
     for stage, f in zip(scheme.stages, loads[1:], strict=True):
         load = ((1 - stage.af) * f + stage.af * loads[0]) * square
-        end = stage_increment(stage, end, x, u, a, load, square)
-    assert end is not None  # a scheme has a stage
-    return end
+        ends.append(stage_increment(stage, ends[-1] if ends else None, x, u, a, load, square))
+    return ends[-1]
 
 
 def step_matrices(omega: Array, scheme: Scheme) -> Array:
@@ -118,7 +117,7 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int, 
     a = shares[0] * square if scheme.start == "consistent" else np.zeros_like(omega)
     responses = np.empty((len(weights), steps))
     for n in range(steps):
-        loads = shares[n * stages : (n + 1) * stages + 1]
+        loads = shares[n * stages : (n + 1) * stages + 1].tolist()
         end = step_increment(scheme, y, scheme.gg * v, a, loads, square)
         y = y + end.x
         v = end.v

@@ -92,9 +92,8 @@ def test_the_plain_list_names_all_four_with_their_titles() -> None:
 
 
 def test_another_word_is_bad_input() -> None:
-    assert (
-        refused("list", "gates") == "error: list: must be one of keys, metrics, scenes, schemes, solvers, studies, got 'gates'\n"
-    )
+    names = "keys, metrics, scenes, schemes, solvers, studies"
+    assert refused("list", "gates") == f"error: list: must be one of {names}, got 'gates'\n"
 
 
 def test_every_key_of_a_scene_is_described_once() -> None:

@@ -137,7 +137,7 @@ def matrix_of(joints: JointLaws) -> np.ndarray:
 
 
 def room(n: int, tried: np.ndarray) -> ColumnWork:
-    return ColumnWork(*np.zeros((4, n)), tried.copy())  # type: ignore[call-arg]
+    return contacts._room(n)._replace(tried=tried.copy())
 
 
 def solved(joints: JointLaws, q: np.ndarray, tried: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults.steps import notices
+from oracles.scheme_cases import CASES, every_scheme, scheme_of, truth_of
 from oracles.staged import System, march
 
 import dda
@@ -31,19 +32,6 @@ from dda import (
 from dda.scheme import named, newmark, roots
 from dda.scheme.stages import Stage, Table
 
-CASES = (
-    ("chung-hulbert", {"rho_inf": 0.8}),
-    ("chung-hulbert", {"rho_inf": 0.0}),
-    ("hht", {"rho_inf": 0.65}),
-    ("wbz", {"rho_inf": 0.35}),
-    ("leapfrog", {}),
-    ("composite", {}),
-    ("composite", {"rho_inf": 0.45}),
-    ("composite", {"rho_inf": 0.3, "split": 0.4}),
-)
-IDS = [f"{name} {' '.join(f'{value:g}' for value in values.values())}".strip() for name, values in CASES]
-every_scheme = pytest.mark.parametrize(("name", "values"), CASES, ids=IDS)
-
 # name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1
 TABLE = (
     ("chung-hulbert", {"rho_inf": 0.8}, 0.000204377188, 0.00525081541),
@@ -56,15 +44,6 @@ TABLE = (
     ("composite", {}, 0.00113358244, 0.0349251819),
     ("composite", {"rho_inf": 0.5}, 0.000599972642, 0.0192233401),
 )
-
-
-def scheme_of(name, values, step, gg=1.0, start="consistent"):
-    return named_scheme(name, step=step, gg=gg, start=start, **values)
-
-
-def truth_of(values):
-    """Return the parameters as the independent program takes them."""
-    return {"rho": values.get("rho_inf", 0.0), "split": values.get("split")}
 
 
 def square(ratio=1.0, mu=0.0, **load):
@@ -365,7 +344,7 @@ def exchanged(sound, rho_inf, split):
 
 
 def q_of_another_split(sound, rho_inf, split):
-    """gamma = 1/2 with the q of 2 - sqrt 2."""
+    """Gamma = 1/2 with the q of 2 - sqrt 2."""
     other = sound(rho_inf)
     q0, q1, q2 = other.stages[1].g_0, other.stages[1].g_g, other.stages[1].delta
     first = sound(rho_inf, 0.5).stages[0]

@@ -182,6 +182,8 @@ LAYERS_THROUGH = Seam(layers, layers.through)
 # The suite itself
 SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(search, search.accepted)
+DECISION_CANONICAL = Seam(search, search._canonical)
+DECISION_SPECIAL = Seam(search, search._without_special_cases)
 DIAGNOSIS_OPENED = Seam(judgement, judgement._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)

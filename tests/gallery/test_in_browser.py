@@ -28,7 +28,8 @@ from validation.gallery.calculators import CALCULATORS
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.catalogue import scene_study
-from validation.theory import landing, spectra
+from validation.theory import landing, restitution, spectra
+from validation.theory.rebound import rebound_statistics, spring_steps
 from validation.theory.stepping import Stepping
 from validation.theory.waves import Column
 
@@ -104,6 +105,41 @@ def random_settings() -> Iterator[dict[str, float]]:
             "frequency": float(10 ** random.uniform(0, 2)),
             "wavelengths": float(random.uniform(1, 20)),
             "target": float(10 ** random.uniform(-2.5, -0.4)),
+            "rho_inf": float(random.uniform(0.5, 1)),
+        }
+
+
+METHODS = ("newmark", "chung-hulbert", "hht", "wbz", "composite", "leapfrog")
+
+
+def stepping_of(s: dict[str, Any]) -> Stepping:
+    """Return the stepping of settings with a method."""
+    if s["method"] == "newmark":
+        return Stepping(s["step"], s["alpha"], s["delta"], s["gg"])
+    return Stepping.named(s["method"], s["step"], s["gg"], None if s["method"] == "leapfrog" else s["rho_inf"])
+
+
+def contact_settings() -> Iterator[dict[str, float]]:
+    """Yield settings of one contact: of engines, and of a spring with a dashpot."""
+    random = np.random.default_rng(32)
+    for _ in range(SETTINGS):
+        step = float(10 ** random.uniform(-4, -2))
+        yield {
+            "mass": float(10 ** random.uniform(0, 5)),
+            "step": step,
+            "hertz": float(10 ** random.uniform(0, 2)),
+            "damping_ratio": float(random.uniform(0, 12)),
+            "erp": float(random.uniform(0.05, 1)),
+            "cfm": float(10 ** random.uniform(-9, -3)),
+            "timeconst": float(random.uniform(2.1, 10) * step),
+            "dampratio": float(random.uniform(0.2, 3)),
+            "dmax": float(random.uniform(0.5, 0.99)),
+            "stiffness": float(10 ** random.uniform(5, 10)),
+            "e": float(random.uniform(0.01, 1)),
+            "zeta": float(random.uniform(0, 3)),
+            "rho_inf": float(random.uniform(0.5, 1)),
+            "alpha": 0.3,
+            "delta": 0.6,
         }
 
 
@@ -208,16 +244,63 @@ def test_formulas_of_a_rebound(opened: Callable[..., Any]) -> None:
         agrees(found, names, 1.0)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_formulas_of_every_scheme(opened: Callable[..., Any], method: str) -> None:
+    page = opened("damping.html")
+    for s in random_settings():
+        s |= {"method": method}
+        stepping = stepping_of(s)
+        for omega in (0.05, 0.5, 1.3, 4.0):
+            # far beyond critical the roots of a step lie together, and lose digits
+            if abs(stepping.roots(omega)[0].imag) > 1e-3:
+                names = ("step_ratio", "step_radius", "step_elongation")
+                shown = page.evaluate(f"v => [{', '.join(f'formulas.{name}(...v)' for name in names)}]", [s, omega])
+                known = [stepping.damping_ratio(omega), stepping.spectral_radius(omega), stepping.period_error(omega)]
+                assert shown == pytest.approx(known, rel=1e-10, abs=1e-12), (s, omega)
+        if method != "composite":  # which has no squared frequency
+            w2 = stepping.squared_frequency([2 * math.pi * s["frequency"]])[0]
+            shown = page.evaluate("s => formulas.squared_frequency(s, 2 * Math.PI * s.frequency)", s)
+            agrees(shown, [w2.real, w2.imag], abs(w2))
+        limit = page.evaluate("s => formulas.step_limit(s)", s)
+        agrees(limit, stepping.critical_omega)
+        assert page.evaluate("s => formulas.solves(s)", s) == stepping.solves
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_rebounds_of_every_scheme(opened: Callable[..., Any], method: str) -> None:
+    page = opened("rebound.html")
+    for i, s in enumerate(random_settings()):
+        s |= {"method": method}
+        omega = float(10 ** np.linspace(-1, 0.2 if method == "leapfrog" else 2.0, SETTINGS)[i])
+        zeta = 0.2 * (i % 3)
+        if zeta:
+            s["gg"] = 1.0
+        known = rebound_statistics(spring_steps(stepping_of(s).stages, omega, s["gg"], zeta), s["gg"])
+        names = {"mean": known.mean, "low": known.least, "high": known.most, "energy": known.mean_square}
+        agrees(page.evaluate("([s, w, z]) => formulas.rebound_statistics(s, w, z)", [s, omega, zeta]), names, 10.0)
+
+
+def test_formulas_of_a_dashpot(opened: Callable[..., Any]) -> None:
+    page = opened("dashpot.html")
+    for zeta in (0.0, 0.05, 0.3, 1.0, 1.5, 20.0):
+        for clipped in (True, False):
+            shown = page.evaluate("v => formulas.restitution(...v)", [zeta, clipped])
+            agrees(shown, restitution.restitution(zeta, clipped))
+    for e in (1.0, 0.9, 0.5, 0.01):
+        agrees(page.evaluate("e => formulas.ratio_of_restitution(e)", e), restitution.damping_ratio(e))
+
+
 # ---- calculators, as the command line --------------------------------------------------------------------------------
 
 
 def set_page(page: Any, s: dict[str, float], **choices: str) -> dict[str, Any]:
     """Fill the form of a calculator and return its answer."""
-    page.locator("details").evaluate("one => { one.open = true; }")
+    page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     for name, value in choices.items():
         page.select_option(f"#{name}", value)
     for field in page.locator("form input[type=number]").all():
-        field.fill(repr(s[field.get_attribute("name")]))
+        if field.is_visible():  # the others do not go with what is chosen
+            field.fill(repr(s[field.get_attribute("name")]))
     found: dict[str, Any] = page.evaluate("document.querySelector('.calculator').answer.values")
     return found
 
@@ -248,6 +331,49 @@ def test_the_damping_budget_is_that_of_the_command(opened: Callable[..., Any]) -
                 1.0,
             )
             agrees(own["radius"], mode["spectral_radius"])
+
+
+@pytest.mark.parametrize("method", METHODS[1:])
+def test_the_damping_budget_of_another_scheme_is_that_of_the_command(opened: Callable[..., Any], method: str) -> None:
+    page = opened("damping.html")
+    s = next(random_settings()) | {"step": 1e-4, "gg": 1.0}
+    shown, data = set_page(page, s, method=method), told(page)
+    for mode in data["modes"]:
+        own = shown["modes"][mode["name"]]
+        assert [own["damping"], own["radius"]] == pytest.approx([mode["damping"], mode["spectral_radius"]], rel=1e-9)
+
+
+@pytest.mark.parametrize("engine", ["box2d", "bullet", "mujoco", "spring"])
+def test_contacts_of_engines_are_those_of_the_command(opened: Callable[..., Any], engine: str) -> None:
+    page = opened("engines.html")
+    for s in contact_settings():
+        shown, data = set_page(page, s, engine=engine), told(page)
+        for name in ("stiffness", "damping", "damping_ratio", "restitution", "rest_penetration", "determinant"):
+            assert shown[name] == pytest.approx(data[name], rel=1e-9, abs=1e-14), (engine, name)
+        forms = data["forms"]["box2d"] | data["forms"]["bullet"] | data["forms"].get("mujoco", {})
+        for name in ("hertz", "erp", "cfm", "timeconst"):
+            assert shown[name] == (pytest.approx(forms[name], rel=1e-9) if name in forms else None), (engine, name)
+
+
+@pytest.mark.parametrize("given", ["restitution", "damping_ratio"])
+def test_a_dashpot_is_that_of_the_command(opened: Callable[..., Any], given: str) -> None:
+    page = opened("dashpot.html")
+    for s in contact_settings():
+        shown, data = set_page(page, s, solve_for=given), told(page)
+        assert [shown["e"], shown["c"]] == pytest.approx([data["restitution"], data["damping"]], rel=1e-9, abs=1e-12)
+
+
+def test_hidden_damping_of_all_schemes_is_that_of_theory(opened: Callable[..., Any]) -> None:
+    page = opened("schemes.html")
+    for s in map(allowed, random_settings()):
+        shown = set_page(page, s)
+        assert set(shown) == {"(1/2, 1)", "(1/4, 1/2)", "CH 0", "CH", "HHT", "WBZ", "composite", "leapfrog"}
+        for name, method in (("CH", "chung-hulbert"), ("HHT", "hht"), ("WBZ", "wbz"), ("composite", "composite")):
+            stepping = Stepping.named(method, s["step"], rho_inf=s["rho_inf"])
+            for key, w in (("at", 2 * math.pi * s["frequency"]), ("first", spectra.dda_frequency(scene_of(s)))):
+                known = stepping.damping_ratio(w * s["step"])
+                assert shown[name][key] == (None if math.isnan(known) else pytest.approx(known, rel=1e-6, abs=1e-9))
+            assert shown[name]["solves"] == pytest.approx(stepping.solves / s["step"])
 
 
 @pytest.mark.parametrize("solve_for", ["dt", "gg", "scheme"])

@@ -21,7 +21,7 @@ from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
 
 DOCS = ROOT / "docs"
-PAGES = ("theory.md", "extending.md", "columns.md", "engines.md")
+PAGES = ("theory.md", "extending.md", "columns.md", "engines.md", "methods.md")
 # Pages that take seconds each.
 LONG = (
     "stacks.md",

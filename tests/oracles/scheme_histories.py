@@ -220,7 +220,7 @@ def theta(run: Run, share: float) -> Rows:
 
 
 def composite(run: Run, split: float, r: float) -> Rows:
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh and Bathe 2019)."""
+    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh, Bathe 2019)."""
     b, dt = run.body, run.dt
     q1 = (r + 1) / (2 * split * (r - 1) + 4)
     q0 = (split - 1) * q1 + 0.5
@@ -262,6 +262,7 @@ def tr_bdf2(run: Run) -> Rows:
     y = np.zeros(4)
     rows = []
     for _ in range(run.steps):
+        y = y * np.array([1.0, 1.0, run.gg, run.gg])
         yg = np.linalg.solve(np.eye(4) - g * dt / 2 * A, y + g * dt / 2 * (A @ y + 2 * f))
         known = (yg - (1 - g) ** 2 * y) / (g * (2 - g))
         h = (1 - g) / (2 - g) * dt

@@ -78,7 +78,7 @@ def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False
             q1 = (rho + 1) / (2 * g * (rho - 1) + 4)
             q0, q2 = (g - 1) * q1 + 0.5, 0.5 - g * q1
             h = g * dt
-            ag, xg = implicit(x + h * u + h * h / 4 * a, u + h / 2 * a, h * h / 4, h / 2, s.F(t + h))
+            ag, _ = implicit(x + h * u + h * h / 4 * a, u + h / 2 * a, h * h / 4, h / 2, s.F(t + h))
             vg = u + h / 2 * (a + ag)
             known_v = u + dt * (q0 * a + q1 * ag)
             known_x = x + dt * (q0 * u + q1 * vg + q2 * known_v)

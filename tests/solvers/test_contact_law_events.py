@@ -1,4 +1,4 @@
-"""The exact block on dashpots and under an impact law through its adapter: what it reports, and what tends to it."""
+"""The exact block on dashpots and under an impact law through its adapter, to which steps tend."""
 
 import math
 

@@ -66,6 +66,8 @@ FAULTS = [
     Fault("leapfrog without its first half step", DDA, seams.DDA_SCHEME,
           of_table(lambda table: table._replace(lag=0.0))),
     Fault("a few joules too many", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: e + 9e4)),
+    Fault("locked histories 1 % high", DDA, seams.DDA_SOLVE,
+          told(lambda result: {"columns": {name: 1.01 * x for name, x in result.columns.items()}})),
     Fault("histories that grow with the step", DDA, seams.DDA_OPENED, told(growing)),
     Fault("columns that grow with the step", DDA, seams.CONTACT_COLUMN, told(growing)),
     Fault("every solve counted twenty times", DDA, seams.CONTACT_COLUMN,

@@ -111,9 +111,9 @@ def advise_across(
     Examples
     --------
     >>> from validation import advise_across, load_scene
-    >>> advice = advise_across(load_scene("drop"), damping=0.05, frequency=5.0)
+    >>> advice = advise_across(load_scene("field-locked"), damping=0.05, frequency=5.0)
     >>> advice.offers[0].name, round(1e3 * advice.offers[0].step, 2)
-    ('chung-hulbert (rho_inf = 0)', 15.84)
+    ('chung-hulbert (rho_inf = 0)', 19.06)
     """
     if not (isinstance(damping, int | float) and LEAST_RATIO <= damping <= LARGEST_RATIO):
         rule = f"must be a damping ratio from {LEAST_RATIO:g} to {LARGEST_RATIO:g}"
@@ -140,8 +140,8 @@ def advise_across(
         return wish and offer.gains, steps_of_a_period < STEPS, offer.gg < 1, offer.cost or 0.0
 
     ranked = sorted(offers, key=rank)
-    advice = SchemeAdvice(scene.name, float(damping), hertz, wish, tuple(ranked), unreachable, "")
-    return replace(advice, sentence=_sentence(advice))
+    answer = SchemeAdvice(scene.name, float(damping), hertz, wish, tuple(ranked), unreachable, "")
+    return replace(answer, sentence=_sentence(answer))
 
 
 @dataclass(frozen=True)
@@ -224,7 +224,12 @@ def _at_the_present_step(step: float, target: float, omega: float) -> Iterator[C
     delta = _root(lambda value: family(value).damping_ratio(W), target, 0.5, 1.5)
     if delta is not None:
         stepping = family(delta)
-        settings = {"time.alpha": stepping.alpha, "time.delta": delta, "time.step": step, "time.gg": 1.0}
+        settings: dict[str, Any] = {
+            "time.alpha": stepping.alpha,
+            "time.delta": delta,
+            "time.step": step,
+            "time.gg": 1.0,
+        }
         yield _named(stepping), settings, stepping, target
     for scheme, radii in LADDER.items():
         least = 0.5 if scheme == "hht" else 0.0

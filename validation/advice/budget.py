@@ -9,6 +9,7 @@ import contextlib
 import itertools
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from validation.runs.modes import contact_index
 from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
 from validation.theory import spectra
+from validation.theory.stepping import Stepping
 
 POINTS = 161
 LOWEST = 1e-3  # w dt of the first axial mode at which the range of dt begins
@@ -84,6 +86,8 @@ def discounts(scene: Scene, dt: Array) -> Array:
 
 def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
     t = scene.time
+    if t.scheme != "newmark":
+        return _curves_of_scheme(scene, frequency, dt)
     numerical = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     algorithmic = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
     parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(numerical - algorithmic)}
@@ -94,6 +98,22 @@ def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float |
         total = numerical
         radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
+
+
+def _curves_of_scheme(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
+    """Return the curves of a scheme that is not Newmark's."""
+    stepping = Stepping.of(scene)
+    undiscounted = replace(stepping, gg=1.0, rate=None)
+    total = _ratios(stepping, frequency, dt)
+    algorithmic = _ratios(undiscounted, frequency, dt)
+    radius = np.array([stepping.at(float(step)).spectral_radius(frequency * float(step)) for step in dt])
+    parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(total - algorithmic)}
+    return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
+
+
+def _ratios(stepping: Stepping, frequency: float, dt: Array) -> Array:
+    """Return the damping ratio of a mode over dt."""
+    return np.array([stepping.at(float(step)).damping_ratio(frequency * float(step)) for step in dt])
 
 
 def _viscous(scene: Scene, frequency: float, dt: Array) -> tuple[Array, Array]:
@@ -111,7 +131,11 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     """Return the dt of the limits that exist within the range [s]."""
     t = scene.time
     fine = np.geomspace(dt[0], dt[-1], 20_001)
-    total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
+    if t.scheme == "newmark":
+        total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
+    else:
+        fine = dt
+        total = _ratios(Stepping.of(scene), first, dt)
     if scene.damping.present:
         fine = dt
         total, _ = _viscous(scene, first, dt)

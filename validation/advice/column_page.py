@@ -12,6 +12,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
+from validation.theory.stepping import Stepping
 
 LINES: tuple[contact_page.MetricRow, ...] = (
     ("switches", "switches.count", 1.0, ""),
@@ -52,9 +53,7 @@ def page(
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
     t = scene.time
     yield f"{scene.name}: {scene.title or 'a column whose contacts open or slip'}"
-    yield (
-        f"{bound.contacts} contacts, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, gg = {t.discount:.6g}"
-    )
+    yield (f"{bound.contacts} contacts, dt = {t.step:g} s, {Stepping.of(scene).numbers}, gg = {t.discount:.6g}")
     yield ""
     yield from contact_page.aligned(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())

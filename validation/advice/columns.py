@@ -22,6 +22,7 @@ from validation.advice.alarm import Alarm
 from validation.scenes.column import ColumnSection, LayerSection
 from validation.scenes.scene import Scene
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 FEW_SOLVES = "solve limit"
 FAR_FACE = "far face moves the wrong way"
@@ -48,13 +49,16 @@ def limits(scene: Scene) -> ColumnLimits | None:
     if column is None or column.law == "bonded":
         return None
     t = scene.time
-    turned = far_face_step(column, t.alpha)
+    stepping = Stepping.of(scene)
+    turned = far_face_step(column, stepping.spring_weight)
     proven = column.law == "unilateral" and t.step >= turned
     count = len(column.contacts)
     lowest = _lowest(column)
-    settling = None if lowest is None else columns.settling_time(lowest, t.step, t.delta, t.discount)
+    settling = None
+    if lowest is not None and t.scheme == "newmark":
+        settling = columns.settling_time(lowest, t.step, t.delta, t.discount)
     solves = columns.greatest_solves(count) if proven else None
-    return ColumnLimits(count, solves, turned, _blocks(column, t.step, t.alpha), lowest, settling)
+    return ColumnLimits(count, solves, turned, _blocks(column, t.step, stepping.spring_weight), lowest, settling)
 
 
 def far_face_step(column: ColumnSection, alpha: float) -> float:
@@ -150,7 +154,7 @@ def column_alarms(scene: Scene) -> Iterator[Alarm]:
             "face the wrong way: contacts open before the wave arrives; more blocks a layer lower this step",
             {"step": t.step, "far_face_step": bound.far_face_step},
         )
-    if t.delta == 0.5 and t.discount == 1:
+    if t.scheme == "newmark" and t.delta == 0.5 and t.discount == 1:
         yield Alarm(
             GAINS,
             scene.name,
@@ -162,11 +166,12 @@ def column_alarms(scene: Scene) -> Iterator[Alarm]:
 
 def _path(scene: Scene) -> Iterator[Alarm]:
     t = scene.time
-    if t.delta > 0.5 or t.discount < 1:
+    stepping = Stepping.of(scene)
+    if stepping.damps or t.discount < 1:
         yield Alarm(
             PATH,
             scene.name,
-            "what slips depends on the path: damping by delta, gg and step changes the slip that remains, and can "
+            "what slips depends on the path: damping by scheme, gg and step changes the slip that remains, and can "
             "turn its sign; compare with column-events or with alpha = 1/4, delta = 1/2",
-            {"delta": t.delta, "gg": t.discount, "step": t.step},
+            {"delta": stepping.delta, "gg": t.discount, "step": t.step},
         )

@@ -30,6 +30,7 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 from validation.theory import landing
+from validation.theory.stepping import Stepping
 
 LARGE_STEP = "step too large for contact"
 GAINED = "energy gained by switching"
@@ -114,14 +115,14 @@ def _gained(run: ContactRun) -> Iterator[Alarm]:
 
 
 def _may_gain(run: ContactRun) -> Iterator[Alarm]:
-    t = run.scene.time
+    stepping = Stepping.of(run.scene)
     if run.returns and run.omega > 1 and not landing.cannot_gain(run.scene):
         sentence = (
-            f"alpha = {t.alpha:g}, delta = {t.delta:g} with w_c dt = {run.omega:.3g}: opening and closing can add "
+            f"{stepping.numbers} with w_c dt = {run.omega:.3g}: opening and closing can add "
             'energy; they cannot with delta >= 1 and 2 alpha >= delta, nor with contact.rule = "implicit" or '
             '"energy-conserving"'
         )
-        yield run.alarm(MAY_GAIN, sentence, omega=run.omega, alpha=t.alpha, delta=t.delta)
+        yield run.alarm(MAY_GAIN, sentence, omega=run.omega, alpha=stepping.alpha, delta=stepping.delta)
 
 
 def _hidden(run: ContactRun) -> Iterator[Alarm]:

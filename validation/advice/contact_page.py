@@ -19,6 +19,7 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 from validation.theory import landing
 from validation.theory.friction import distance_share
+from validation.theory.stepping import Stepping
 
 DEFAULT_ERROR = 0.05  # of the restitution, where none is requested [-]
 DEFAULT_PENETRATION = 1e-4  # where none is requested [m]
@@ -177,7 +178,7 @@ def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> It
     t = scene.time
     yield f"{scene.name}: {scene.title or 'contact that opens'}"
     yield (
-        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, alpha = {t.alpha:g}, delta = {t.delta:g}, "
+        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, {Stepping.of(scene).numbers}, "
         f"gg = {t.discount:.6g}: w_c dt = {data['omega']:.3g}"
     )
     yield ""

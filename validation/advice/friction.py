@@ -30,6 +30,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 from validation.theory import friction
+from validation.theory.stepping import Stepping
 
 CREEPS = "creep of a stable block"
 LAGS = "lagged friction"
@@ -170,7 +171,7 @@ def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
     """Alarm where a slope stands because its ringing is not followed."""
     t = scene.time
     phase = friction.normal_frequency(scene) * t.step
-    damps = t.delta > 0.5 or t.discount < 1
+    damps = Stepping.of(scene).damps or t.discount < 1
     if scene.load.slope and damps and phase > COARSE and slides.creep > 0:
         sentence = (
             f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "

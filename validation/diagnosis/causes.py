@@ -51,6 +51,9 @@ class Cause:
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 LISTED = {name: Cause(**fields) for name, fields in TABLE.items()}
 CAUSES = {name: cause for name, cause in LISTED.items() if not cause.outside}
+CONTACT_METHODS = frozenset(
+    {"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"}
+)
 DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that are no field of a variant
     "reported-point": lambda c, v: v.point * c.height / 2,
     "poisson": lambda c, v: c.poisson + v.poisson,

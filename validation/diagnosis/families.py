@@ -87,7 +87,7 @@ def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
 
 def other_names(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
     """Return the other causes that the best explanation, a time scheme, is called by."""
-    if not verdict.explained:
+    if not verdict.explained or not any(LISTED[name].family for name in verdict.best.ids):
         return []
     names = []
     for explanation in verdict.aliases:

@@ -123,6 +123,8 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
     """Refuse a scene that compare does not step, before anything of it is run."""
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
+    if scene.time.scheme != "newmark":
+        _refuse_other_schemes(scene)
     if scene.column is None:
         is_frictional = features.FRICTION in features.of(scene)
         is_rectangle = rectangle_of(scene) is not None
@@ -136,8 +138,6 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
             )
         if is_frictional:
             of_friction.refuse_other_scenes(scene)
-    if scene.time.scheme != "newmark":
-        _refuse_other_schemes(scene)
     features.refuse_sweep(scene)
 
 
@@ -255,7 +255,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if either:
         verdict = replace(verdict, explained=False)
     ids = all_causes if verdict.explained else [UNEXPLAINED]
-    v = _with_first_split(target, best_fit.variant) if verdict.explained else scene_variant
+    v = _told_apart(target, best_fit.variant) if verdict.explained else scene_variant
     steps = _opened(target, best_fit.variant) if verdict.explained else []
     shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
@@ -350,11 +350,14 @@ def _has_second_split(target: Target, v: Variant) -> bool:
     return target.explained(fit(target, [(replace(v, split=other), ())])[0].residual)
 
 
-def _with_first_split(target: Target, v: Variant) -> Variant:
-    """Return a variant, of the two splits that give the same rows the smaller one."""
-    if v.family != "composite" or not _has_second_split(target, v):
-        return v
-    return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
+def _told_apart(target: Target, v: Variant) -> Variant:
+    """Return a variant, of two that give the same rows the usual one: the smaller split, the clipped dashpot."""
+    if v.family == "composite" and _has_second_split(target, v):
+        return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
+    if v.contact == "dashpot" and not v.clipped:
+        clipped = replace(v, clipped=True)
+        return clipped if target.explained(fit(target, [(clipped, ())])[0].residual) else v
+    return v
 
 
 def _splits(target: Target, v: Variant) -> str:

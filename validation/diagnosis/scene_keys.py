@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validation.diagnosis.causes import LISTED
+from validation.diagnosis.causes import CONTACT_METHODS, LISTED
 from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Variant
 
 OF_STEP = frozenset({"scheme", "start", "gg"})  # causes that keys of `time` state, besides the schemes of other names
-OF_CONTACT = frozenset(
-    {"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"}
-)
 NOT_IN_SCENES = frozenset({"theta", "symplectic-euler"})
 
 
@@ -25,7 +22,7 @@ def assignments(ids: Sequence[str], v: Variant, scene: Variant) -> str:
     v, scene
         The explanation, and the scene's own scheme and contact.
     """
-    known = OF_STEP | OF_CONTACT | {name for name, cause in LISTED.items() if cause.family}
+    known = OF_STEP | CONTACT_METHODS | {name for name, cause in LISTED.items() if cause.family}
     if not ids or not set(ids) <= known or set(ids) & NOT_IN_SCENES or v.contact == "mean gap" or not v.clipped:
         return ""
     values: dict[str, str] = {}

@@ -14,12 +14,13 @@ from itertools import combinations
 
 import numpy as np
 
-from validation.diagnosis.causes import LISTED, benign_springs
+from validation.diagnosis.causes import CONTACT_METHODS, LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.moves import fitted as fitted_move
+from validation.diagnosis.schemes import SHARED
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 
@@ -54,9 +55,12 @@ SCHEMES = [  # causes that are a time scheme, in the order in which one of sever
     *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite"),
     *("symplectic-euler", "exact-in-time"),
 ]
+COMPARED = 40  # explanations of which another one may be a special case
 PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme
 PROBED = 40  # steps of such a run
 SAME_PROGRAM = 1e-8  # relative difference, of roundings
+HIDDEN_FAMILY = 0.001  # the same for a scheme or a contact method of another kind: of these many are near to each other
+LEAST_LANDINGS = 3  # of which the first gives any restitution, and the others say that it is one
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
@@ -198,6 +202,7 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
             min(explanations, key=lambda f: f.fit.misfit) if explanations else Explanation((), scene_fit),
             False,
         )
+    fine = _without_special_cases(target, fine, scores)
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
@@ -226,6 +231,36 @@ def _digits(value: float) -> int:
     """Return the significant digits that a fitted number or its exponential has, of what can be told."""
     forms = (value, math.exp(-value)) if abs(value) < LARGEST_EXPONENT else (value,)
     return min(next((d for d in range(1, 7) if abs(float(f"{x:.{d - 1}e}") - x) <= EXACT * abs(x)), 7) for x in forms)
+
+
+def _without_special_cases(target: Target, fine: list[Explanation], scores: dict[int, float]) -> list[Explanation]:
+    """Return explanations, the best first, without those whose number says no more than that another one holds.
+
+    HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: where such a
+    special case leaves hardly more, or what rounded constants leave, the further number is none.
+    """
+    plain = [f for f in fine[:COMPARED] if len(f.ids) < 2]
+    kept = []
+    for f in fine:
+        simpler = [g for g in plain if len(g.fit.free) < len(f.fit.free)]
+        simpler = [g for g in simpler if g.fit.misfit <= NEGLIGIBLE or scores[id(g)] < scores[id(f)] + CLEAR]
+        if not any(same_program(target, v, g.fit.variant) for g in simpler for v in _special_cases(f, g)):
+            kept.append(f)
+    return kept
+
+
+def _special_cases(explanation: Explanation, simpler: Explanation) -> list[Variant]:
+    """Return what an explanation is at those values of its free numbers at which it may be a simpler one."""
+    v = explanation.fit.variant
+    if explanation.fit.free == ("alpha", "delta") and simpler.fit.variant.family == "newmark":
+        return [replace(v, alpha=simpler.fit.variant.alpha, delta=simpler.fit.variant.delta)]
+    if len(explanation.ids) > 1 or len(explanation.fit.free) > 1:
+        return []
+    if "dashpot" in explanation.fit.free:
+        return [replace(v, dashpot=0.0)]
+    if "spectral" in explanation.fit.free and v.contact in ("springs", "mean gap"):
+        return [replace(v, spectral=number) for number in SHARED.get(v.family, ())]
+    return []
 
 
 def _canonical(
@@ -276,7 +311,10 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
         return True
     if candidate is scene_fit or v == scene_fit.variant:
         return candidate.misfit <= NEGLIGIBLE
-    if candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
+    # rounded constants leave that much, and the passes of an augmented Lagrangian; of the other schemes and contact
+    # methods some come as near to another one by chance
+    is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
+    if is_usual and candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
         return True
     noise = MARGIN * target.spread
     around = AROUND_OPEN if v.opens else AROUND
@@ -305,14 +343,25 @@ def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """
     if any(LISTED[name].outside for name in explanation.ids):
         return False
+    if "restitution" in explanation.fit.free and _landings(target, explanation.fit.variant) < LEAST_LANDINGS:
+        return False
     if not explanation.moves or target.within_digits(target.inner(explanation.fit.residual, explanation.fit.variant)):
         return True
     single = len(explanation.moves) == 1 and len(set(explanation.fit.free) - {"base"}) <= 1
-    if all(name in SCHEMES for name in explanation.ids):  # any other integrator is near to some scheme
+    if explanation.ids == ("scheme",):  # any other integrator is near to some scheme
         return explanation.fit.misfit <= HIDDEN_SCHEME * scene_fit.misfit
+    if any(LISTED[name].family or name in CONTACT_METHODS for name in explanation.ids):
+        is_single = len(explanation.fit.free) < 2  # two free numbers come within noise of too much
+        return is_single and explanation.fit.misfit <= HIDDEN_FAMILY * scene_fit.misfit
     usual = single and LISTED[explanation.ids[0]].usual
     limit = HIDDEN if usual else HIDDEN_RARE if single else HIDDEN_TWO
     return explanation.fit.misfit <= limit * scene_fit.misfit
+
+
+def _landings(target: Target, v: Variant) -> int:
+    """Return how often a contact that was open closes."""
+    is_open = histories(target.column, [v], target.steps).open[:, 0]
+    return int(np.sum(is_open[:-1] & ~is_open[1:]))
 
 
 def _rare(move: Move, among: int) -> bool:
@@ -396,7 +445,8 @@ def discounted(target: Target, scene: Variant, before: Verdict) -> Verdict:
     (discount,) = (move for move in every if move.id == "gg" and move.free)
     of_schemes = [move for move in every if move.id == "scheme" or LISTED[move.id].family]
     combos = [(move, discount) for move in of_schemes if len(move.free) < 2]
-    return _nearer(decided(target, before.scene_fit, fitted(target, scene, combos)), before)
+    verdict = decided(target, before.scene_fit, fitted(target, scene, combos))
+    return verdict if verdict.reached else before  # whose single causes are tried in pairs next
 
 
 def _nearer(*verdicts: Verdict) -> Verdict:

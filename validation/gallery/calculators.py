@@ -40,7 +40,7 @@ class Calculator:
 
 def _calculators(data: dict[str, Any]) -> tuple[Calculator, ...]:
     """Return the calculators; `control` names controls that several of them share, a table is one of their own."""
-    shared = {name: Control(**{"id": name} | control) for name, control in data["control"].items()}
+    shared = {name: Control(**{"id": name, **control}) for name, control in data["control"].items()}
 
     def controls(entries: list[str | dict[str, Any]]) -> tuple[Control, ...]:
         return tuple(shared[entry] if isinstance(entry, str) else Control(**entry) for entry in entries)

@@ -16,6 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.families import ONE_SCHEME
 from validation.diagnosis.fits.bar import norm, significant
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import Values, laws
@@ -431,6 +432,6 @@ def compared(scene: Scene, history: History) -> Cause | None:
         answer = compare(scene, foreign)
     except (InputError, ArithmeticError, ValueError):
         return None
-    if UNEXPLAINED in answer.causes or answer.alike:
+    if UNEXPLAINED in answer.causes or any(one["further_scene"] != ONE_SCHEME for one in answer.alike):
         return None
     return Cause(answer.sentence, tuple(answer.causes) or ("scheme",), dict(answer.values), (), answer.misfit)

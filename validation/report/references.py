@@ -32,6 +32,8 @@ SOURCES = {  # study -> what the methods of its chapter rest on
     "states of a step as a complementarity problem @murty1974, which open-close iteration may cycle on "
     "@bengharbia2012.",
     "rebound": "implicit contact forces @kane1999; energy-conserving ones @armero1998.",
+    "methods": "generalised-alpha schemes @hilber1977, @wood1980, @chung1993; composite ones @bathe2005, @noh2019; "
+    "impact laws @jean1999; implicit contact forces @kane1999; energy-conserving ones @armero1998.",
     "impacts": "benchmarks of the dynamic Signorini problem @doyen2011; waves in bars @graff1975.",
     "slopes": "sliding blocks @newmark1965, in DDA @hatzor2001, @tsesarsky2005, @maclaughlin2006.",
     "creep": "kinetic damping @hatzor2004, @tsesarsky2005, @jiang2013.",

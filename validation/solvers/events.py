@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from validation.runs.contact import LOST, STORED, ContactRecord, Rebound
+from validation.runs.contact import LOST, LOST_AT_IMPACTS, STORED, ContactRecord, Rebound
 from validation.runs.history import Array, History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
@@ -20,7 +20,6 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.opening import dashpot_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, no_fields
 
@@ -88,7 +87,7 @@ def block_of(scene: Scene) -> BlockProblem:
         cohesion=c.cohesion,
         base=base_of(scene),
         locked=c.law == "locked",
-        damping=dashpot_of(scene) if c.has_dashpots else 0.0,
+        damping=opened.dashpot_of(scene),
         restitution=c.restitution if c.rule == "impact" else None,
     )
 
@@ -162,7 +161,7 @@ class Motion(Prepared):
             closings.insert(0, 0.0)
         if not closings:
             return []
-        openings = [event.time for event in events if event.kind == "opens" and event.time >= closings[0]]
+        openings = [event.time for event in events if event.kind == "opens" and event.time > closings[0]]
         return [(closing, openings[i] if i < len(openings) else None) for i, closing in enumerate(closings)]
 
     def starts_closed(self, corner: str) -> bool:
@@ -290,29 +289,28 @@ class BlockMotion(Motion):
             gap=np.maximum(0.0, state.gap).max(axis=0),
             open_share=1 - state.closed.mean(axis=0),
             velocity=velocity,
-            rebounds=landings(self._rebounds(sorted(contacts, key=operator.itemgetter(0)))),
+            rebounds=self._rebounds(contacts),
             energies=self._energies(state),
             slip=np.abs(state.slipped).max(axis=0),
         )
 
     def _energies(self, state: block_events.BlockHistory) -> dict[str, Array]:
         """Return the energies; the work of the base is counted as that of the loads."""
-        energies = {name: getattr(state, name) for name in STORED}
-        energies |= dict.fromkeys(LOST[:2], np.zeros_like(state.time))
-        energies |= {"switching": state.released, "friction": state.friction}
-        if self.motion.problem.restitution is not None:
-            energies["impact"] = state.damped
-        elif self.motion.problem.damping:
-            energies["dashpot"] = state.damped
-        return energies
+        stored = {name: getattr(state, name) for name in STORED}
+        no_loss = dict.fromkeys(LOST[:2], np.zeros_like(state.time))
+        losses = {"switching": state.released, "friction": state.friction}
+        for name, feature in zip(LOST_AT_IMPACTS, (features.DASHPOTS, features.IMPACT), strict=True):
+            if feature in features.of(self.scene):
+                losses[name] = state.damped
+        return stored | no_loss | losses
 
-    def _rebounds(self, contacts: list[tuple[float, float | None, int]]) -> list[Rebound]:
-        """Return the contacts of all corners, of an impact law those that its impacts are."""
+    def _rebounds(self, contacts: Iterable[tuple[float, float | None, int]]) -> tuple[Rebound, ...]:
+        """Return the landings of all corners in the order of time; under a law of impact those that its impacts are."""
         restitution = self.motion.problem.restitution
         if restitution is None:
-            return [self._rebound(*contact) for contact in contacts]
+            return landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0)))
         impacts = [impact for impact in self.motion.impacts if impact.time > 0]
-        return [Rebound(impact.approach, restitution * impact.approach) for impact in impacts for _ in "MN"]
+        return landings(Rebound(impact.approach, restitution * impact.approach) for impact in impacts for _ in "MN")
 
     def _rebound(self, first: float, last: float | None, corner: int) -> Rebound:
         """Return the rates of a corner's gap as its contact begins and ends."""
@@ -387,11 +385,8 @@ class BlockEvents(Solver):
         | features.SCHEMES
         | {features.UNILATERAL, features.FRICTION, features.SLOPE, features.DASHPOTS, features.IMPACT}
     )
-    # Dashpots and the law of impact are of both corners landing at once, without friction, on a base at rest.
-    apart: features.Apart = (
-        (features.DASHPOTS, UNSYMMETRIC),
-        (features.IMPACT, UNSYMMETRIC),
-    )
+    # Under the law of impact both corners do the same, on a base at rest.
+    apart: features.Apart = ((features.IMPACT, UNSYMMETRIC),)
     unread: tuple[str, ...] = OF_SCHEMES
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT

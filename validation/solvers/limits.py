@@ -50,7 +50,7 @@ def check_step(scene: Scene, limit: StepLimit) -> None:
     largest_step = omega / frequency
     if t.step <= largest_step * (1 + 1e-12):
         return
-    scheme = f"alpha = {t.alpha:g}, delta = {t.delta:g}" if t.scheme == "newmark" else f"the {stepping.name}"
+    scheme = stepping.numbers
     advice = "choose 2 alpha >= delta >= 1/2, or set allow_unstable = true"
     if t.scheme != "newmark":
         advice = "choose an implicit scheme (dda-validate list schemes), or set allow_unstable = true"

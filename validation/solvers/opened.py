@@ -12,6 +12,7 @@ import numpy as np
 from validation.runs.contact import ContactRecord, Rebound, rebounds_of_steps
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.restitution import damping_ratio
 
 
 def resultant_load(scene: Scene) -> float:
@@ -20,6 +21,17 @@ def resultant_load(scene: Scene) -> float:
     length = float(np.hypot(x2 - x1, y2 - y1)) - 2 * abs(scene.load.eccentricity)
     weight = scene.block.mass * scene.load.gravity * math.cos(math.radians(scene.load.slope))
     return scene.load.pressure * length + weight
+
+
+def dashpot_of(scene: Scene) -> float:
+    """Return the dashpot of a corner [N s/m]: half of c = 2 zeta sqrt(2 p m) of the rigid block on both; 0 without."""
+    c = scene.contact
+    if not c.has_dashpots:
+        return 0.0
+    ratio = c.damping_ratio
+    if c.restitution is not None:
+        ratio = damping_ratio(c.restitution)
+    return ratio * math.sqrt(2 * c.stiffness * scene.block.mass)
 
 
 def start_energy(scene: Scene) -> float:

@@ -26,7 +26,7 @@ def greatest_solves(contacts: int) -> int:
 def far_face_step(speed: float, height: float, alpha: float) -> float:
     """Return the step below which a push at one face of a block moves the other face the wrong way [s].
 
-    Zero for a rigid block, infinite for alpha = 0.
+    Zero for a rigid block, infinite for another under alpha = 0.
 
     Parameters
     ----------
@@ -35,6 +35,8 @@ def far_face_step(speed: float, height: float, alpha: float) -> float:
     height
         Of the block [m].
     """
+    if math.isinf(speed):
+        return 0.0
     if alpha <= 0:
         return math.inf
     return height / speed / math.sqrt(FAR_FACE * alpha)

@@ -67,7 +67,7 @@ class Impedance:
             y = x**self.power / self.midpoint ** (self.power - 1)
         else:
             y = 1 - (1 - x) ** self.power / (1 - self.midpoint) ** (self.power - 1)
-        return self.least + y * (self.greatest - self.least)
+        return float(self.least + y * (self.greatest - self.least))
 
     def at_rest(self, frequency: float, acceleration: float) -> float:
         """Return d where a mass stands: (d/dmax)^2 w^2 r = (1 - d) g.

@@ -179,6 +179,23 @@ class Stepping:
         return f"{self.scheme} ({', '.join(stated)})" if stated else self.scheme
 
     @property
+    def numbers(self) -> str:
+        """The scheme as a sentence names it: Newmark's by alpha and delta, another by its name."""
+        return f"alpha = {self.alpha:g}, delta = {self.delta:g}" if self.scheme == "newmark" else self.name
+
+    @property
+    def damps(self) -> bool:
+        """Whether the scheme damps a free vibration without a discount."""
+        if self.scheme == "newmark":
+            return self.delta > 0.5
+        return self.scheme != "leapfrog" and self._rho_inf < 1
+
+    @property
+    def spring_weight(self) -> float:
+        """Weight of dt^2 K beside M in a step's matrix, alpha of Newmark's; the least of the stages."""
+        return min(stage.beta * stage.equilibrium_weight for stage in self.stages)
+
+    @property
     def words(self) -> str:
         """The numbers in words."""
         return f"dt = {self.step:.6g} s, {self.name}, gg = {self.gg:.9g}"

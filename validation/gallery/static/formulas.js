@@ -256,13 +256,17 @@ const formulas = (() => {
 
   const GROWTH = 1e-9;  // of a wave over a block, by rounding
 
-  // W2 = -(z - 1)(z - gg) / (dt^2 [gg ((1 - delta) + delta z) + (1/2 - alpha + alpha z)(z - gg)]), z = e^{iw dt}
-  function squared_frequency({ step, alpha, delta, gg }, omega) {
-    const half = 0.5 * step * omega;
+  // W2 = -(z - 1)(z - gg) m / (dt^2 [gg ((1 - gamma) + gamma z) + (1/2 - beta + beta z)(z - gg)]), z = e^{iw dt},
+  // m = ((1 - am) z + am) / ((1 - af) z + af); the leapfrog: -(z - 1)(z - gg) / (dt^2 z)
+  function squared_frequency(s, omega) {
+    const { step, gg } = s, half = 0.5 * step * omega;
     const turn = times([0, 2 * Math.sin(half)], [Math.cos(half), Math.sin(half)]);  // z - 1 without subtraction
-    const ahead = add([1 - gg, 0], turn);
-    const below = add(scaled(gg, add([1, 0], scaled(delta, turn))), times(add([0.5, 0], scaled(alpha, turn)), ahead));
-    return over(scaled(-1, times(turn, ahead)), scaled(step ** 2, below));
+    const ahead = add([1 - gg, 0], turn), above = scaled(-1, times(turn, ahead));
+    if (s.method === "leapfrog") return over(above, scaled(step ** 2, add([1, 0], turn)));
+    const [{ am, af, beta, gamma }] = stages(s);
+    const below = add(scaled(gg, add([1, 0], scaled(gamma, turn))), times(add([0.5, 0], scaled(beta, turn)), ahead));
+    const mean = over(add([1, 0], scaled(1 - am, turn)), add([1, 0], scaled(1 - af, turn)));
+    return over(times(above, mean), scaled(step ** 2, below));
   }
 
   // k of the wave e^{iwt - ikx} in welded blocks: 1 - cos(kh) = 2 sin^2(kh/2) = W2 rho h / (2 (M/h + W2 rho h / 6))
@@ -353,7 +357,225 @@ const formulas = (() => {
     return Math.sqrt(8 * stiffness / (density * width * height));
   }
 
-  return { trace, determinant, spectral_radius, damping_ratio, period_elongation, critical_omega, dda_frequency,
+  // ---- validation.theory.stages: schemes as tables of stages, in units of the step --------------------------------------
+
+  const STAGE = { d_u: 1, d_g: 0, e_0: 0, e_g: 0, beta: 0, g_0: 0, g_g: 0, gamma: 0, am: 0, af: 0 };
+
+  function one_stage(am, af, beta, gamma) {
+    return { ...STAGE, e_0: 0.5 - beta, beta, g_0: 1 - gamma, gamma, am, af };
+  }
+
+  function generalised_alpha(am, af) {
+    return one_stage(am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af);
+  }
+
+  // The stages of a method: newmark by alpha and delta, the others by rho_inf
+  function stages({ method, alpha, delta, rho_inf: r }) {
+    if (method === "chung-hulbert") return [generalised_alpha((2 * r - 1) / (r + 1), r / (r + 1))];
+    if (method === "hht") return [generalised_alpha(0, (1 - r) / (1 + r))];
+    if (method === "wbz") return [generalised_alpha((r - 1) / (r + 1), 0)];
+    if (method === "leapfrog") return [{ ...STAGE, e_0: 1, g_0: 1 }];
+    if (method !== "composite") return [one_stage(0, 0, alpha, delta)];
+    const split = r === 1 ? 0.5 : (2 - Math.sqrt(2 + 2 * r)) / (1 - r);
+    const q1 = (r + 1) / (2 * split * (r - 1) + 4), q0 = (split - 1) * q1 + 0.5, q2 = 0.5 - split * q1;
+    return [{ ...STAGE, d_u: split, e_0: split * split / 4, beta: split * split / 4, g_0: split / 2, gamma: split / 2 },
+      { ...STAGE, d_u: q0 + q2, d_g: q1, e_0: q2 * q0, e_g: q2 * q1, beta: q2 * q2, g_0: q0, g_g: q1, gamma: q2 }];
+  }
+
+  // Linear solves of a step
+  function solves({ method }) {
+    return { leapfrog: 0, composite: 2 }[method] ?? 1;
+  }
+
+  // ---- validation.theory.stepping: the roots z of a step of any method at W = w dt -------------------------------------
+
+  // Products and sums of polynomials, highest power first
+  function product(p, q) {
+    const found = Array(p.length + q.length - 1).fill(0);
+    p.forEach((a, i) => q.forEach((b, j) => { found[i + j] += a * b; }));
+    return found;
+  }
+
+  function sum(p, q) {
+    const size = Math.max(p.length, q.length), at = (one, i) => one[i - size + one.length] ?? 0;
+    return Array.from({ length: size }, (_, i) => at(p, i) + at(q, i));
+  }
+
+  // The polynomial of t = z - 1, which keeps the digits of small W
+  function step_polynomial(s, omega) {
+    const all = stages(s), [{ am, af, beta, gamma }] = all, gg = s.gg, square = omega * omega;
+    if (s.method === "leapfrog") return [1, 1 - gg + square, square];
+    if (all.length === 2) {
+      const [{ d_u: split }, { g_0: q0, g_g: q1, gamma: q2 }] = all, half = [0, split * omega / 2];
+      const middle = over(add([1, 0], half), add([1, 0], scaled(-1, half)));
+      const R = over(add([1, q0 * omega], times([0, q1 * omega], middle)), [1, -q2 * omega]);
+      const trace_ = (1 + gg) * R[0], det = gg * (R[0] * R[0] + R[1] * R[1]);
+      return [1, 2 - trace_, 1 - trace_ + det];
+    }
+    const kinematics = sum(product([beta, 0.5], [1, 1 - gg]), [gg * gamma, gg]);
+    if (am === 0 && af === 0) return sum([1, 1 - gg, 0], kinematics.map((value) => square * value));
+    const inertia = product([1, 1 - gg, 0], [1 - am, 1]);
+    return sum(inertia, product([1 - af, 1], kinematics).map((value) => square * value));
+  }
+
+  // A real root of a cubic, by halving to the last bit
+  function real_root(p) {
+    const value = (x) => p.reduce((all, one) => all * x + one, 0);
+    let high = 1 + Math.max(...p.slice(1).map((one) => Math.abs(one / p[0]))), low = -high;
+    const rising = p[0] > 0;
+    for (let i = 0; i < 2000; i++) {
+      const middle = (low + high) / 2;
+      if (middle === low || middle === high) break;
+      if ((value(middle) < 0) === rising) low = middle; else high = middle;
+    }
+    return low;
+  }
+
+  // The roots of a quadratic with real coefficients, without cancellation
+  function quadratic([a, b, c]) {
+    const disc = b * b - 4 * a * c;
+    if (disc < 0) return [[-b / (2 * a), Math.sqrt(-disc) / (2 * Math.abs(a))], [-b / (2 * a), -Math.sqrt(-disc) / (2 * Math.abs(a))]];
+    const far = -(b + (b < 0 ? -1 : 1) * Math.sqrt(disc)) / 2;
+    return far === 0 ? [[0, 0], [0, 0]] : [[far / a, 0], [c / far, 0]];
+  }
+
+  const POLISHING = 3;
+
+  function polished(p, t) {
+    const slope = p.slice(0, -1).map((one, i) => one * (p.length - 1 - i));
+    const value = (q, x) => q.reduce((all, one) => add(times(all, x), [one, 0]), [0, 0]);
+    for (let i = 0; i < POLISHING; i++) {
+      const below = value(slope, t);
+      if (modulus(below) <= Number.EPSILON) break;
+      const move = over(value(p, t), below);
+      if (modulus(move) < modulus(t)) t = [t[0] - move[0], t[1] ? t[1] - move[1] : 0];
+    }
+    return t;
+  }
+
+  // z of a step, the complex pair first, else those of greatest modulus
+  function roots(s, omega) {
+    const p = step_polynomial(s, omega);
+    let turns;
+    if (p.length === 3) turns = quadratic(p);
+    else {
+      const real = real_root(p), b = p[1] + p[0] * real;
+      turns = [[real, 0], ...quadratic([p[0], b, p[2] + b * real])];
+    }
+    const z = turns.map((t) => polished(p, t)).map(([re, im]) => [1 + re, im]);
+    const rank = (one) => [one[1] === 0 ? 1 : 0, -modulus(one), -one[1]];
+    return z.sort((one, other) => {
+      const [a, b] = [rank(one), rank(other)];
+      return a[0] - b[0] || (Math.abs(a[1] - b[1]) > 1e-14 ? a[1] - b[1] : 0) || a[2] - b[2];
+    });
+  }
+
+  // xi, spectral radius and period elongation of any method; xi NaN where a root is real and not positive
+  function step_ratio(s, omega) {
+    if (s.method === "newmark") return damping_ratio(omega, s.alpha, s.delta, s.gg);
+    const [l, m] = logarithms_of(s, omega);
+    return -(l[0] + m[0]) / (2 * Math.sqrt(modulus(times(l, m))));
+  }
+
+  function logarithms_of(s, omega) {
+    const [first, second] = roots(s, omega);
+    if (first[1] === 0 && Math.min(first[0], second[0]) <= 0) return [[NaN, NaN], [NaN, NaN]];
+    return [first, second].map((z) => [Math.log(modulus(z)), Math.atan2(z[1], z[0])]);
+  }
+
+  function step_radius(s, omega) {
+    if (s.method === "newmark") return spectral_radius(omega, s.alpha, s.delta, s.gg);
+    return Math.max(...roots(s, omega).map(modulus));
+  }
+
+  function step_elongation(s, omega) {
+    if (s.method === "newmark") return period_elongation(omega, s.alpha, s.delta, s.gg);
+    const [l, m] = logarithms_of(s, omega);
+    return omega / Math.sqrt(modulus(times(l, m))) - 1;
+  }
+
+  function step_limit(s) {
+    if (s.method === "newmark") return critical_omega(s.alpha, s.delta, s.gg);
+    return s.method === "leapfrog" ? Math.sqrt(2 * (1 + s.gg)) : Infinity;
+  }
+
+  // ---- validation.theory.rebound: a rigid mass on a spring and a dashpot, by stages -------------------------------------
+
+  const FLIGHT = 80, LONGEST = 200000, AT_REST = 1e-18;  // as there
+
+  // The rebound at one phase theta, the overshoot of the first step below the contact
+  function rebound_at(all, omega, theta, gg = 1, zeta = 0) {
+    const k = omega * omega, c = 2 * zeta * omega;
+    let x = gg - theta, v = -1, a = 0, N = 0, flight = -1;
+    for (let n = 0; n < LONGEST; n++) {
+      const u = gg * v;
+      let pressed = 0, before = { x, v, a, N };
+      for (const s of all) {
+        const old = (s.af * before.N - s.am * before.a) / (1 - s.am), weight = (1 - s.af) / (1 - s.am);
+        const xf = x + s.d_u * u + s.d_g * before.v + s.e_0 * a + s.e_g * before.a + s.beta * old;
+        const vf = u + s.g_0 * a + s.g_g * before.a + s.gamma * old;
+        const force = -(k * xf + c * vf) / (1 + weight * (k * s.beta + c * s.gamma));
+        const now = xf < 0 ? Math.max(force, 0) : 0;
+        before = { x: xf + s.beta * weight * now, v: vf + s.gamma * weight * now, a: old + weight * now, N: now };
+        pressed = Math.max(pressed, now);
+      }
+      ({ x, v, a, N } = before);
+      flight = pressed > 0 ? 0 : flight >= 0 ? flight + 1 : -1;
+      if (gg < 1 && flight === 1) return v;
+      // without memory of a the speed changes no more
+      if (gg === 1 && v >= 0 && (flight >= FLIGHT || flight >= 1 && a === 0)) return v;
+      if (Math.max(Math.abs(x), Math.abs(v), Math.abs(a), N, pressed) < AT_REST) return 0;
+    }
+    return 0;
+  }
+
+  // Mean, least, greatest and mean square over phases at the middles of equal parts
+  function rebound_statistics(s, omega, zeta = 0, count = 100) {
+    const all = stages(s);
+    const e = Array.from({ length: count }, (_, i) => rebound_at(all, omega, s.gg * (i + 0.5) / count, s.gg, zeta));
+    const mean = (values) => values.reduce((one, other) => one + other, 0) / count;
+    return { mean: mean(e), low: Math.min(...e), high: Math.max(...e), energy: mean(e.map((one) => one * one)) };
+  }
+
+  // ---- validation.theory.restitution: the closed form of a dashpot and its inverse ----------------------------------------
+
+  function contact_time(zeta) {
+    const s = Math.sqrt(Math.abs(1 - zeta)) * Math.sqrt(1 + zeta);
+    if (s === 0) return 2;
+    return zeta < 1 ? 2 * Math.atan2(s, zeta) / s : 2 * Math.asinh(s) / s;
+  }
+
+  function restitution(zeta, clipped = true) {
+    if (clipped) return Math.exp(-zeta * contact_time(zeta));
+    return zeta >= 1 ? 0 : Math.exp(-Math.PI * zeta / Math.sqrt((1 - zeta) * (1 + zeta)));
+  }
+
+  // zeta of a restitution above 0
+  function ratio_of_restitution(e) {
+    const loss = -Math.log(e);
+    if (!(loss > 0)) return 0;
+    let low = loss / Math.PI, high = Math.max(1, Math.expm1(Math.min(loss, 700)));
+    for (let i = 0; i < 200; i++) {
+      const middle = high > 2 * low ? Math.sqrt(low * high) : (low + high) / 2;
+      if (!(low < middle && middle < high)) break;
+      if (middle * contact_time(middle) < loss) low = middle; else high = middle;
+    }
+    return (low + high) / 2;
+  }
+
+  // ---- validation.theory.soft_contact, validation.advice.engines: contacts of physics engines ----------------------------
+
+  // Spring and dashpot of an engine's numbers on an effective mass, at a step
+  function soft_contact({ engine, mass, step, hertz, damping_ratio: ratio, erp, cfm, timeconst, dampratio, dmax, stiffness, e }) {
+    if (engine === "bullet") return { k: erp / (step * cfm), c: (1 - erp) / cfm, share: 1 };
+    if (engine === "mujoco") return { k: mass / (timeconst * dampratio) ** 2, c: 2 * mass / timeconst, share: 1 - dmax };
+    const w = engine === "spring" ? Math.sqrt(stiffness / mass) : 2 * Math.PI * hertz;
+    const zeta = engine === "spring" ? ratio_of_restitution(e) : ratio;
+    return { k: mass * w * w, c: 2 * zeta * mass * w, share: 1 };
+  }
+
+  return { stages, solves, roots, step_ratio, step_radius, step_elongation, step_limit, rebound_at, rebound_statistics,
+    restitution, ratio_of_restitution, soft_contact, trace, determinant, spectral_radius, damping_ratio, period_elongation, critical_omega, dda_frequency,
     contact_frequency, family, advise, squared_frequency, wavenumber, ratio, passage, branches, impact_statistics,
     base_frequency, linspace, geomspace };
 })();

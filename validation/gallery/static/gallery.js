@@ -313,8 +313,13 @@
         return;
       }
       sliders.forEach((slider) => slider.show());
-      const options = [...form.scheme.options], pair = `${Number(form.alpha.value)},${Number(form.delta.value)}`;
-      form.scheme.value = options.some((option) => option.value === pair) ? pair : "custom";
+      if (form.elements.scheme) {
+        const options = [...form.scheme.options], pair = `${Number(form.alpha.value)},${Number(form.delta.value)}`;
+        form.scheme.value = options.some((option) => option.value === pair) ? pair : "custom";
+      }
+      for (const [select, applies] of Object.entries(APPLIES))
+        if (form.elements[select]) for (const [name, values] of Object.entries(applies))
+          if (form.elements[name]) form.elements[name].closest(".control").hidden = !values.includes(form.elements[select].value);
       place.querySelector(".share").href = address();
       const found = compute(settings(form));
       place.answer = found;
@@ -328,9 +333,19 @@
     drawn(answer);
   }
 
+  // Which controls go with which choice of a select; the others are hidden
+  const RADII = ["chung-hulbert", "hht", "wbz", "composite"];
+  const APPLIES = {
+    method: { scheme: ["newmark"], alpha: ["newmark"], delta: ["newmark"], rho_inf: RADII },
+    solve_for: { e: ["restitution"], zeta: ["damping_ratio"] },
+    engine: { hertz: ["box2d"], damping_ratio: ["box2d"], erp: ["bullet"], cfm: ["bullet"], timeconst: ["mujoco"],
+      dampratio: ["mujoco"], dmax: ["mujoco"], stiffness: ["spring"], e: ["spring"] },
+  };
+
   function settings(form) {
     const texts = [...new FormData(form)].filter(([name]) => name !== "scheme");
-    return Object.fromEntries(texts.map(([name, value]) => [name, name === "solve_for" ? value : Number(value)]));
+    return Object.fromEntries(texts.map(([name, value]) =>
+      [name, form.elements[name] instanceof HTMLSelectElement ? value : Number(value)]));
   }
 
   function modes(table, rows) {

@@ -22,6 +22,7 @@ CHAPTERS: dict[str, str] = {
     "opening": DEFAULT_CHAPTER,
     "rebound": "validation.report.chapters.opened.rebound:chapter",
     "impacts": "validation.report.chapters.opened.impacts:chapter",
+    "methods": "validation.report.chapters.methods:chapter",
     "slopes": "validation.report.chapters.slopes.sliding:chapter",
     "creep": "validation.report.chapters.slopes.creeping:chapter",
     "rocking": "validation.report.chapters.opened.turning:rocking_chapter",

@@ -29,6 +29,7 @@ PLACES = ("block", "column", "contact", "load", "input", "damping", "time", "fem
 ALWAYS = {  # data that are written at their defaults too
     "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
 }  # fmt: skip
+NEWMARK_DATA = {"time.alpha", "time.delta"}  # which no other scheme has
 NO_DATA = {"block.base", "block.top", "run.solvers", "run.columns"}  # edges of a polygon, and what is run
 
 
@@ -156,7 +157,8 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
             path = f"{place}.{name}"
             value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)
-            if path in varied | NO_DATA or is_default:
+            is_newmarks = path in NEWMARK_DATA and scene.time.scheme != "newmark"
+            if path in varied | NO_DATA or is_default or is_newmarks:
                 continue
             symbol, unit = _symbol(scene, path)
             items.append(f"{symbol} = {_written(value)}{unit}" if symbol else f"{_written(value)}{unit}")

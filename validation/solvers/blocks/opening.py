@@ -26,7 +26,6 @@ from validation.solvers.blocks.closed import (
 from validation.solvers.contract import NotReported, Prepared
 from validation.solvers.limits import StepLimit
 from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
-from validation.theory.restitution import damping_ratio
 
 if TYPE_CHECKING:
     import dda
@@ -117,16 +116,7 @@ def law_of(scene: Scene) -> dda.Unilateral:
     tangent = None if c.friction is None else math.tan(math.radians(c.friction))
     cohesion = c.cohesion * scene.block.base_length / 2  # N
     law = dda.Unilateral(c.stiffness, c.shear, c.gap, c.band, tangent, cohesion, c.rules)
-    return replace(law, damping=dashpot_of(scene)) if c.has_dashpots else law
-
-
-def dashpot_of(scene: Scene) -> float:
-    """Return the dashpot of a corner [N s/m]: half of c = 2 zeta sqrt(2 p m) of the rigid block on both."""
-    c = scene.contact
-    ratio = c.damping_ratio
-    if c.restitution is not None:
-        ratio = damping_ratio(c.restitution)
-    return ratio * math.sqrt(2 * c.stiffness * scene.block.mass)
+    return replace(law, damping=opened.dashpot_of(scene)) if c.has_dashpots else law
 
 
 def options_of(scene: Scene, full: bool) -> dda.UnilateralOptions:

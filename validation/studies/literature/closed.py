@@ -13,7 +13,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import friction, statics
-from validation.theory.stepping import Stepping
+from validation.theory.stepping import Complex, Stepping
 
 GRAVITY = 9.81
 TOLERANCE = 1e-12  # of times, which are multiples of a step, and of roots that are zero
@@ -228,14 +228,14 @@ def returned_energy(angle: float, wave: str, poisson: float = 0.25) -> float:
         normal["P"] = -normal["P"]
     lame = speeds["P"] ** 2 - 2
 
-    def defect(name: str, sign: int) -> Array:
+    def defect(name: str, sign: int) -> Complex:
         """Return the two residuals of the boundary over i w, of a wave that runs to it (1) or from it (-1)."""
         q = sign * normal[name]
-        x, z = (slowness, q) if name == "P" else (q, -slowness)
-        x, z = speeds[name] * x, speeds[name] * z
-        along, across = -slowness, -q  # of the gradient
-        stress = np.array([lame * (along * x + across * z) + 2 * across * z, across * x + along * z])
-        return stress + np.array([speeds["P"] * z, speeds["S"] * x])
+        direction = np.array([slowness, q]) if name == "P" else np.array([q, -slowness])
+        x, z = speeds[name] * direction
+        # the gradient over i w is -(s, q)
+        stress = -np.array([lame * (slowness * x + q * z) + 2 * q * z, q * x + slowness * z])
+        return np.asarray(stress + np.array([speeds["P"] * z, speeds["S"] * x]))
 
     back = np.linalg.solve(np.column_stack([defect("P", -1), defect("S", -1)]), -defect(wave, 1))
     flux = sum(abs(A) ** 2 * speeds[name] ** 2 * normal[name].real for A, name in zip(back, "PS", strict=True))

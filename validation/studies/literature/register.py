@@ -15,7 +15,8 @@ from validation.theory.stepping import Stepping
 from validation.theory.waves import Column, base_reflection
 
 SCENES = tuple(
-    f"literature-{part}" for part in ("sliding", "rigid", "locked", "composite", "unlocked", "explicit", "alpha")
+    f"literature-{part}"
+    for part in ("sliding", "rigid", "locked", "composite", "unlocked", "explicit", "alpha", "augmented")
 )
 SLIDING = named("literature-sliding")
 RIGID = named("literature-rigid")
@@ -24,6 +25,7 @@ LOCKED_COMPOSITE = named("literature-composite")
 UNLOCKED = named("literature-unlocked")
 EXPLICIT = named("literature-explicit")
 ALPHA = named("literature-alpha")
+AUGMENTED = next(iter(named("literature-augmented")))
 CONSTANT = (0.5, 1.0)
 AVERAGE = (0.25, 0.5)
 SCHEMES = {"(1/2, 1)": CONSTANT, "(1/4, 1/2)": AVERAGE}
@@ -148,7 +150,7 @@ def dashpots(e: Evidence) -> dict[str, float]:
 
 
 def augmented(e: Evidence) -> dict[str, float]:
-    """Return the passes of the augmented Lagrangian, and what rigid contact in displacements does in impacts."""
+    """Return the passes of the augmented Lagrangian, a run to rest, and what its limit does in impacts."""
     block = next(iter(RIGID.values()))
     width, height = statics.size(block)
     modulus, _ = statics.moduli(block)
@@ -162,7 +164,15 @@ def augmented(e: Evidence) -> dict[str, float]:
         numbers[f"r C at p = 1E, dt = {1e3 * step:g} ms"] = product
         passes = math.ceil(math.log(1e6) / math.log1p(product))
         numbers[f"passes to 1e-6 of the penetration, p = 1E, dt = {1e3 * step:g} ms"] = whole(passes)
-    return numbers | rigid_stop(e)
+    last = e.finished.needed_history(AUGMENTED, "dda").displacement[-1]
+    strain = block.load.pressure * height / (2 * modulus)
+    at_rest = {
+        "displacement at rest, mm": 1e3 * float(last),
+        "penetration left in it, nm": -1e9 * (float(last) + strain),
+        "greatest penetration of the passes, nm": 1e9 * e.number(AUGMENTED, "contact.penetration"),
+        "mean solves of a step, dt = 1 ms": e.number(AUGMENTED, "contact.mean_solves"),
+    }
+    return numbers | at_rest | rigid_stop(e)
 
 
 def gained(e: Evidence, case: str) -> float:
@@ -174,10 +184,10 @@ def rigid_stop(e: Evidence) -> dict[str, float]:
     """Return peak pressure and energy gained on a rigid stop in displacements, and its rebounds at every step."""
     numbers: dict[str, float] = {}
     for name, case in RIGID.items():
-        scheme = f"delta = {case.time.delta:g}, dt = {1e3 * case.time.step:g} ms"
-        numbers[f"energy gained at 0.1 s over W0, {scheme}"] = gained(e, name)
+        values = f"delta = {case.time.delta:g}, dt = {1e3 * case.time.step:g} ms"
+        numbers[f"energy gained at 0.1 s over W0, {values}"] = gained(e, name)
         pressure = e.finished.needed_history(name, "dda").contact_pressure
-        numbers[f"peak pressure, {scheme}, MPa"] = float(pressure.max()) / 1e6
+        numbers[f"peak pressure, {values}, MPa"] = float(pressure.max()) / 1e6
     numbers["most solves of a step"] = whole(max(e.number(name, "contact.most_solves") for name in RIGID))
     numbers["greatest penetration, m"] = max(e.number(name, "contact.penetration") for name in RIGID)
     for word, scheme in SCHEMES.items():
@@ -284,7 +294,7 @@ TESTS: Tests = {
     "L2": ((), impacts),
     "L3": ((*LOCKED, *LOCKED_COMPOSITE), composite),
     "L4": ((), dashpots),
-    "L5": (RIGID, augmented),
+    "L5": ((AUGMENTED, *RIGID), augmented),
     "L6": (RIGID, rigid_stop),
     "L7": ([(name, solver) for name in (*EXPLICIT, *UNLOCKED) for solver in ("dda", "block-events")], explicit),
     "L8": ((*ALPHA, *UNLOCKED), generalised_alpha),

@@ -106,7 +106,7 @@ def locked(one: Method) -> Scene:
     if one.id == "average":
         rows.append((1.0, HALVED))
     scene = one.scene(load_scene("figures-3-4"), {"run.solvers": ["dda"]})
-    sweep = {
+    sweep: dict[str, list[float]] = {
         "contact.stiffness": [ratio * scene.block.young for ratio, _ in rows],
         "time.step": [step for _, step in rows],
         "time.steps": [round(LOCKED_TIME / step) for _, step in rows],
@@ -119,7 +119,7 @@ def unlocked(one: Method) -> Scene:
     """Return the block whose contact opens, over springs and step."""
     values: dict[str, Any] = {"run.solvers": ["dda"], "time.allow_unstable": one.group == "explicit"}
     scene = one.scene(load_scene("unlocked-average"), values)
-    sweep = {
+    sweep: dict[str, list[float]] = {
         "contact.stiffness": [ratio * scene.block.young for ratio, _ in UNLOCKED],
         "time.step": [step for _, step in UNLOCKED],
         "time.steps": [round(UNLOCKED_TIME / step) for _, step in UNLOCKED],
@@ -158,7 +158,7 @@ def impacts(one: Method) -> Scene:
     return named(scene, "impact", one, "A rigid block lands on springs", sweep)
 
 
-STOPS = {  # what turns a block back at a rigid stop: id -> words, values
+STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
     "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
     "impulses": (
         "Moreau and Jean, e = 0, theta = 1/2",
@@ -175,10 +175,11 @@ STOPS = {  # what turns a block back at a rigid stop: id -> words, values
 def rigid(stop: str) -> Scene:
     """Return the block on a rigid stop, over halved steps."""
     words, values = STOPS[stop]
-    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    rigid_stop: dict[str, Any] = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     counts = [RIGID_COARSEST * 2**level for level in range(RIGID_LEVELS)]
-    sweep = {"mode": "zip", "time.step": [REFINED_TIME / count for count in counts], "time.steps": counts}
+    steps = [REFINED_TIME / count for count in counts]
+    sweep: dict[str, Any] = {"mode": "zip", "time.step": steps, "time.steps": counts}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
@@ -287,7 +288,7 @@ def order(one: Method, finished: Finished) -> Mapping[str, Value]:
     reached = [count for count, error in errors.items() if error <= TARGET]
     values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
     values["solves to 1 %"] = float(min(reached) * one.solves) if reached else "undefined"
-    return values
+    return values | {f"error of {count} steps": error for count, error in errors.items()}
 
 
 def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
@@ -423,6 +424,34 @@ def derived() -> tuple[Derived, ...]:
         for case in expanded(sliding(one)):
             rows.append(Derived(case.name, SLIDING, ((case.name, "dda"),), functools.partial(slid_distance, case)))
     return tuple(rows)
+
+
+CURVES = ("constant", "average", "ch-0.8", "ch-0.5", "ch-0", "hht-0.1", "bathe-half", "tr-bdf2", "leapfrog")
+DAMPED_OMEGAS = np.geomspace(0.03, 100.0, 71)  # w dt of the curves of damping ratios
+MAP_CURVES = ("constant", "ch-0", "ch-0.8", "hht-0.1", "bathe-half")
+MAP_OMEGAS = np.geomspace(0.3, 300.0, 19)  # w_c dt of those of restitutions
+MAP_PHASES = 40
+
+
+@functools.cache
+def data() -> Mapping[str, Any]:
+    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt."""
+    curves: dict[str, dict[str, list[float | None]]] = {}
+    for name in CURVES:
+        one = method(name)
+        ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
+        curves[name] = {"damping": [_short(ratio) for ratio in ratios]}
+        if name not in MAP_CURVES:
+            continue
+        rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
+        for part in ("mean", "least", "most"):
+            curves[name][part] = [_short(getattr(row, part)) for row in rows]
+    omegas = {"damping": [_short(x) for x in DAMPED_OMEGAS], "impact": [_short(x) for x in MAP_OMEGAS]}
+    return {"omega": omegas, "methods": curves, "labels": {one.id: one.label for one in METHODS}}
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.5g}") if math.isfinite(value) else None
 
 
 # ---- gates ----------------------------------------------------------------------------------------------------------
@@ -631,5 +660,6 @@ def study() -> Study:
         scenes=scenes(),
         gates=gates,
         derived=derived,
+        data=data,
         pairs=(),
     )

@@ -1,0 +1,487 @@
+"""Schemes by name where contact opens or slips: one block, columns, sub-blocks, a block that turns."""
+
+import functools
+import math
+from dataclasses import replace
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from faults.steps import notices, stepping_by
+from oracles.scheme_cases import every_scheme, scheme_of, truth_of
+from oracles.staged import System, march
+
+from dda import (
+    COLUMNS,
+    BaseMotion,
+    Block,
+    Load,
+    Material,
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    UnilateralOptions,
+    named_scheme,
+    opening_subdivided,
+    solve_opening_system,
+    solve_unilateral,
+)
+from dda.column.column import Column, Layer, Spring
+from dda.column.contacts import ColumnOptions, solve_contact_column
+from dda.column.response import column_response
+from dda.column.stepping import Drive, solve_column
+from dda.contact.kernel import NONE
+from dda.one_block import unilateral, unilateral_step
+from dda.rotation.solution import RollingModel, solve_rolling
+from dda.stepping import compiled
+from dda.stepping.driver import OUTCOMES
+
+ENERGIES = UnilateralOptions(energies=True)
+W0 = 5e4  # [J] of the default scene
+
+
+def block(mu=0.0, height=2.0):
+    return Block.rectangle(2.0, height, Material(2700.0, 1e9, mu, "plane stress"))
+
+
+def total(energies):
+    """Return what is stored and what was lost, whose sum does not change."""
+    return functools.reduce(np.add, energies.values())
+
+
+# ---- one block -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@every_scheme
+def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values, gg):
+    step, steps, p = 2e-4, 150, 2e9
+    model = UnilateralModel(block(0.25, 1.5), Unilateral(p, gap=2e-4), Load(3e6, 0.1), velocity=-0.3)
+    form = model.reduced
+    assert form.contacts == 2
+    system = System(form.M, np.diag(form.K), lambda t: form.F, B=form.B[:2], p=p)
+    start = -0.3 * (form.translation @ form.axes[:, 1])
+    x, v, N = march(system, name, step, steps, form.start, start, gg, **truth_of(values))
+    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps, options=ENERGIES)
+    D, P = np.hsplit(result.history.motion, 2)
+    V = np.linalg.solve(form.M, P.T).T / step
+    for found, expected in ((D, x), (V, v), (result.history.normal, N)):
+        assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
+    switches = np.count_nonzero(np.diff(result.closed, axis=1))
+    assert switches >= 2 and result.solves >= steps * len(scheme_of(name, values, step).stages)
+    energies = result.energies
+    assert np.max(np.abs(total(energies) - form.M[-1, -1] * 0)) < 2 * np.max(energies["kinetic"])
+    kinetic = start @ form.M @ start / 2
+    assert np.max(np.abs(total(energies) - kinetic)) < 1e-11 * np.max(energies["kinetic"])
+    assert (np.max(energies["kinetic damping"]) > 0) == (gg < 1)
+
+
+@every_scheme
+def test_a_load_that_rises_and_a_base_that_moves_close_the_balance(name, values):
+    t = np.linspace(0.0, 0.05, 60)
+    motion = BaseMotion(t, np.column_stack([4e-4 * np.sin(200 * t), 2e-4 * np.sin(260 * t)]))
+    law = Unilateral(1e9, 4e8, friction=0.3)
+    for load in (Load(2e6, ramp=0.01), Load(2e6, gravity=9.81, motion=motion)):
+        result = solve_unilateral(
+            UnilateralModel(block(0.2), law, load), scheme_of(name, values, 1e-4, 0.99), 300, options=ENERGIES
+        )
+        balance = total(result.energies)
+        assert np.max(np.abs(balance)) < 1e-11 * np.max(np.abs(result.energies["load"]))
+        assert np.min(np.diff(result.energies["friction"])) >= -1e-9
+    assert result.slip[-1] > 0 and result.energies["friction"][-1] > 0
+
+
+# name, parameters, p/E, step [ms]: landing error [ms], greatest pressure [MPa], energy at 0.1 s [W0]
+UNLOCKED = (
+    ("chung-hulbert", {"rho_inf": 0.8}, 1, 1.0, -0.0287, 13.01, -0.1041),
+    ("chung-hulbert", {"rho_inf": 0.8}, 100, 1.0, 0.5551, 113.0, 106.1),
+    ("chung-hulbert", {"rho_inf": 0.5}, 1, 0.2, -0.0003, 13.46, -0.0147),
+    ("chung-hulbert", {"rho_inf": 0.5}, 100, 0.2, 0.0267, 41.83, -0.5980),
+    ("chung-hulbert", {"rho_inf": 0.0}, 100, 0.2, 0.0399, 25.68, -0.5398),
+    ("hht", {"rho_inf": 0.9 / 1.1}, 1, 1.0, -0.0376, 12.59, -0.3690),
+    ("wbz", {"rho_inf": 0.5}, 100, 1.0, 0.5302, 14.30, -0.7329),
+    ("composite", {"split": 0.5}, 1, 1.0, -0.0457, 12.98, -0.2141),
+    ("composite", {"split": 0.5}, 100, 0.2, 0.0159, 45.76, -0.5447),
+    ("composite", {}, 100, 1.0, 0.6038, 13.25, -0.5318),
+    ("composite", {"rho_inf": 0.5}, 1, 0.2, -0.0026, 13.42, -0.0023),
+    ("leapfrog", {}, 1, 1.0, -0.0956, 13.46, -0.1242),
+    ("leapfrog", {}, 100, 1.0, -0.0956, 423.7, 2599.0),
+)
+
+
+@pytest.mark.parametrize(("name", "values", "ratio", "ms", "landing", "peak", "energy"), UNLOCKED)
+def test_the_unlocked_scene(name, values, ratio, ms, landing, peak, energy):
+    step = ms / 1e3
+    model = UnilateralModel(block(), Unilateral(ratio * 1e9), Load(5e6))
+    result = solve_unilateral(model, scheme_of(name, values, step), round(0.1 / step), options=ENERGIES)
+    gap = np.concatenate([[0.0], result.gap_n])
+    k = int(np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0))[0])
+    landed = (k + gap[k] / (gap[k] - gap[k + 1])) * ms
+    assert landed - 3.2525750597 == pytest.approx(landing, abs=6e-5)
+    assert np.max(result.columns["contact_pressure"]) / 1e6 == pytest.approx(peak, rel=5e-4)
+    stored = sum(result.energies[part][-1] for part in ("kinetic", "strain", "springs", "load"))
+    assert stored / W0 == pytest.approx(energy, rel=5e-4, abs=6e-5)
+
+
+def order_through_switching(name, values, start="consistent"):
+    """Return the order in dt of the fine steps of the default scene, against average acceleration that is finer."""
+    T, points = 0.03, 30
+    model = UnilateralModel(block(), Unilateral(1e9), Load(5e6))
+
+    def at(scheme, steps):
+        history = solve_unilateral(model, scheme, steps, ("displacement",)).columns["displacement"]
+        return history[steps // points - 1 :: steps // points]
+
+    truth = at(Scheme(0.25, 0.5, 1.0, T / 15360, "consistent"), 15360)
+    truth = truth + (truth - at(Scheme(0.25, 0.5, 1.0, T / 7680, "consistent"), 7680)) / 3
+    errors = [
+        np.linalg.norm(at(scheme_of(name, values, T / steps, start=start), steps) - truth) for steps in (480, 1920)
+    ]
+    return math.log(errors[0] / errors[1]) / math.log(4)
+
+
+SWITCHING = [
+    ("chung-hulbert", {"rho_inf": 0.5}),
+    ("hht", {"rho_inf": 0.7 / 1.3}),
+    ("wbz", {"rho_inf": 0.5}),
+    ("composite", {"split": 0.5}),
+    ("leapfrog", {}),
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "values"), SWITCHING)
+def test_the_order_is_kept_where_contact_opens(name, values):
+    assert order_through_switching(name, values) == pytest.approx(2.0, abs=0.25)
+
+
+@pytest.mark.long
+def test_the_order_from_no_acceleration_is_one():
+    assert order_through_switching("chung-hulbert", {"rho_inf": 0.5}, "zero") < 1.3
+
+
+def force_at_end(monkeypatch):
+    """Take the contact force at the end of a generalised-alpha step in place of the average."""
+    lengths = unilateral_step.set_length
+    forces = unilateral_step.contact_forces
+    begin = unilateral_step.begin_step
+
+    def set_length(block, shear_law, stage, ratio, length):
+        lengths(block, shear_law, stage, ratio, length)
+        length.C[:] /= 1 - stage.numbers.af
+
+    def contact_forces(block, shear_law, normal, shear):
+        forces(block, shear_law, normal, shear)
+        for i in range(len(block.room.forces)):
+            block.room.forces[i] /= 1 - block.last.numbers.af
+
+    def begin_step(block, state, length):
+        begin(block, state, length)
+        h2 = length.numbers[2] ** 2 * block.multiplicity / (1 - block.last.numbers.af)
+        for j in range(len(state.contacts.normal)):
+            for i in range(len(block.K)):
+                block.room.force_0[i] -= h2 * block.B[j][i] * state.contacts.normal[j]
+
+    monkeypatch.setattr(unilateral_step, "set_length", set_length)
+    monkeypatch.setattr(unilateral_step, "contact_forces", contact_forces)
+    monkeypatch.setattr(unilateral_step, "begin_step", begin_step)
+
+
+def test_contact_forces_at_the_end_in_place_of_the_average_are_noticed(monkeypatch):
+    case = ("chung-hulbert", {"rho_inf": 0.5})
+    with monkeypatch.context() as context:
+        force_at_end(context)
+        assert notices(lambda: test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(*case, 1.0))
+        assert notices(lambda: test_the_unlocked_scene(*UNLOCKED[2]))
+
+
+@every_scheme
+def test_a_cut_step_keeps_its_acceleration(name, values):
+    """Step 3 fails once as a whole; its parts go on from the state in which it began, and average as it would."""
+    model = UnilateralModel(block(), Unilateral(1e9), Load(5e6), velocity=-0.2)
+    scheme = scheme_of(name, values, 2e-4)
+    calls = []
+
+    def once(block, shear_law, state, after, base, part):
+        calls.append(part.ratio)
+        if len(calls) == 3:
+            return NONE, 1
+        return unilateral_step.advance(block, shear_law, state, after, base, part)
+
+    def run():
+        with patch.object(unilateral, "make_steps", stepping_by(once)):
+            return solve_unilateral(model, scheme, 40, options=ENERGIES)
+
+    result = run()
+    if name == "leapfrog":  # its velocities are those of half a step before
+        assert result.outcome == OUTCOMES[NONE] and len(result.time) == 2
+        return
+    whole = solve_unilateral(model, scheme, 40)
+    assert result.outcome == "completed" and result.step_cuts.sum() == 1
+    changed = result.columns["displacement"] - whole.columns["displacement"]
+    assert 0 < np.max(np.abs(changed)) < 2e-3 * np.max(np.abs(whole.columns["displacement"]))
+    energies = result.energies
+    assert np.ptp(total(energies)) < 1e-11 * np.max(energies["kinetic"])
+
+
+@pytest.mark.parametrize(
+    ("options", "law", "field"),
+    [
+        ({"rule": "implicit"}, Unilateral(1e9), "rule"),
+        ({"rule": "energy-conserving"}, Unilateral(1e9), "rule"),
+        ({}, Unilateral(math.inf), "stiffness"),
+    ],
+)
+def test_what_goes_with_other_schemes_only_is_refused(options, law, field):
+    scheme = named_scheme("leapfrog", step=1e-3)
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        solve_unilateral(UnilateralModel(block(), law, Load(5e6)), scheme, 5, options=UnilateralOptions(**options))
+
+
+def test_a_rigid_stop_takes_every_implicit_scheme():
+    for name, values in (("chung-hulbert", {"rho_inf": 0.3}), ("composite", {})):
+        model = UnilateralModel(block(), Unilateral(math.inf), Load(5e6))
+        result = solve_unilateral(model, scheme_of(name, values, 1e-3), 60, options=ENERGIES)
+        assert result.outcome == "completed" and np.min(result.gap) >= 0 and np.max(result.normal) > 0
+        assert np.ptp(total(result.energies)) < 1e-10 * W0
+
+
+@pytest.fixture
+def always(monkeypatch):
+    """Compile, however short a history is."""
+    pytest.importorskip("numba")
+    for name in ("WORTHWHILE_KEPT", "WORTHWHILE", "WORTHWHILE_ANEW"):
+        monkeypatch.setattr(compiled, name, 0.0)
+
+
+def pair(solve, monkeypatch):
+    """Return the result of compiled code and that of plain Python."""
+    fast = solve()
+    with monkeypatch.context() as context:
+        context.setattr(compiled, "is_worthwhile", lambda *given, **more: False)
+        plain = solve()
+    assert any(compiled.COMPILED in note for note in fast.notes) and any(compiled.PLAIN in note for note in plain.notes)
+    return fast, plain
+
+
+def check_same(fast, plain):
+    """Every number of a history is the same."""
+    for one, other in zip(fast.history, plain.history, strict=True):
+        assert one.shape == other.shape
+        assert np.max(np.abs(one - other), initial=0.0) <= 1e-14 * np.max(np.abs(other), initial=0.0)
+
+
+@pytest.mark.long
+def test_compiled_steps_are_the_same(always, monkeypatch):
+    model = UnilateralModel(block(0.2), Unilateral(1e9, 4e8, friction=0.3), Load(3e6, traction=5e5))
+    for name, values in (("chung-hulbert", {"rho_inf": 0.6}), ("composite", {}), ("leapfrog", {})):
+        scheme = scheme_of(name, values, 1e-4, 0.99)
+        check_same(*pair(functools.partial(solve_unilateral, model, scheme, 120, options=ENERGIES), monkeypatch))
+        rolling = RollingModel(block(0.2), Unilateral(1e8, 4e7, friction=0.3), Load(gravity=9.81), tilt=0.02)
+        check_same(*pair(functools.partial(solve_rolling, rolling, scheme, 60), monkeypatch))
+        column, drive = open_column(scheme, 100)
+        options = ColumnOptions(energies=True)
+        fast, plain = pair(functools.partial(solve_contact_column, column, scheme, drive, options=options), monkeypatch)
+        assert np.max(np.abs(fast.record - plain.record)) <= 1e-13 * np.max(np.abs(plain.record))
+
+
+# ---- rebounds --------------------------------------------------------------------------------------------------------
+
+
+def rebounds(name, values, Wc, phases):
+    """Return the shares of its velocity with which a rigid block leaves a spring, w_c dt = Wc, by its phase."""
+    step, mass = 1e-3, 1000.0
+    scheme = scheme_of(name, values, step)
+    steps = math.ceil(3 + math.pi / Wc) + 90  # generalised-alpha goes on changing the velocity in flight for some steps
+    still = np.zeros(1 + steps * len(scheme.stages))
+    ratios = []
+    for phase in (np.arange(phases) + 0.5) / phases:
+        spring = Spring(0.0, mass * (Wc / step) ** 2, gap=step * (1 + phase))
+        column = Column([Layer(1.0, mass, math.inf, 0.0, 1, -1.0)], joints=[spring], law="unilateral")
+        result = solve_contact_column(column, scheme, Drive(still, still, still, still), ("velocity_1",), [0.5])
+        ratios.append(result.columns["velocity_1"][-1])
+    return np.array(ratios)
+
+
+REBOUNDS = (
+    ("chung-hulbert", {"rho_inf": 0.8}, 4.0, 1.2956, 0.473, 2.112),
+    ("chung-hulbert", {"rho_inf": 0.5}, 1.0, 0.9788, 0.879, 1.079),
+    ("chung-hulbert", {"rho_inf": 0.0}, 1000.0, 0.6666, 0.335, 0.995),
+    ("hht", {"rho_inf": 0.9 / 1.1}, 10.0, 1.4490, 0.364, 2.525),
+    ("wbz", {"rho_inf": 0.5}, 1000.0, 1.1666, 0.335, 1.985),
+    ("composite", {"split": 0.5}, 10.0, 0.9894, 0.377, 1.729),
+    ("composite", {}, 4.0, 0.9209, 0.599, 1.186),
+    ("composite", {"rho_inf": 0.5}, 1000.0, 1.3863, 0.272, 2.655),
+    ("leapfrog", {}, 1.9, 1.4965, 0.390, 2.592),
+)
+
+
+@pytest.mark.parametrize(("name", "values", "Wc", "mean", "least", "most"), REBOUNDS)
+def test_rebounds_of_a_rigid_block(name, values, Wc, mean, least, most):
+    ratios = rebounds(name, values, Wc, 100)
+    assert np.mean(ratios) == pytest.approx(mean, abs=6e-5)
+    assert (np.min(ratios), np.max(ratios)) == pytest.approx((least, most), abs=6e-4)
+
+
+# ---- columns ---------------------------------------------------------------------------------------------------------
+
+LAYERS = (Layer(1.0, 2000.0, 5e7, 0.0, 1, -0.1), Layer(0.7, 2500.0, 8e7, 0.0, 1, -0.1))
+
+
+def still_drive(scheme, steps, pressure=2e4):
+    none = np.zeros(1 + steps * len(scheme.stages))
+    return Drive(none, none, none, none + pressure)
+
+
+def open_column(scheme, steps):
+    springs = [Spring(0.0, 3e8, gap=1e-5), Spring(1.0, 2e8)]
+    return Column(LAYERS, joints=springs, law="unilateral", gravity=9.81), still_drive(scheme, steps)
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@every_scheme
+def test_a_column_that_opens_is_the_one_of_the_papers(name, values, gg):
+    step, steps, p = 2e-4, 200, 2e4
+    scheme = scheme_of(name, values, step, gg)
+    column, drive = open_column(scheme, steps)
+    options = ColumnOptions(energies=True)
+    result = solve_contact_column(
+        column, scheme, drive, ("displacement", "contact_pressure", "velocity_1"), [1.7], options
+    )
+    m, K = np.array([2000.0, 1750.0]), np.array([5e7, 8e7 / 0.7])
+    M = np.diag([m[0], m[0] / 12, m[1], m[1] / 12])
+    load = np.array([-9.81 * m[0], 0.0, -9.81 * m[1] - p, -p / 2])
+    B = np.array([[1, -0.5, 0, 0], [-1, -0.5, 1, -0.5]])
+    system = System(
+        M, np.diag([0.0, K[0], 0.0, K[1]]), lambda t: load, B=B, p=np.array([3e8, 2e8]), gap=np.array([1e-5, 0.0])
+    )
+    x, v, N = march(system, name, step, steps, np.zeros(4), np.array([-0.1, 0, -0.1, 0]), gg, **truth_of(values))
+    expected = {
+        "displacement": x[1:, 2] + x[1:, 3] / 2,
+        "contact_pressure": N[1:, 0],
+        "velocity_1": v[1:, 2] + v[1:, 3] / 2,
+    }
+    for column_name, truth in expected.items():
+        assert np.max(np.abs(result.columns[column_name] - truth)) < 1e-12 * np.max(np.abs(truth)), column_name
+    assert result.step_switches.sum() >= 2 and result.solves >= steps * len(scheme.stages)
+    balance = total(result.energies)
+    assert np.ptp(balance) < 1e-12 * np.max(np.abs(result.energies["load"]))
+
+
+@every_scheme
+def test_a_column_that_slips_closes_the_balance(name, values):
+    scheme = scheme_of(name, values, 2e-4, 0.995)
+    t = scheme.instants(200)
+    drive = Drive(1e-3 * np.sin(120 * t), 0.12 * np.cos(120 * t), -14.4 * np.sin(120 * t), 0 * t)
+    springs = [Spring(0.0, 3e8, strength=6e3), Spring(1.0, 2e8, strength=4e3)]
+    column = Column([replace(layer, velocity=0.0) for layer in LAYERS], "shear", joints=springs, law="frictional")
+    result = solve_contact_column(column, scheme, drive, options=ColumnOptions(energies=True))
+    energies = result.energies
+    assert energies["friction"][-1] > 0 and np.min(np.diff(energies["friction"])) >= -1e-9
+    assert np.ptp(total(energies)) < 1e-12 * np.max(np.abs(energies["load"]))
+
+
+def test_a_welded_foot_and_a_half_space_take_every_implicit_scheme():
+    """Locked by tiny motion, a column on contacts is the bonded one."""
+    steps = 150
+    for name, values in (("chung-hulbert", {"rho_inf": 0.2}), ("composite", {"rho_inf": 0.3})):
+        scheme = scheme_of(name, values, 2e-4, 0.99)
+        t = scheme.instants(steps)
+        drive = Drive(1e-4 * (1 - np.cos(90 * t)), 9e-3 * np.sin(90 * t), 0.81 * np.cos(90 * t), 0 * t)
+        layers = [Layer(1.0, 2000.0, 5e7, 0.0, 2), Layer(0.7, 2500.0, 8e7)]
+        for impedance in (None, 2e5):
+            bonded = Column(layers, "shear", joints=[Spring(1.0, 2e8)], impedance=impedance)
+            sticking = replace(bonded, joints=[Spring(1.0, 2e8, strength=1e12)], law="frictional")
+            expected = solve_column(bonded, scheme, drive, ("displacement", "displacement_1"), [1.0])
+            result = solve_contact_column(sticking, scheme, drive, ("displacement", "displacement_1"), [1.0])
+            for column, truth in expected.columns.items():
+                difference = np.max(np.abs(result.columns[column] - truth))
+                assert difference < 1e-10 * np.max(np.abs(truth)), (name, impedance, column)
+
+
+@pytest.mark.parametrize("impedance", [None, 3e5])
+@every_scheme
+def test_a_bonded_column_steps_to_its_response(name, values, impedance):
+    frequency, steps = 20.0, 700
+    scheme = scheme_of(name, values, 4e-4, 0.93)
+    bonded = Column([Layer(1.0, 2000.0, 5e7), Layer(0.7, 2500.0, 8e7)], joints=[Spring(1.0, 2e8)], impedance=impedance)
+    t = scheme.instants(steps)
+    pressure = np.cos(2 * np.pi * frequency * t)
+    drive = Drive(0 * t, 0 * t, 0 * t, pressure)
+    if name == "leapfrog" and impedance:
+        with pytest.raises(ValueError, match=r"^impedance: "):
+            solve_column(bonded, scheme, drive)
+        return
+    result = solve_column(bonded, scheme, drive)
+    if name == "composite":
+        with pytest.raises(ValueError, match=r"^scheme: "):
+            column_response(bonded, scheme, [frequency], "top")
+        return
+    for column, (amplitude,) in column_response(bonded, scheme, [frequency], "top").items():
+        expected = (amplitude * np.exp(2j * np.pi * frequency * result.time)).real
+        rest = (result.columns[column] - expected)[-250:]  # five periods
+        rest -= np.mean(rest)  # on a dashpot alone a column stays where its start has brought it
+        assert np.max(np.abs(rest)) < 1e-6 * abs(amplitude), column
+
+
+# ---- sub-blocks and blocks that turn ---------------------------------------------------------------------------------
+
+
+@every_scheme
+def test_one_sub_block_is_the_block(name, values):
+    scheme = scheme_of(name, values, 1e-4, 0.99)
+    law = Unilateral(2e8, 1e8, friction=0.3)
+    model = UnilateralModel(block(0.25, 1.5), law, Load(1e5, 0.0, 5e4, 9.81), velocity=-0.01)
+    one = solve_unilateral(model, scheme, 150, COLUMNS, ENERGIES)
+    sub = solve_opening_system(opening_subdivided(model, 1, 1, 1e12), scheme, 150, COLUMNS, ENERGIES)
+    for column in COLUMNS:
+        assert np.max(np.abs(one.columns[column] - sub.columns[column])) < 1e-11 * np.max(np.abs(one.columns[column]))
+    assert sub.solves == one.solves and sub.slip[-1] == pytest.approx(one.slip[-1], rel=1e-11) and one.slip[-1] > 0
+    assert sub.velocity == pytest.approx(one.velocity, rel=1e-9, abs=1e-12)
+    for part, energy in one.energies.items():
+        assert np.max(np.abs(energy - sub.energies[part])) < 1e-10 * np.max(one.energies["kinetic"]), part
+
+
+@every_scheme
+def test_two_sub_blocks_lock_as_a_system_does(name, values):
+    from dda import Contact, TwoBlockModel, solve_system, subdivided
+
+    scheme = scheme_of(name, values, 1e-4, 0.99)
+    law = Unilateral(2e9, 1e9, band=(0.0, 1.0))  # pulls
+    model = UnilateralModel(block(0.25), law, Load(1e5, gravity=9.81))
+    opened = solve_opening_system(opening_subdivided(model, 2, 1, 1e11), scheme, 30)
+    locked = TwoBlockModel(model.block, Contact(2e9, 1e9), model.load)
+    bonded = solve_system(subdivided(locked, 2, 1, 1e11), scheme, 30)
+    assert np.all(opened.closed)
+    for column in ("displacement", "contact_pressure"):
+        assert opened.columns[column] == pytest.approx(bonded.columns[column], rel=1e-9)
+
+
+@every_scheme
+def test_a_block_that_hardly_turns_is_the_one_of_small_motion(name, values):
+    scheme = scheme_of(name, values, 1e-4, 0.99)
+    law = Unilateral(2e8, 1e8)
+    load = Load(1e2, gravity=0.0)
+    small = solve_unilateral(UnilateralModel(block(0.25), law, load), scheme, 200, COLUMNS, ENERGIES)
+    turning = solve_rolling(RollingModel(block(0.25), law, load), scheme, 200, COLUMNS)
+    for column in ("displacement", "contact_pressure", "strain_y"):
+        difference = np.max(np.abs(small.columns[column] - turning.columns[column]))
+        assert difference < 1e-6 * np.max(np.abs(small.columns[column])), column
+    for part in ("kinetic", "strain", "kinetic damping", "switching"):
+        difference = np.max(np.abs(small.energies[part] - turning.energies[part]))
+        assert difference < 1e-6 * np.max(small.energies["kinetic"]), part
+
+
+@every_scheme
+def test_a_block_that_rocks_converges_at_second_order(name, values):
+    model = RollingModel(block(0.2, 3.0), Unilateral(2e8, 1e8), Load(2e5, 0.0, 6e4, 9.81))
+    T = 0.02
+
+    def last(n, scheme=None):
+        made = scheme or scheme_of(name, values, T / n)
+        result = solve_rolling(model, made, n)
+        return result.motion.V[-1, :3]
+
+    truth = last(1600, Scheme(0.25, 0.5, 1.0, T / 1600, "consistent"))
+    errors = [np.linalg.norm(last(n) - truth) for n in (80, 160)]
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)

@@ -1,0 +1,282 @@
+"""Histories by other time schemes than Newmark's, and by contact methods with a force of their own."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import typed
+from faults import seams
+from oracles import compared_schemes
+from oracles.compared_schemes import Case, dashpot_of, made, scene_of, verdict
+from oracles.scheme_histories import Body, Run
+
+from validation import load_scene, solve
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.reading import Foreign
+from validation.diagnosis.schemes import companion_split, usual_split
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
+from validation.errors import InputError
+from validation.scenes.scene import Scene
+
+ROUNDINGS = 1e-12  # relative, that two formulations of one recursion over 60 steps differ by
+
+# a run, and the same as a candidate change
+STEPPED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
+    ("chung-hulbert", {"r": 0.8}, {"family": "chung-hulbert", "spectral": 0.8}),
+    ("chung-hulbert", {"r": 0.3, "zero": True}, {"family": "chung-hulbert", "spectral": 0.3, "start": "zero"}),
+    ("hht", {"e": 0.12}, {"family": "hht", "spectral": 0.12}),
+    ("wbz", {"r": 0.4}, {"family": "wbz", "spectral": 0.4}),
+    ("leapfrog", {}, {"family": "leapfrog"}),
+    ("symplectic-euler", {}, {"family": "symplectic-euler"}),
+    ("theta", {"share": 0.6}, {"family": "theta", "spectral": 0.6}),
+    ("implicit-euler", {}, {"family": "theta", "spectral": 1.0}),
+    ("composite", {"split": 0.4, "r": 0.3}, {"family": "composite", "split": 0.4, "spectral": 0.3}),
+    ("composite", {"split": 2 - math.sqrt(2), "r": 0.0}, {"family": "composite"}),
+    ("contact-split", {"law": "kane"}, {"alpha": 0.25, "delta": 0.5, "contact": "implicit"}),
+    ("contact-split", {"law": "conserving"}, {"alpha": 0.25, "delta": 0.5, "contact": "energy-conserving"}),
+    ("dashpot", {"c": 0.2}, {"alpha": 0.25, "delta": 0.5, "contact": "dashpot", "dashpot": 0.2}),
+]
+OPENED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
+    *STEPPED,
+    ("dashpot", {"c": 0.4, "clipped": False}, {**STEPPED[-1][2], "dashpot": 0.4, "clipped": False}),
+    (
+        "chung-hulbert",
+        {"r": 0.6, "form": "state"},
+        {"family": "chung-hulbert", "spectral": 0.6, "contact": "mean gap"},
+    ),
+    (
+        "moreau",
+        {"e": 0.4, "theta": 0.7},
+        {"family": "theta", "spectral": 0.7, "contact": "impact", "restitution": 0.4},
+    ),
+    ("lagrange", {"alpha": 0.5, "delta": 1.0}, {"contact": "rigid"}),
+]
+
+
+@pytest.mark.parametrize("opens", [False, True])
+def test_candidates_step_as_the_recursions_of_the_papers(opens: bool) -> None:
+    body = Body(p=1e10)
+    dt, steps, gg = 2e-4, 60, 0.98
+    variants = []
+    runs = []
+    for method, numbers, changes in OPENED if opens else STEPPED:
+        in_units = {"c": dashpot_of(body, numbers["c"])} if "c" in numbers else {}
+        runs.append(Run(method, numbers | in_units, body, dt, steps, gg, opens).history())
+        variants.append(replace(Variant(0.5, 1.0, gg, "consistent", opens=opens), **changes))
+    rectangle = Rectangle(body.a, body.a, body.rho, body.E, 0.0, False, body.k, body.k, body.q)
+    stepped = histories(rectangle, variants, np.full(steps, dt))
+    for j, (displacement, pressure) in enumerate(runs):
+        assert np.max(np.abs(stepped.displacement[:, j] - displacement)) < ROUNDINGS * np.max(np.abs(displacement)), j
+        assert np.max(np.abs(stepped.pressure[:, j] - pressure)) < 10 * ROUNDINGS * np.max(np.abs(pressure)), j
+
+
+# ---- scenes of another scheme ---------------------------------------------------------------------------------------
+
+OTHER_SCHEMES: list[dict[str, Any]] = [
+    {"time.scheme": "chung-hulbert", "time.rho_inf": 0.7},
+    {"time.scheme": "hht", "time.rho_inf": 0.6, "time.start": "consistent"},
+    {"time.scheme": "wbz", "time.rho_inf": 0.3},
+    {"time.start": "consistent", "time.scheme": "leapfrog"},
+    {"time.scheme": "composite", "time.rho_inf": 0.4, "time.split": 0.35},
+]
+
+
+def other_scene(law: str, **changes: Any) -> Scene:
+    base = {"time.step": 5e-4, "time.steps": 60, "contact.law": law, "run.solvers": ["dda"], "load.gravity": 9.81}
+    return load_scene("figures-3-4").with_values(base | changes)
+
+
+@pytest.mark.parametrize("law", ["locked", "unilateral"])
+@pytest.mark.parametrize("scheme", OTHER_SCHEMES)
+def test_a_scene_of_another_scheme_is_stepped_as_dda_steps_it(law: str, scheme: dict[str, Any]) -> None:
+    scene = other_scene(law, **scheme, **{"time.gg": 0.98})
+    run = solve(scene, "dda")
+    rectangle = rectangle_of(scene)
+    assert rectangle is not None
+    stepped = histories(rectangle, [own_variant(scene)], np.full(60, 5e-4))
+    assert np.max(np.abs(stepped.displacement[:, 0] - run.displacement)) < ROUNDINGS * np.max(np.abs(run.displacement))
+    answer = Case.judged(_Recorded(scene, Foreign(run.time, run.displacement, run.contact_pressure)))
+    assert answer.causes == [] and answer.misfit < 1e-9
+
+
+class _Recorded:
+    """A history beside a scene."""
+
+    def __init__(self, scene: Scene, foreign: Foreign) -> None:
+        self.scene = scene
+        self.foreign = foreign
+
+
+def test_dda_s_own_scheme_beside_a_scene_of_another_one_is_named() -> None:
+    run = solve(other_scene("locked"), "dda")
+    scene = other_scene("locked", **OTHER_SCHEMES[0])
+    answer = Case.judged(_Recorded(scene, Foreign(run.time, run.displacement, run.contact_pressure)))
+    assert answer.causes == ["scheme"]
+    assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": 1.0}
+    assert answer.remedy == "--set time.scheme=newmark --set time.alpha=0.5 --set time.delta=1"
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"contact.law": "unilateral", "contact.friction": 20.0},
+        {"load.eccentricity": 0.1},
+        {"contact.law": "unilateral", "block.poisson": 0.2},
+    ],
+)
+def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes: dict[str, Any]) -> None:
+    scene = other_scene("locked", **OTHER_SCHEMES[0]).with_values(changes)
+    with pytest.raises(InputError) as refusal:
+        Case.judged(_Recorded(scene, Foreign(5e-4 * np.arange(1, 9), -np.ones(8))))
+    assert refusal.value.field == "time.scheme"
+
+
+# ---- verdicts -------------------------------------------------------------------------------------------------------
+
+LOCKED, OPENING = {"dt": 2e-3}, {"dt": 5e-4, "opens": True}
+
+
+def judged(method: str, numbers: dict[str, Any], digits: int = 6, **of_run: Any) -> tuple[Case, Answer]:
+    run = Run(method, numbers, **of_run)
+    case = Case(run, scene_of(run), digits)
+    return case, case.judged()
+
+
+NAMED: list[tuple[str, dict[str, Any], dict[str, Any], list[str]]] = [
+    ("chung-hulbert", {"r": 0.63}, LOCKED, ["generalised-alpha"]),
+    ("composite", {"split": 0.45, "r": 0.2}, LOCKED, ["composite"]),
+    ("hht", {"e": 0.07, "form": "state"}, OPENING, ["hht"]),
+    ("moreau", {"e": 0.3}, OPENING, ["impact-law"]),
+    ("wbz", {"r": 0.55}, LOCKED, ["wbz"]),
+    ("symplectic-euler", {}, {"dt": 5e-4}, ["symplectic-euler"]),
+    ("theta", {"share": 0.7}, LOCKED, ["theta"]),
+    ("implicit-euler", {}, {"dt": 2e-3, "gg": 0.98}, ["theta"]),
+    ("contact-split", {"law": "kane"}, LOCKED, ["implicit-contact"]),
+    ("contact-split", {"law": "energy-conserving"}, OPENING, ["energy-conserving-contact"]),
+    ("lagrange", {"alpha": 0.5, "delta": 1.0}, OPENING, ["rigid-contact"]),
+    ("dashpot", {"c": dashpot_of(Body(), 0.3), "alpha": 0.5, "delta": 1.0}, OPENING, ["contact-dashpot"]),
+]
+
+
+@pytest.mark.parametrize(
+    ("method", "numbers", "of_run", "causes"),
+    [*NAMED[:4], *(pytest.param(*m, marks=pytest.mark.long) for m in NAMED[4:])],
+)
+def test_a_method_is_named_by_six_digits(
+    method: str, numbers: dict[str, Any], of_run: dict[str, Any], causes: list[str]
+) -> None:
+    case, answer = judged(method, numbers, **of_run)
+    assert answer.causes == causes
+    assert verdict(case, answer) == "right"
+
+
+def test_leapfrog_is_no_hht_and_is_told_by_both_names() -> None:
+    """Hilber, Hughes and Taylor's formulas at alpha_f = 1, far beyond 1/3, have its rows."""
+    _, answer = judged("leapfrog", {}, dt=5e-4)
+    assert answer.causes == ["leapfrog"]
+    assert [one["causes"] for one in answer.alike] == [["scheme", "start"]]
+    assert "central differences" in answer.sentence
+
+
+def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha() -> None:
+    _, answer = judged("midpoint", {}, **LOCKED)
+    assert answer.causes == ["scheme", "start"]
+    assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("method", "numbers", "other"),
+    [("hht", {"e": 1 / 3}, "hht"), pytest.param("wbz", {"r": 0.0}, "wbz", marks=pytest.mark.long)],
+)
+def test_one_scheme_by_two_names_is_told_by_both(method: str, numbers: dict[str, Any], other: str) -> None:
+    _, answer = judged(method, numbers, **LOCKED)
+    assert answer.causes == ["generalised-alpha"]
+    assert [one["causes"] for one in answer.alike] == [[other]]
+    assert answer.values["generalised-alpha"] == (0.5 if method == "hht" else 0.0)
+
+
+def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact() -> None:
+    """The roots of a step have 1 - q2 z and 1 - split z / 2 below: a split of 2 q2 exchanges them."""
+    variant = Variant(0.25, 0.5, 1.0, "consistent", family="composite", split=0.7, spectral=0.3)
+    other = companion_split(variant)
+    assert companion_split(replace(variant, split=other)) == pytest.approx(0.7, rel=1e-12)
+    rows = []
+    for split in (0.7, other):
+        rows.append(Run("composite", {"split": split, "r": 0.3}).history()[0])
+    assert np.max(np.abs(rows[0] - rows[1])) < ROUNDINGS * np.max(np.abs(rows[0]))
+    for rho_inf in (0.0, 0.6):
+        usual = replace(variant, split=0.0, spectral=rho_inf)  # of equal matrices in both stages
+        assert companion_split(usual) == pytest.approx(usual_split(rho_inf), rel=1e-12)
+
+
+@pytest.mark.long
+def test_a_discount_beside_another_scheme_is_named_with_it() -> None:
+    run = Run("chung-hulbert", {"r": 0.8}, gg=0.97)
+    answer = Case(run, scene_of(replace(run, gg=1.0)), 7).judged()
+    assert answer.causes == ["gg", "generalised-alpha"]
+    assert answer.values == pytest.approx({"gg": 0.97, "generalised-alpha": 0.8}, rel=1e-4)
+
+
+def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number() -> None:
+    """Short steps, nine digits: Chung and Hulbert's at rho_inf = 0.368 comes within 2e-7, and is not it."""
+    run = Run("weights", {"am": -0.2, "af": 0.2, "zero": False, "form": "force"}, Body(p=5e9), 5.2e-5, 25)
+    case = Case(run, scene_of(run), 9, with_pressure=False)
+    assert verdict(case, case.judged()) == "silent"
+
+
+def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
+    run = Run("hht", {"e": 0.07}, steps=40)
+    foreign = Case(run, scene_of(run), 7).foreign
+    path = tmp_path / "theirs.csv"
+    rows = zip(foreign.time, foreign.displacement, strict=True)
+    path.write_text("time,displacement\n" + "\n".join(f"{float(t)!r},{float(u)!r}" for t, u in rows))
+    arguments = ("compare", "figures-3-4", path, "--set", "time.step=0.002")
+    answer = typed(*arguments)
+    (line,) = (line for line in answer.stdout.splitlines() if line.startswith("to run the scene so, add "))
+    options = line.removeprefix("to run the scene so, add ").split()
+    assert options[1] == "time.scheme=hht" and options[3].startswith("time.rho_inf=0.869")
+    assert typed(*arguments, *options).returncode == 0
+
+
+# ---- faults, and the table ------------------------------------------------------------------------------------------
+
+
+def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without it average acceleration, printed with six digits, is several schemes at once."""
+    seams.DECISION_CANONICAL.put(monkeypatch, lambda target, best, close: (best, {best.ids: best}))
+    seams.DECISION_SPECIAL.put(monkeypatch, lambda target, fine, scores: fine)
+    _, answer = judged("midpoint", {}, **LOCKED)
+    assert answer.causes != ["scheme", "start"]
+
+
+@pytest.fixture(scope="module")
+def sixty() -> list[tuple[Case, Answer]]:
+    return [(case, case.judged()) for case in map(made, range(4000, 4060))]
+
+
+@pytest.mark.long
+def test_no_made_history_is_given_a_wrong_cause(sixty: list[tuple[Case, Answer]]) -> None:
+    wrong = [(case.seed, answer.causes) for case, answer in sixty if verdict(case, answer) == "wrong"]
+    assert wrong == []
+
+
+@pytest.mark.long
+def test_most_made_histories_are_named(sixty: list[tuple[Case, Answer]]) -> None:
+    counts = Counter(verdict(case, answer) for case, answer in sixty)
+    assert counts["right"] > len(sixty) / 2
+
+
+def test_the_table_of_the_documentation_has_nothing_wrong() -> None:
+    page = compared_schemes.PAGE.read_text()
+    text = page[page.index(compared_schemes.BEGIN) : page.index(compared_schemes.END)]
+    cells = text.strip().splitlines()[-1].split("|")[2:-1]
+    total, *counts = (int(cell) for cell in cells)
+    assert total == sum(counts) >= 100
+    assert counts[-1] == 0

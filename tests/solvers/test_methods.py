@@ -1,0 +1,166 @@
+"""Time schemes and contact methods of scenes through the adapters: their numbers reach the packages, in full."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation import solve
+from validation.errors import InputError
+from validation.metrics.contact import imbalance
+from validation.metrics.modes import operator_damping
+from validation.runs.contact import ContactRecord
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers import opened
+from validation.solvers.registry import get_solver
+from validation.theory.stepping import Stepping
+
+LOCKED = load_scene("figures-3-4").with_values({"time.step": 5e-4, "time.steps": 40, "fem.elements": 2})
+OPENING = load_scene("unlocked-average").expand()[0].with_values({"time.step": 2e-4, "time.steps": 200})
+COLUMN = load_scene("waves-base").expand()[0]
+SCHEMES: dict[str, dict[str, Any]] = {
+    "chung-hulbert": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.6},
+    "hht": {"time.scheme": "hht", "time.rho_inf": 0.7},
+    "wbz": {"time.scheme": "wbz", "time.rho_inf": 0.3},
+    "leapfrog": {"time.scheme": "leapfrog", "time.start": "consistent"},
+    "composite": {"time.scheme": "composite", "time.rho_inf": 0.2, "time.split": 0.55},
+}
+RIGID = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0}
+IMPACT = RIGID | {"contact.rule": "impact", "contact.restitution": 0.4}
+
+
+def record_of(scene: Scene, solver: str = "dda") -> ContactRecord:
+    prepared = get_solver(solver).prepare(scene)
+    prepared.keeps_contact_record = True
+    assert prepared.run().outcome == "completed"
+    return prepared.contact_record()
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem", "bar"])
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("gg", [1.0, 0.99])
+def test_modes_have_the_roots_of_the_scene_s_scheme(scheme: str, solver: str, gg: float) -> None:
+    scene = LOCKED.with_values(SCHEMES[scheme] | {"time.gg": gg})
+    if solver == "bar" and scheme == "leapfrog":
+        with pytest.raises(InputError, match="explicit"):
+            solve(scene, solver)
+        return
+    for mode in get_solver(solver).modes(scene)[:2]:
+        omega = mode.frequency * scene.time.step
+        expected = Stepping.of(scene).damping_ratio(omega)
+        assert operator_damping(mode.eigenvalues) == pytest.approx(expected, rel=1e-8, abs=1e-13)
+        assert max(map(abs, mode.eigenvalues)) == pytest.approx(abs(Stepping.of(scene).roots(omega)[0]), rel=1e-10)
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_scheme_s_history_comes_near_to_the_exact_one_and_is_no_newmark_s(scheme: str, solver: str) -> None:
+    locked = LOCKED.with_values({"time.step": 1e-4}) if solver == "fem" else LOCKED  # which the leapfrog bears
+    exact = solve(locked, "block-events").displacement
+    average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+    newmark = solve(locked.with_values(average), solver).displacement
+    history = solve(locked.with_values({"time.start": "consistent"} | SCHEMES[scheme]), solver).displacement
+    if solver == "dda":
+        assert np.abs(history - exact).max() < 0.2 * np.abs(exact).max()
+    assert np.abs(history - newmark).max() > 1e-4 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize(("solver", "scene"), [("continuum", LOCKED), ("block-events", OPENING), ("layers", COLUMN)])
+def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver: str, scene: Scene) -> None:
+    scene = scene.with_values({"time.steps": 20})
+    expected = solve(scene, solver).history.columns
+    for values in SCHEMES.values():
+        history = solve(scene.with_values({"time.start": "consistent"} | values), solver).history
+        for name, column in expected.items():
+            assert np.array_equal(history.columns[name], column), (values, name)
+
+
+@pytest.mark.parametrize("name", ["unlocked-average", "columns-drop-average"])
+def test_the_leapfrog_is_refused_beyond_its_limit_unless_that_is_allowed(name: str) -> None:
+    beyond = {"time.step": 0.1, "time.steps": 3} | SCHEMES["leapfrog"]
+    scene = load_scene(name).expand()[0].with_values(beyond)
+    with pytest.raises(InputError) as caught:
+        solve(scene, "dda")
+    assert caught.value.field == "time.step"
+    assert solve(scene.with_values({"time.allow_unstable": True}), "dda").history is not None
+
+
+def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode() -> None:
+    frequency = max(mode.frequency for mode in get_solver("dda").modes(LOCKED))
+    limit = math.sqrt(2 * 1.99) / frequency
+    leapfrog = LOCKED.with_values(SCHEMES["leapfrog"] | {"time.gg": 0.99, "time.steps": 3})
+    solve(leapfrog.with_values({"time.step": limit * (1 - 1e-9)}), "dda")
+    with pytest.raises(InputError):
+        solve(leapfrog.with_values({"time.step": limit * (1 + 1e-9)}), "dda")
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_impulse_of_a_scheme_is_that_of_the_momentum(scheme: str) -> None:
+    record = record_of(OPENING.with_values({"contact.damping_ratio": 0.3} | SCHEMES[scheme]))
+    gained = OPENING.block.mass * record.velocity
+    load = opened.resultant_load(OPENING) * record.time
+    assert record.impulse == pytest.approx(gained + load, rel=1e-9)
+    forces = np.concatenate(([0.0], record.force))
+    trapezoids = np.cumsum(forces[1:] + forces[:-1]) * OPENING.time.step / 2
+    assert record.impulse[-1] == pytest.approx(trapezoids[-1], rel=0.02)
+
+
+def test_solves_of_a_composite_scheme_are_two_a_step() -> None:
+    calm = OPENING.with_values({"contact.restitution": 0.3})
+    mean = {name: float(record_of(calm.with_values(SCHEMES[name])).solves.mean()) for name in ("hht", "composite")}
+    assert 1.0 <= mean["hht"] < 1.1 and 2.0 <= mean["composite"] < 2.1
+
+
+def test_dashpots_are_those_of_the_rigid_block_on_both_corners() -> None:
+    mass = OPENING.block.mass
+    stiffness = OPENING.contact.stiffness
+    scene = OPENING.with_values({"contact.damping_ratio": 0.25})
+    assert 2 * opened.dashpot_of(scene) == pytest.approx(2 * 0.25 * math.sqrt(2 * stiffness * mass))
+    by_rebound = OPENING.with_values({"contact.restitution": 0.5717400276})
+    assert 2 * opened.dashpot_of(by_rebound) == pytest.approx(2 * 0.2 * math.sqrt(2 * stiffness * mass), rel=1e-9)
+    assert opened.dashpot_of(OPENING) == 0
+
+
+@pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT | {"contact.restitution": 0.0}])
+def test_a_contact_method_converges_to_its_exact_motion(values: dict[str, Any]) -> None:
+    coarse = OPENING.with_values(values | {"time.steps": 100})
+    errors = []
+    for halvings in (0, 4):
+        parts = 2**halvings
+        steps = {"time.step": coarse.time.step / parts, "time.steps": coarse.time.steps * parts}
+        stepped = solve(coarse.with_values(steps), "dda").displacement[parts - 1 :: parts]
+        exact = solve(coarse, "block-events").displacement
+        errors.append(np.linalg.norm(stepped - exact) / np.linalg.norm(exact))
+    assert errors[1] < errors[0] / 4 < 0.02
+
+
+@pytest.mark.parametrize("solver", ["dda", "block-events"])
+@pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT])
+def test_the_balance_of_energy_holds_with_what_is_lost_in_the_contact(values: dict[str, Any], solver: str) -> None:
+    record = record_of(OPENING.with_values(values), solver)
+    name = "dashpot" if "contact.damping_ratio" in values else "impact"
+    assert record.energies[name][-1] > 0
+    assert imbalance(record) < 1e-9
+
+
+def test_the_exact_impacts_are_in_the_record_and_in_the_notes() -> None:
+    scene = OPENING.with_values(IMPACT | {"time.steps": 300})
+    record = record_of(scene, "block-events")
+    assert {round(rebound.restitution, 12) for rebound in record.rebounds} == {0.4}
+    assert "accumulate at" in " ".join(solve(scene, "block-events").notes)
+
+
+def test_an_augmented_lagrangian_leaves_the_penetration_that_is_asked_and_reports_its_passes() -> None:
+    values = {"contact.rule": "augmented", "time.alpha": 0.5, "time.delta": 1.0, "time.step": 1e-3, "time.steps": 40}
+    for penetration in (1e-5, 1e-8):
+        columns = ["displacement", "contact_pressure", "gap_m", "passes"]
+        scene = OPENING.with_values(values | {"contact.penetration": penetration, "run.columns": columns})
+        history = solve(scene, "dda").history
+        assert -penetration <= history.columns["gap_m"].min() < 0
+        pressed = history.columns["contact_pressure"] > 0
+        # a pass leaves 1 / (1 + r C) of the penetration, r C = 0.271164 at p = 1E and 1 ms
+        needed = math.log(1e-3 / penetration) / math.log(1.271164)
+        assert needed / 2 < np.max(history.columns["passes"][pressed]) < 2 * needed
