@@ -171,7 +171,10 @@ def _signed(value: float | None, factor: float = 1.0) -> str:
     """Return a number with its sign; what is rounding is none."""
     if value is None:
         return DASH
-    return "0" if abs(value) < 1e-9 else f"{factor * value:+.3g}".replace("-", "−")
+    if abs(value) < 1e-9:
+        return "0"
+    number_format = "+.0f" if abs(factor * value) >= 1000 else "+.3g"  # without a power of ten
+    return f"{factor * value:{number_format}}".replace("-", "−")
 
 
 def _percent(value: float | None) -> str:
