@@ -390,37 +390,30 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
         part: Part,
     ) -> tuple[int, int]:
         """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-        if block.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
+        ratio = part.ratio
+        if block.lag != 0 and ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
             return NONE, 0
-        begin_step(block, state, length_of(block, shear_law, block.last, part.ratio))
-        if block.stages == 1:
-            return make_stage(block, shear_law, block.last, state, after, base, part)
-        outcome, solves = make_stage(block, shear_law, block.first, state, block.between, base, part)
-        if outcome != FOUND:
-            return outcome, solves
-        outcome, further_solves = make_stage(block, shear_law, block.last, block.between, after, base, part)
-        if shear_law is not None and outcome == FOUND:
-            add_slips(block, after.contacts)
-        return outcome, solves + further_solves
-
-    def make_stage(
-        block: BlockEquations,
-        shear_law: Shear,
-        stage: BlockStage,
-        before: BlockState,
-        after: BlockState,
-        base: BaseRecord | None,
-        part: Part,
-    ) -> tuple[int, int]:
-        """Go from the end of the stage before, or the start of the step, to the end of a stage."""
-        length = length_of(block, shear_law, stage, part.ratio)
-        free_stage(block, shear_law, stage, length, before, base, part)
-        outcome, solves = solve(block, shear_law, before.contacts, length, after.contacts)
-        if outcome == FOUND:
-            accept(block, shear_law, stage, length, before, after)
+        stages = block.stages
+        total = 0
+        before = state
+        for number in range(1, stages + 1):
+            stage = block.last if number == stages else block.first
+            target = after if number == stages else block.between
+            length = length_of(block, shear_law, stage, ratio)
+            if number == 1:
+                begin_step(block, state, length)
+            free_stage(block, shear_law, stage, length, before, base, part)
+            outcome, solves = solve(block, shear_law, before.contacts, length, target.contacts)
+            total += solves
+            if outcome != FOUND:
+                return outcome, total
+            accept(block, shear_law, stage, length, before, target)
             if shear_law is not None:
-                refer(block, before.contacts, after)
-        return outcome, solves
+                refer(block, before.contacts, target)
+            before = target
+        if shear_law is not None and stages == 2:
+            add_slips(block, after.contacts)
+        return FOUND, total
 
     return advance
 
@@ -436,13 +429,15 @@ def add_slips(block: BlockEquations, contacts: Contacts) -> None:
 def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> None:
     """Write what all stages take from the start of a step, in units of its length; its velocity is discounted here."""
     room = block.room
+    P = room.P
+    f = room.f
     ratio = length.numbers[0]
     gg = length.numbers[1]
-    for i in range(len(block.K)):
-        room.P[i] = gg * (ratio * state.P[i])
-        room.f[i] = ratio * ratio * state.f[i]
+    for i in range(len(P)):
+        P[i] = gg * (ratio * state.P[i])
+        f[i] = ratio * ratio * state.f[i]
     if block.last.averages:
-        for i in range(len(block.K)):
+        for i in range(len(P)):
             room.force_0[i] = ratio * ratio * state.force[i]
 
 
@@ -461,18 +456,24 @@ def free_stage(
     n = len(block.K)
     c = len(block.room.slide)
     ratio = part.ratio
+    averages = stage.averages
+    follows = stage.begin > 0
     if block.ramp > 0:
         share = load_share(block.ramp, (part.begun + ratio * numbers.end) * block.step)
         for i in range(n):
             length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
+    P = room.P
+    f = room.f
+    alpha = numbers.alpha
+    d_u = numbers.d_u
     for i in range(n):
         force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
-        if stage.averages:
-            force = inertia_force(numbers, force, room.force_0[i], room.f[i])
-        balance = predictor(numbers, numbers.d_u * room.P[i], room.f[i])
-        if stage.begin > 0:
+        if averages:
+            force = inertia_force(numbers, force, room.force_0[i], f[i])
+        balance = predictor(numbers, d_u * P[i], f[i])
+        if follows:
             balance += numbers.d_g * (ratio * before.P[i]) + numbers.e_g * (ratio * ratio * before.f[i])
-        room.balance[i] = balance + numbers.alpha * force
+        room.balance[i] = balance + alpha * force
     if base is not None:
         interval = Part(part.begun + ratio * stage.begin, ratio * (numbers.end - stage.begin))
         base_displacement(base, block.step, interval, room.start, stage.base)
@@ -559,6 +560,8 @@ def accept(
     c = len(block.room.slide)
     normal = block.work.mean if block.rule == 2 else after.contacts.normal
     contact_forces(block, shear_law, normal, after.contacts.shear)
+    averages = stage.averages
+    follows = stage.begin > 0
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
@@ -573,11 +576,11 @@ def accept(
         f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
         if block.rule == 0:
             f1 += pressed
-        if stage.averages:
+        if averages:
             after.force[i] = f1 / (ratio * ratio)
             f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
         P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
-        if stage.begin > 0:
+        if follows:
             P1 += numbers.g_g * (ratio * ratio * before.f[i])
         if block.rule != 0:
             P1 += pressed

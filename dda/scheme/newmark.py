@@ -23,7 +23,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import islice, repeat
 from typing import ClassVar, Literal, TypeVar
 
@@ -61,6 +60,7 @@ class Scheme:
 
     e_0: float = field(init=False, repr=False, compare=False)  # weights of A in Newmark's displacement and velocity
     g_0: float = field(init=False, repr=False, compare=False)
+    named_stages: tuple[Stage, ...] = field(init=False, repr=False, compare=False)  # with gg and step
     # of Newmark's stage, beside alpha, delta, gg and step; whole numbers go with decimal ones
     d_u: ClassVar[int] = 1
     d_g: ClassVar[int] = 0
@@ -74,6 +74,8 @@ class Scheme:
         """Check the ranges."""
         object.__setattr__(self, "e_0", (1 - 2 * self.alpha) / 2)  # whole numbers: decimal ones go with no doubles
         object.__setattr__(self, "g_0", 1 - self.delta)
+        stages = self.table.stages if self.table else ()
+        object.__setattr__(self, "named_stages", tuple(s._replace(gg=self.gg, step=self.step) for s in stages))
         check_not_negative(alpha=self.alpha, delta=self.delta)
         check_share(gg=self.gg)
         check_positive(step=self.step)
@@ -95,12 +97,10 @@ class Scheme:
         """Whether there is viscous damping."""
         return bool(self.mass_damping or self.stiffness_damping)
 
-    @cached_property
+    @property
     def stages(self) -> tuple[Stage | Scheme, ...]:
         """What a step is made of."""
-        if self.table is None:
-            return (self,)
-        return tuple(stage._replace(gg=self.gg, step=self.step) for stage in self.table.stages)
+        return (self,) if self.table is None else self.named_stages
 
     @property
     def lag(self) -> float:

@@ -85,7 +85,7 @@ def agreeing(flow: Flow, z: arb_mat) -> list[int | None] | None:
 def _choices(model: BlockModel, states: States, z: arb_mat) -> list[States]:
     """States that both corners may take without a jump of what an instant cannot change."""
     if model.contact is None:
-        return list(product(*(_corner_choices(model, c, states[c], z) for c in (0, 1))))
+        return list(product(_corner_choices(model, 0, states[0], z), _corner_choices(model, 1, states[1], z)))
     touching = is_blank((model.contact.gap * z)[0, 0])
     resting = touching and is_blank((model.contact.rate * z)[0, 0])
     return [(STICKS, STICKS), (OPEN, OPEN)] if resting else [(OPEN, OPEN)]

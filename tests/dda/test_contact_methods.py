@@ -36,6 +36,7 @@ MASS = 1.3 * 0.9 * 2350.0
 V = 0.7
 PHASES = midpoints(8)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
+ECCENTRIC = {"eccentricity": 0.3}
 STORED = ("kinetic", "strain", "springs", "load")
 
 
@@ -162,6 +163,24 @@ def test_the_papers_block_lands_on_dashpots():
             model = replace(PAPER, contact=Unilateral(1e9, damping=c))
             result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt, "consistent"), round(0.02 / dt))
             assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=51.0)
+
+
+@pytest.mark.parametrize(
+    ("factor", "exact"),
+    [
+        (1.0, (-0.007091142840408282, -0.012469235605322147, -0.002286939442794178)),
+        (4.0, (-0.0065689190516521265, -0.010418340409922422, -0.0055421519546203935)),
+    ],
+)
+def test_two_corners_on_dashpots_move_as_the_exact_block(factor, exact):
+    """Displacement at 5, 10 and 20 ms under an eccentric load, by exact events on balls."""
+    c = factor * 0.2 * math.sqrt(2e9 * 10800.0) / 2
+    model = replace(PAPER, contact=Unilateral(1e9, damping=c), **ECCENTRIC)
+    n = 2000
+    for name in ("average", "ch-0.5", "composite"):
+        scheme = replace(SCHEMES[name][0], step=0.02 / n)
+        v = solve_unilateral(model, scheme, n, ("displacement",)).columns["displacement"]
+        assert v[[n // 4 - 1, n // 2 - 1, n - 1]] == pytest.approx(exact, abs=4e-6)
 
 
 @pytest.mark.parametrize("name", ["average", "ch-0.5", "composite"])
@@ -350,7 +369,6 @@ def test_kanes_force_enters_the_velocity_whole():
 # ---- what excludes each other ----------------------------------------------------------------------------------------
 
 DAMPED = Unilateral(1e9, damping=1e5)
-ECCENTRIC = {"eccentricity": 0.2}
 GOOD = average(1e-3)
 
 

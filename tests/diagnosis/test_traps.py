@@ -110,7 +110,7 @@ SHAKEN = {"shaken": 0.01}
 UNKNOWN = [
     {"hardening": 20.0},
     {"height": 2.2},
-    {"hht": -0.1},
+    {"hht": -0.1, "alpha": 0.3, "delta": 0.6},
     {"creep": 1.0},
     {"filtered": 0.3},
     {"friction": 1e5},
@@ -123,6 +123,15 @@ def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
     assert answer.causes == ["unexplained"] and answer.departs
     assert answer.nearest is not None and answer.values == {}
     assert "not explained" in answer.sentence
+
+
+@pytest.mark.long
+def test_a_share_of_the_stiffness_from_the_zero_start_is_a_scheme_from_the_consistent_one() -> None:
+    """M a1 + K (0.9 x1 + 0.1 x) = F under (1/2, 1) has the rows of Newmark's (0.45, 0.9), the first one too."""
+    answer = judged(hht=-0.1)
+    assert answer.causes == ["scheme", "start"]
+    assert answer.scheme == pytest.approx({"alpha": 0.45, "delta": 0.9, "gg": 1.0}, abs=1e-6)
+    assert answer.misfit < 1e-9
 
 
 @pytest.mark.long

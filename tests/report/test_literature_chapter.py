@@ -6,7 +6,7 @@ import json
 import re
 from pathlib import Path
 
-from validation.report.blocks import Paragraph, Table
+from validation.report.blocks import Heading, Paragraph
 from validation.report.chapters.literature import chapter, conclusion
 from validation.report.references import references
 from validation.runs.results import Results
@@ -22,9 +22,11 @@ def test_the_chapter_lists_claims_sources_and_tests(tmp_path: Path) -> None:
     data = json.loads(json.dumps(dict(STUDY.data())))
     manifest = {"study": "literature", "title": STUDY.title, "derived": rows, "data": data}
     blocks = chapter(Results(tmp_path), manifest, tmp_path)  # type: ignore[arg-type]
-    (table,) = [block for block in blocks if isinstance(block, Table)]
-    assert [row[0] for row in table.rows] == [claim.id for claim in CLAIMS]
-    assert all("a number 0.5" in row[4] for row in table.rows)
+    heads = [block.text.partition(":")[0] for block in blocks if isinstance(block, Heading) and block.level == 3]
+    assert heads == [claim.id for claim in CLAIMS]
+    measured = [block.text for block in blocks if isinstance(block, Paragraph) and block.tone == "small"]
+    assert len(measured) == len(CLAIMS)
+    assert all("Measured: a number 0.5." in text for text in measured)
     text = " ".join(block.text for block in blocks if isinstance(block, Paragraph))
     cited = set(re.findall(r"@([a-z]+\d{4})", text))
     assert cited == {key for claim in CLAIMS for key in claim.sources} <= set(references())

@@ -16,7 +16,7 @@ import numpy as np
 
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.schemes import EXPLICIT, SHARED
+from validation.diagnosis.schemes import EXPLICIT, SHARED, Family
 from validation.diagnosis.stepping import UNEQUAL, histories
 from validation.diagnosis.variant import Variant
 
@@ -142,16 +142,17 @@ def other_families(scene: Variant, starts: Sequence[str]) -> Iterator[Move]:
 
     Where contact opens, the force of generalised alpha is the mean of those at both ends, or that of the mean gap.
     """
-    forms: dict[str, list[dict[str, Any]]] = {}
-    for family in ("hht", "chung-hulbert", "wbz"):
+    forms: dict[Family, list[dict[str, Any]]] = {}
+    families: list[tuple[str, Family, Sequence[float]]] = [
+        ("hht", "hht", ALPHA_F),
+        ("generalised-alpha", "chung-hulbert", RHO_INF),
+        ("wbz", "wbz", RHO_INF),
+    ]
+    for _, family, _ in families:
         has_forms = scene.opens and family != "wbz"  # WBZ has alpha_f = 0
         forms[family] = [{"contact": name} for name in ("springs", "mean gap")] if has_forms else [{}]
     for start in starts:
-        for cause, family, numbers in (
-            ("hht", "hht", ALPHA_F),
-            ("generalised-alpha", "chung-hulbert", RHO_INF),
-            ("wbz", "wbz", RHO_INF),
-        ):
+        for cause, family, numbers in families:
             for form in forms[family]:
                 changes = {"family": family, "start": start, **form}
                 yield fitted(cause, "spectral", numbers, **changes)

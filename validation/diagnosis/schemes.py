@@ -13,10 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
-
-if TYPE_CHECKING:
-    from validation.diagnosis.variant import Variant
+from typing import Any, Literal, NamedTuple, Protocol
 
 Family = Literal["newmark", "hht", "wbz", "chung-hulbert", "theta", "leapfrog", "symplectic-euler", "composite"]
 LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
@@ -39,21 +36,57 @@ FAMILIES: dict[str, str] = {
 
 
 class Stage(NamedTuple):
-    """The numbers of a stage [-]."""
+    """The numbers of a stage [-], or arrays of those of many variants."""
 
-    d_u: float
-    d_g: float
-    e_0: float
-    e_g: float
-    beta: float
-    g_0: float
-    g_g: float
-    gamma: float
-    mean_mass: float  # a_m
-    mean_force: float  # a_f
+    d_u: Any
+    d_g: Any
+    e_0: Any
+    e_g: Any
+    beta: Any
+    g_0: Any
+    g_g: Any
+    gamma: Any
+    mean_mass: Any  # a_m
+    mean_force: Any  # a_f
 
 
-def stages(v: Variant) -> tuple[Stage, ...]:
+class Numbers(Protocol):
+    """What a scheme follows from: a `validation.diagnosis.variant.Variant`."""
+
+    @property
+    def alpha(self) -> float:
+        """Newmark's weight of the acceleration in the displacement [-]."""
+
+    @property
+    def delta(self) -> float:
+        """Newmark's weight of the acceleration in the velocity [-]."""
+
+    @property
+    def gg(self) -> float:
+        """Share of the velocity that a step starts with [-]."""
+
+    @property
+    def start(self) -> str:
+        """Initial acceleration, zero or consistent."""
+
+    @property
+    def family(self) -> Family:
+        """Which scheme."""
+
+    @property
+    def spectral(self) -> float:
+        """Its number [-]."""
+
+    @property
+    def split(self) -> float:
+        """Share of the step at which a composite scheme is split, 0 the usual one [-]."""
+
+    @property
+    def contact(self) -> str:
+        """How the contact presses."""
+
+
+def stages(v: Numbers) -> tuple[Stage, ...]:
     """Return the stages of a step of a variant."""
     return STAGES[v.family](v)
 
@@ -69,22 +102,22 @@ def _weighted(mean_mass: float, mean_force: float) -> tuple[Stage, ...]:
     return one_stage(beta, 0.5 - mean_mass + mean_force, mean_mass, mean_force)
 
 
-def _chung_hulbert(v: Variant) -> tuple[Stage, ...]:
+def _chung_hulbert(v: Numbers) -> tuple[Stage, ...]:
     r = v.spectral
     return _weighted((2 * r - 1) / (r + 1), r / (r + 1))
 
 
-def _theta(v: Variant) -> tuple[Stage, ...]:
+def _theta(v: Numbers) -> tuple[Stage, ...]:
     theta = v.spectral
     return (Stage(1.0, 0.0, theta * (1 - theta), 0.0, theta**2, 1 - theta, 0.0, theta, 0.0, 0.0),)
 
 
-def _explicit(_: Variant) -> tuple[Stage, ...]:
+def _explicit(_: Numbers) -> tuple[Stage, ...]:
     """Return the stage of leapfrog, whose U is that of the half step before."""
     return (Stage(1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),)
 
 
-def _composite(v: Variant) -> tuple[Stage, ...]:
+def _composite(v: Numbers) -> tuple[Stage, ...]:
     """Return the trapezoidal rule up to a share of the step, then a rule through start, middle and end."""
     share = split_of(v)
     q1 = (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)
@@ -95,12 +128,12 @@ def _composite(v: Variant) -> tuple[Stage, ...]:
     return first, second
 
 
-def split_of(v: Variant) -> float:
+def split_of(v: Numbers) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
     return v.split or usual_split(v.spectral)
 
 
-def scheme_numbers(v: Variant) -> dict[str, Any]:
+def scheme_numbers(v: Numbers) -> dict[str, Any]:
     """Return a scheme's numbers; alpha and delta are None where it is no pair of them, and `name` says which it is."""
     if v.family == "newmark":
         return {"alpha": v.alpha, "delta": v.delta, "gg": v.gg}
@@ -114,7 +147,7 @@ def scheme_numbers(v: Variant) -> dict[str, Any]:
     return numbers
 
 
-def companion_split(v: Variant) -> float:
+def companion_split(v: Numbers) -> float:
     """Return the other split with which a composite scheme is the same in linear motion, 2 q2.
 
     Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which a split of 2 q2 exchanges; at the usual
@@ -129,7 +162,7 @@ def usual_split(rho_inf: float) -> float:
     return 2 / (2 + math.sqrt(2 + 2 * rho_inf))
 
 
-def other_names(v: Variant) -> str:
+def other_names(v: Numbers) -> str:
     """Return by what other names a scheme is known, as the end of a sentence."""
     if v.contact not in ("springs", "mean gap"):
         return ""
@@ -157,7 +190,7 @@ FAMILY_NAMES: tuple[tuple[Family, float, float, str], ...] = (  # rho_inf, alpha
     ("composite", 0.0, 0.5, ": trapezoidal rule, then backward differences"),
     ("theta", 1.0, 0.0, ": implicit Euler"),
 )
-STAGES: dict[Family, Callable[[Variant], tuple[Stage, ...]]] = {
+STAGES: dict[Family, Callable[[Numbers], tuple[Stage, ...]]] = {
     "newmark": lambda v: one_stage(v.alpha, v.delta),
     "hht": lambda v: _weighted(0.0, v.spectral),
     "wbz": lambda v: _weighted((v.spectral - 1) / (v.spectral + 1), 0.0),

@@ -445,7 +445,8 @@ def discounted(target: Target, scene: Variant, before: Verdict) -> Verdict:
     (discount,) = (move for move in every if move.id == "gg" and move.free)
     of_schemes = [move for move in every if move.id == "scheme" or LISTED[move.id].family]
     combos = [(move, discount) for move in of_schemes if len(move.free) < 2]
-    return _nearer(decided(target, before.scene_fit, fitted(target, scene, combos)), before)
+    verdict = decided(target, before.scene_fit, fitted(target, scene, combos))
+    return verdict if verdict.reached else before  # whose single causes are tried in pairs next
 
 
 def _nearer(*verdicts: Verdict) -> Verdict:

@@ -278,7 +278,7 @@ class Stepper:
 
     def inverse(self, q: Equations, dt: float, stage: int = 0) -> Array:
         """Return the inverse of the matrix of a stage, (variants, d, d)."""
-        c = Stage(*(number[:, None] for number in self.stages[stage]))
+        c = Stage(*(np.expand_dims(number, -1) for number in self.stages[stage]))
         part = c.beta * dt * dt * q.stiffness
         if self.damped:
             part = part + c.gamma * dt * self._damping(q)

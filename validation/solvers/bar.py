@@ -17,9 +17,10 @@ from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
+from validation.solvers.columns.layers import time_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, time_of, to_modes
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
 from validation.solvers.translation import check_columns, naming, no_fields, switches_between_steps, to_run
 
 if TYPE_CHECKING:
@@ -143,7 +144,7 @@ class ExactBar(Solver):
     )
     apart = ((features.RAMP, frozenset({features.UNILATERAL})), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
-    unread = OF_SUB_BLOCKS
+    unread: tuple[str, ...] = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
     role = Role.REFERENCE
     rank = 5.0

@@ -87,15 +87,6 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
         )
 
 
-def time_of(scene: Scene) -> fem_reference.Scheme:
-    """Return the step and the discount of a scene, for what is exact in time and knows no scheme."""
-    import fem_reference
-
-    t = scene.time
-    d = scene.damping
-    return fem_reference.Scheme(0.25, 0.5, t.discount, t.step, "consistent", d.mass, d.stiffness)
-
-
 def mesh_limit(problem: fem_reference.Problem, model: Callable[[], Model | None]) -> StepLimit:
     """Return the limit of the scheme at the largest frequency of a mesh on a locked base."""
     import fem_reference

@@ -366,13 +366,13 @@ def other_blocks(derived: DerivedRows, labels: Mapping[str, str]) -> Blocks:
         if any(value is not None for value in (*errors, slid)):
             cells = [cell(value, 100.0, 3) for value in errors]
             rows.append((label, *cells, _signed(slid, 100.0)))
-    heads = ("Method", ("Five blocks dropped: error of v [%]", "dt = 1 ms", "dt = 0.2 ms"), "Distance slid: error [%]")
+    titles = ("Method", ("Five blocks dropped: error of v [%]", "dt = 1 ms", "dt = 0.2 ms"), "Distance slid: error [%]")
     caption = (
         "Left: five rigid blocks dropped on each other, over 0.06 s, against the exact motion. Right: a block that "
         "slides down 28.9° with 15° of friction, after 0.5 s in steps of 10 ms: damping of the normal ringing is "
         "all that matters, and implicit Euler is ahead by dt / T."
     )
-    return [*blocks, table(heads, rows, caption)] if rows else blocks
+    return [*blocks, table(titles, rows, caption)] if rows else blocks
 
 
 def _of_scene(derived: DerivedRows, scene: str, name: str, metric: str, step: str) -> float | None:

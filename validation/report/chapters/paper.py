@@ -84,29 +84,40 @@ def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {', '.join(parts)}."
 
 
-def claims_table(
-    claims: Sequence[Mapping[str, Any]], rows: Mapping[str, Mapping[str, Any]], head: str = "The paper says"
-) -> Table:
+def claims_table(claims: Sequence[Mapping[str, Any]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
     """Return the register: verdict, statement, reason and measured numbers."""
     lines = []
     for claim in claims:
         metrics = rows.get(claim["id"], {})
-        word = WORDS.get(int(metrics.get("verdict", -1)), "not tested")
-        condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
-        measured = "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
+        word = verdict_of(metrics)
         statement = f"{claim['says']} ({claim['place']})"
-        why = f"{capital(claim['why'])}.{condition}"
-        lines.append((claim["id"], word, statement, why, measured))
+        lines.append((claim["id"], word, statement, reason_of(claim, word), measured_of(metrics)))
     return table(
         (
             "Id",
             "Verdict",
-            TableColumn(head, "fill"),
+            TableColumn("The paper says", "fill"),
             TableColumn("Why", "fill"),
             TableColumn("Measured", "fill"),
         ),
         lines,
     )
+
+
+def verdict_of(metrics: Mapping[str, Any]) -> str:
+    """Return the verdict on a claim as a word."""
+    return WORDS.get(int(metrics.get("verdict", -1)), "not tested")
+
+
+def reason_of(claim: Mapping[str, Any], word: str) -> str:
+    """Return why a claim has its verdict, and the condition of one that holds under a condition."""
+    condition = f" Condition: {claim['condition']}." if word == WORDS[1] and claim["condition"] else ""
+    return f"{capital(claim['why'])}.{condition}"
+
+
+def measured_of(metrics: Mapping[str, Any]) -> str:
+    """Return the numbers of a claim with their names."""
+    return "; ".join(f"{name} {_number(value)}" for name, value in metrics.items() if name != "verdict")
 
 
 def _number(value: object) -> str:

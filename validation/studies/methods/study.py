@@ -106,7 +106,7 @@ def locked(one: Method) -> Scene:
     if one.id == "average":
         rows.append((1.0, HALVED))
     scene = one.scene(load_scene("figures-3-4"), {"run.solvers": ["dda"]})
-    sweep = {
+    sweep: dict[str, list[float]] = {
         "contact.stiffness": [ratio * scene.block.young for ratio, _ in rows],
         "time.step": [step for _, step in rows],
         "time.steps": [round(LOCKED_TIME / step) for _, step in rows],
@@ -119,7 +119,7 @@ def unlocked(one: Method) -> Scene:
     """Return the block whose contact opens, over springs and step."""
     values: dict[str, Any] = {"run.solvers": ["dda"], "time.allow_unstable": one.group == "explicit"}
     scene = one.scene(load_scene("unlocked-average"), values)
-    sweep = {
+    sweep: dict[str, list[float]] = {
         "contact.stiffness": [ratio * scene.block.young for ratio, _ in UNLOCKED],
         "time.step": [step for _, step in UNLOCKED],
         "time.steps": [round(UNLOCKED_TIME / step) for _, step in UNLOCKED],
@@ -158,7 +158,7 @@ def impacts(one: Method) -> Scene:
     return named(scene, "impact", one, "A rigid block lands on springs", sweep)
 
 
-STOPS = {  # what turns a block back at a rigid stop: id -> words, values
+STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
     "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
     "impulses": (
         "Moreau and Jean, e = 0, theta = 1/2",
@@ -175,10 +175,11 @@ STOPS = {  # what turns a block back at a rigid stop: id -> words, values
 def rigid(stop: str) -> Scene:
     """Return the block on a rigid stop, over halved steps."""
     words, values = STOPS[stop]
-    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    rigid_stop: dict[str, Any] = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     counts = [RIGID_COARSEST * 2**level for level in range(RIGID_LEVELS)]
-    sweep = {"mode": "zip", "time.step": [REFINED_TIME / count for count in counts], "time.steps": counts}
+    steps = [REFINED_TIME / count for count in counts]
+    sweep: dict[str, Any] = {"mode": "zip", "time.step": steps, "time.steps": counts}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
