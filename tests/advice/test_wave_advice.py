@@ -15,6 +15,7 @@ from validation.cli.app import app
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
+from validation.theory.waves import Column
 
 COLUMN = load_scene("figures-3-4").with_values(
     {"time.step": 0.01, "block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 50]}
@@ -233,3 +234,22 @@ def test_the_discount_is_named_where_it_alone_loses_more_than_is_allowed(
 def test_a_block_that_is_no_rectangle_is_refused() -> None:
     with pytest.raises(InputError, match="must be an upright rectangle"):
         advise_wave(load_scene("quadrilateral"), 5.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "values"),
+    [
+        ("wbz", {"time.rho_inf": 0.2}),
+        ("chung-hulbert", {"time.rho_inf": 0.0}),
+        ("leapfrog", {"time.start": "consistent", "time.step": 0.001}),
+    ],
+)
+def test_other_schemes_are_advised_by_their_own_wavenumber(scheme: str, values: dict[str, object]) -> None:
+    scene = COLUMN.with_values({"time.scheme": scheme} | values)
+    found = advise_wave(scene, 10.0, wavelengths=5.0, loss=0.2, phase_error=0.2)
+    column = Column(2.0, 2700.0, 1e9)
+    share, speed_error = column.travelled(Stepping.of(scene), [2 * np.pi * 10.0], found.distance)
+    assert found.present.loss == pytest.approx(1 - share[0], rel=1e-6, abs=1e-12)  # but for the glue
+    assert np.sign(found.present.delay) == -np.sign(speed_error[0])
+    assert found.advised is not None
+    assert (found.advised.loss == pytest.approx(0, abs=1e-12)) == (scheme == "leapfrog")

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from dda.scheme.spectral import critical_omega
 from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency, percent
@@ -320,14 +319,15 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
 
     A discount that keeps its rate changes with the step, and with it the critical w dt of the scheme.
     """
-    t = scene.time
-    if 2 * t.alpha >= t.delta >= 0.5:
+    scheme = Stepping.of(scene)
+    # without a limit at any discount: Newmark's with 2 alpha >= delta >= 1/2, and every other implicit scheme
+    is_newmark = scheme.scheme == "newmark"
+    if 2 * scheme.alpha >= scheme.delta >= 0.5 if is_newmark else scheme.scheme != "leapfrog":
         return lambda step: True
     highest = highest_frequency(_advised_scene(scene, path))
 
     def is_stable(step: float) -> bool:
-        stepping = Stepping.of(scene).at(step)
-        return step * highest <= critical_omega(stepping.alpha, stepping.delta, stepping.gg)
+        return step * highest <= scheme.at(step).critical_omega
 
     return is_stable
 
