@@ -80,6 +80,7 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_report",
     "test_rotation_orders",
     "test_rotation_solver",
+    "test_scheme_verdicts",
     "test_site",
     "test_site_program",
     "test_slipping_pack",

@@ -60,7 +60,7 @@ PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names ar
 PROBED = 40  # steps of such a run
 SAME_PROGRAM = 1e-8  # relative difference, of roundings
 HIDDEN_FAMILY = 0.001  # the same for a scheme or a contact method of another kind: of these many are near to each other
-LEAST_LANDINGS = 3  # of which the first gives any restitution, and the others say that it is one
+LEAST_LANDINGS = 2  # of which the first gives any restitution, and the second says that it is one
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
