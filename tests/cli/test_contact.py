@@ -59,6 +59,16 @@ def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_s
     assert stiffer["step_now"] == now["step_now"]
 
 
+def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
+    stop = ("contact.stiffness=inf", "contact.shear_stiffness=0", 'contact.rule="impact"', "contact.restitution=0.5")
+    sets = [word for value in (*stop, "time.step=0.001", "time.steps=8") for word in ("--set", value)]
+    done = typed("contact", "unlocked-average", *sets, "--json")
+    assert done.returncode == 0, done.stderr
+    page = json.loads(done.stdout)
+    assert page["needed"] is None
+    assert {"dda", "block-events"} <= set(page["runs"])
+
+
 def test_a_scene_that_dda_does_not_take_is_refused_by_the_solvers_name() -> None:
     more = ("--set", "block.subdivide=[2, 2]", "--set", "damping.mass=1.0")
     assert "solver dda does not apply: it does not handle" in refused("contact", "unlocked-constant", *SHORT, *more)

@@ -123,6 +123,11 @@ def test_newmarks_rebounds_are_those_of_the_other_program_with_kinetic_damping_t
     assert rebound_statistics(steps, gg, 2000).mean == pytest.approx(mean, abs=1e-5)
 
 
+def test_energy_conserving_contact_has_no_rigid_stop():
+    with pytest.raises(ValueError, match="omega: must be finite"):
+        conserving_steps(math.inf)
+
+
 @pytest.mark.parametrize("omega", [0.1, 0.7, 1.9, 4.0, 1e3])
 def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
     assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)

@@ -130,7 +130,8 @@ def answer(
         "penetration": DEFAULT_PENETRATION if penetration is None else penetration,
     }
     need = None
-    if requested or slides is None:
+    has_springs = scene.contact.rule != "impact"  # an impact law is one of rigid contact
+    if has_springs and (requested or slides is None):
         need = contact.needed(scene, speed, limits["restitution_error"], limits["penetration"], probe)
     alarms = itertools.chain.from_iterable(alarms_of(scene, rows) for alarms_of in ALARMS)
     return {

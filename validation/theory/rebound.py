@@ -118,8 +118,16 @@ def pressing_force(omega: float, zeta: float, x: Array, v: Array, C: float, D: f
 
 
 def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
-    """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0)."""
+    """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range; a rigid stop stores no energy.
+    """
     check(omega, gg, 0.0)
+    if math.isinf(omega):
+        raise ValueError("omega: must be finite with energy-conserving contact, got inf")
     k = omega * omega
 
     def advance(start: Motion) -> Motion:
