@@ -70,7 +70,7 @@ def data_of(page: str) -> list[dict]:
 
 def test_a_page_for_each_study_scene_and_calculator(gallery: dict[str, str]) -> None:
     pages = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index", "references"}
-    pages |= {"damping", "adviser", "rebound", "wave"}
+    pages |= {"damping", "adviser", "rebound", "wave", "schemes", "dashpot", "engines"}
     assert {f"{page}.html" for page in pages} | {*site.STATIC, site.NOTICE} == set(gallery)
     for name, text in gallery.items():
         for address in re.findall(r'(?:href|src)="([^"#]+)"', text) if name.endswith(".html") else ():

@@ -87,7 +87,9 @@ def seen(scene: Scene) -> dict[str, Any]:
     if scene.column is not None:
         return seen_of_column(scene, scene.column)
     block = scene.block.model_dump(exclude={"side", "width", "height"}) | {"outline": scene.block.outline}
-    contact = scene.contact.model_dump() | {"shear_stiffness": scene.contact.shear}
+    # no problem has a dashpot, an impact law or passes of an augmented Lagrangian
+    contact = scene.contact.model_dump(exclude={"damping_ratio", "restitution", "penetration"})
+    contact["shear_stiffness"] = scene.contact.shear
     load = scene.load.model_dump(exclude={"ramp"})  # no exact motion is known under a ramp, and so no problem has one
     return block | contact | load | {"geometry": scene.run.geometry}
 

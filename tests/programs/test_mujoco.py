@@ -103,6 +103,7 @@ def test_says_what_it_is() -> None:
     assert MuJoCo().about["settings"] != AsItComes().about["settings"]
     beyond = {features.RAMP, features.SUB_BLOCKS, features.DEAD_BAND, features.RIGID, features.LAGGED, features.DAMPING}
     beyond |= {features.ADAPTIVE, features.RIGID_BLOCKS, features.RIGID_JOINTS} | features.OF_MOVING_COLUMN
+    beyond |= features.SCHEMES | features.CONTACT_METHODS
     assert MuJoCo.handles == {feature.name for feature in features.FEATURES} - beyond
 
 

@@ -16,7 +16,8 @@ PLACE = Path("docs") / "examples" / "ntdda"  # in the repository, which has one 
 PRESSED = ("ntdda-p1E-dt2ms_meas.m", "scene.toml", {"contact.law": "unilateral"})
 ON_SLOPE = ("ntdda-phi22-slope20-dt2ms_meas.m", "slope.toml", {})
 # How DDA steps and iterates is in the data; Poisson's ratio is 0 in them, and shear springs are idle without a slope.
-UNREAD = {"alpha", "delta", "start", "allow_unstable", "steps", "rule", "rules", "solve_limit", "cut", "hypothesis"}
+SCHEME = {"scheme", "alpha", "delta", "rho_inf", "split", "start", "allow_unstable", "steps"}
+UNREAD = {*SCHEME, "rule", "rules", "solve_limit", "cut", "penetration", "hypothesis"}
 GIVEN_ONCE = {
     "side",
     "width",
@@ -93,7 +94,7 @@ def facts(scene: Scene) -> dict[str, Any]:
     found = {
         f"{name}.{key}": value
         for name, table in tables.items()
-        for key, value in table.model_dump().items()
+        for key, value in table.model_dump(by_alias=True).items()
         if key not in UNREAD | GIVEN_ONCE
     }
     shear = scene.contact.shear if scene.load.gravity else None
