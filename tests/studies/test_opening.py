@@ -35,7 +35,7 @@ def carrying(sound: Callable[..., Any]) -> Callable[..., Any]:
 
     def solve(problem: Any, end: float) -> Any:
         motion = sound(problem, end)
-        names = ("switches", "touches", "simultaneous", "radius", "bars")
+        names = ("switches", "touches", "simultaneous", "radius", "bars", "impacts", "cascades", "problem")
         known = {name: getattr(motion, name) for name in names if hasattr(motion, name)}
         return SimpleNamespace(at=lambda t: pressed(motion.at(t)), **known)
 
