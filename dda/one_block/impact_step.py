@@ -21,7 +21,6 @@ import math
 from dda.contact.dense import Vector, dot, multiply, quadratic
 from dda.contact.impact import impulses
 from dda.contact.kernel import FOUND, Shear
-from dda.model.load import load_share
 from dda.one_block.unilateral_step import (
     BlockEquations,
     BlockState,
@@ -29,6 +28,7 @@ from dda.one_block.unilateral_step import (
     begin_step,
     keep,
     length_of,
+    mean_share,
 )
 from dda.scheme.newmark import acceleration_corrector
 from dda.stepping.driver import BaseRecord, Part, driver
@@ -52,8 +52,7 @@ def advance(
     theta = math.sqrt(block.last.numbers.alpha)
     begin_step(block, state, length)
     if block.ramp > 0:
-        share = (1 - theta) * load_share(block.ramp, part.begun * block.step)
-        share += theta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
+        share = mean_share(block, part, theta)
         for i in range(n):
             length.F[i] = share * h * h * block.load[i]
     start = room.change  # h u
@@ -109,8 +108,7 @@ def account(
         sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
     share = 1.0
     if block.ramp > 0:
-        share = (1 - theta) * load_share(block.ramp, part.begun * block.step)
-        share += theta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
+        share = mean_share(block, part, theta)
     change = room.change
     stored = 0.0
     for i in range(n):

@@ -676,8 +676,7 @@ def account_newmark(
             block.law, shear_law, state.contacts, after.contacts, slipped, room.slide, carried, late, h, share, sums
         )
     if block.ramp > 0:  # what a load that rises does beside the work of the whole one
-        share = (1 - delta) * load_share(block.ramp, part.begun * block.step)
-        share += delta * load_share(block.ramp, (part.begun + part.ratio) * block.step)
+        share = mean_share(block, part, delta)
         for i in range(n):
             moved = room.change[i] + dot(block.translation[i], carried, 2)
             sums[GIVEN] += (share - 1) * block.load[i] * moved
@@ -696,6 +695,13 @@ def account_newmark(
         kinetic = stored / 2 / dt2 / dt2
         kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
     sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic, kinetic_of_change)
+
+
+def mean_share(block: BlockEquations, part: Part, late: float) -> float:
+    """Return the share of a load that rises which acts over a part of a step, `late` of it as at its end."""
+    begin = load_share(block.ramp, part.begun * block.step)
+    end = load_share(block.ramp, (part.begun + part.ratio) * block.step)
+    return (1 - late) * begin + late * end
 
 
 def account_by_balance(
