@@ -22,6 +22,7 @@ class Feature:
     present: Callable[[Scene], bool]
     linear: bool = True
     of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
+    of_boxes: bool = False  # whether rigid boxes can have it
 
 
 def _law(scene: Scene) -> str | None:
@@ -38,6 +39,7 @@ FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "lar
 COLUMN = "column"
 UNILATERAL_COLUMN, FRICTIONAL_COLUMN = "column that opens", "column that slips"
 RIGID_BLOCKS, RIGID_JOINTS = "rigid blocks", "rigid joints"
+RIGID_BOXES = "rigid boxes"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 DASHPOTS, IMPACT, AUGMENTED = "contact dashpots", "impact law", "augmented Lagrangian"
@@ -77,6 +79,7 @@ FEATURES = (
         linear=False,
         of_columns=True,
     ),
+    Feature(RIGID_BOXES, lambda scene: scene.rigid is not None, linear=False, of_boxes=True),
     Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
     Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),
     Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
@@ -103,8 +106,12 @@ FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than t
 
 
 def _present(scene: Scene) -> tuple[Feature, ...]:
-    candidates = FEATURES if scene.column is None else [feature for feature in FEATURES if feature.of_columns]
-    return tuple(feature for feature in candidates if feature.present(scene))
+    candidates = {
+        "block": [feature for feature in FEATURES if not feature.of_boxes],
+        "column": [feature for feature in FEATURES if feature.of_columns],
+        "rigid": [feature for feature in FEATURES if feature.of_boxes],
+    }
+    return tuple(feature for feature in candidates[scene.kind] if feature.present(scene))
 
 
 def of(scene: Scene) -> tuple[str, ...]:
@@ -199,8 +206,8 @@ def refuse_column(scene: Scene, what: str) -> None:
     InputError
         The scene has a column.
     """
-    if scene.column is not None:
-        raise InputError(f"{what} takes scenes of a block only", source=scene.name, value="one with a column")
+    if scene.kind != "block":
+        raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
 
 
 def refuse_bonded_column(scene: Scene, what: str) -> None:

@@ -1,4 +1,4 @@
-"""The tables that a scene states, of a block or of a column, and which of them go together."""
+"""The tables that a scene states, of a block, of a column or of rigid boxes, and which of them go together."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from validation.errors import InputError
 from validation.scenes.column import ColumnSection, InputSection
 from validation.scenes.keys import Section
+from validation.scenes.rigid import POSE, RigidSection
 from validation.scenes.tables import (
     BlockSection,
     ContactSection,
@@ -18,20 +19,26 @@ from validation.scenes.tables import (
 )
 
 Table = TypeVar("Table", bound=Section)
-OF_BLOCK, OF_COLUMN = ("block", "contact", "load"), ("column", "input")  # tables that exclude each other
+# The tables of each kind of scene, which exclude each other; the first one says which kind it is.
+OF_KIND = {
+    "block": ("block", "contact", "load"),
+    "column": ("column", "input"),
+    "rigid": ("rigid",),
+}
 # the solvers that run a column's scene which names none, by the law of its springs
 TAKE_COLUMNS = {
     "bonded": ("dda", "fem", "layers"),
     "unilateral": ("dda", "column-events"),
     "frictional": ("dda", "column-events"),
 }
+TAKE_RIGID = ("rigid-exact",)  # the solvers that run a scene of rigid boxes which names none
 
 
 class SceneTables(Section):
-    """A block on its contact under a load, or a column under an input.
+    """A block on its contact under a load, a column under an input, or rigid boxes on a plane.
 
     Whoever asks for a table that the scene does not have is refused (`block`, `contact`, `load`, `input`), so that no
-    one takes one kind for the other; `stated_block` and its neighbours are None there.
+    one takes one kind for another; `stated_block` and its neighbours are None there.
     """
 
     name: str = "scene"
@@ -42,63 +49,91 @@ class SceneTables(Section):
     stated_load: LoadSection | None = Field(None, alias="load")
     column: ColumnSection | None = None
     stated_input: InputSection | None = Field(None, alias="input")
+    rigid: RigidSection | None = None
     damping: DampingSection = DampingSection()
     fem: FemSection = FemSection()
 
     @property
     def block(self) -> BlockSection:
-        """The block; refused where the scene has a column."""
+        """The block; refused where the scene is of another kind."""
         return self._present("block", self.stated_block)
 
     @property
     def contact(self) -> ContactSection:
-        """The block's contact; refused where the scene has a column."""
+        """The block's contact; refused where the scene is of another kind."""
         return self._present("contact", self.stated_contact)
 
     @property
     def load(self) -> LoadSection:
-        """The block's load; refused where the scene has a column."""
+        """The block's load; refused where the scene is of another kind."""
         return self._present("load", self.stated_load)
 
     @property
     def input(self) -> InputSection:
-        """What drives the column; refused where the scene has a block."""
+        """What drives the column; refused where the scene is of another kind."""
         return self._present("input", self.stated_input)
 
     def _present(self, field: str, table: Table | None) -> Table:
         if table is None:
-            kind = "column" if self.column is not None else "block"
-            raise InputError("is needed for what is asked", source=self.name, field=field, value=f"a scene of a {kind}")
+            raise InputError("is needed for what is asked", source=self.name, field=field, value=self.kind_in_words)
         return table
+
+    @property
+    def kind(self) -> str:
+        """Kind of the scene: ``"block"``, ``"column"`` or ``"rigid"``."""
+        if self.rigid is not None:
+            return "rigid"
+        return "block" if self.column is None else "column"
+
+    @property
+    def kind_in_words(self) -> str:
+        """Kind of the scene, for messages."""
+        return "a scene of rigid boxes" if self.kind == "rigid" else f"a scene of a {self.kind}"
 
     @model_validator(mode="before")
     @classmethod
     def _choose_solvers(cls, data: Any) -> Any:
-        """Let a column's scene that names no solvers be run by those that take it."""
-        if isinstance(data, dict) and "column" in data and isinstance(run := data.get("run", {}), dict):
+        """Let a scene of a column or of rigid boxes that names no solvers or columns have those of its kind."""
+        if not isinstance(data, dict) or not isinstance(run := data.get("run", {}), dict):
+            return data
+        if "column" in data:
             column = data["column"]
             law = str(column.get("law")) if isinstance(column, dict) else ""
             solvers = TAKE_COLUMNS.get(law, TAKE_COLUMNS["bonded"])
             return {**data, "run": {"solvers": list(solvers), **run}}
+        if "rigid" in data:
+            rigid = data["rigid"]
+            boxes = rigid.get("box", ()) if isinstance(rigid, dict) else ()
+            poses = [f"{part}_{number}" for number in range(1, len(boxes) + 1) for part in POSE]
+            return {**data, "run": {"solvers": list(TAKE_RIGID), "columns": poses or list(POSE), **run}}
         return data
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:
-        stated_tables = {field: getattr(self, f"stated_{field}") for field in (*OF_BLOCK, "input")} | {
-            "column": self.column
-        }
-        required, other = (OF_COLUMN, OF_BLOCK) if self.column is not None else (OF_BLOCK, OF_COLUMN)
-        for field in other:
-            if stated_tables[field] is not None:
-                raise ValueError(
-                    f"{field}: does not go {'with' if self.column else 'without'} column, got a table of it"
-                )
+        tables = {"block": self.stated_block, "contact": self.stated_contact, "load": self.stated_load}
+        tables |= {"column": self.column, "input": self.stated_input, "rigid": self.rigid}
+        required = OF_KIND[self.kind]
+        for field, table in tables.items():
+            if table is not None and field not in required:
+                preposition = "without column" if field in OF_KIND["column"] else f"with {self.kind}"
+                raise ValueError(f"{field}: does not go {preposition}, got a table of it")
         for field in required:
-            if stated_tables[field] is None and not (field == "input" and self._moves_alone()):
+            if tables[field] is None and not (field == "input" and self._moves_alone()):
                 raise ValueError(f"{field}: is required, got nothing")
         if self.column is not None and (more := sorted(self.fem.model_fields_set - {"elements", "degree"})):
             raise ValueError(f"fem: {more[0]} does not go with column, got {getattr(self.fem, more[0])!r}")
+        if self.rigid is not None:
+            self._check_rigid(self.rigid)
         return self
+
+    def _check_rigid(self, rigid: RigidSection) -> None:
+        run: RunSection = self.run  # type: ignore[attr-defined]
+        for name in run.columns:
+            if name not in rigid.columns:
+                raise ValueError(f"run: columns must be among {', '.join(rigid.columns)}, got {name!r}")
+        for field in ("damping", "fem"):
+            if field in self.model_fields_set:
+                raise ValueError(f"{field}: does not go with rigid, got a table of it")
 
     def _moves_alone(self) -> bool:
         """Tell whether weight or velocities at t = 0 move a column that nothing drives."""

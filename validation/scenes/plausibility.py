@@ -60,7 +60,7 @@ def implausible_values(scene: Scene) -> list[Implausible]:
         values += units or [*_wave(body), *_strain(body)]
     for field, angle in _friction_angles(scene):
         values += _friction(field, angle)
-    if scene.column is None:
+    if scene.kind == "block":
         values += _damping_ratio(scene.contact.damping_ratio)
     return values
 
@@ -91,6 +91,8 @@ _WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is clea
 
 
 def _bodies(scene: Scene) -> Iterator[_Body]:
+    if scene.rigid is not None:  # no modulus, and so neither speed nor strain
+        return
     if scene.column is not None:
         yield from _layers(scene, scene.column)
         return
@@ -126,6 +128,9 @@ def _layers(scene: Scene, column: ColumnSection) -> Iterator[_Body]:
 
 
 def _friction_angles(scene: Scene) -> Iterator[tuple[str, float | None]]:
+    if scene.rigid is not None:
+        yield "rigid.friction", scene.rigid.friction
+        return
     if scene.column is None:
         yield "contact.friction", scene.contact.friction
         return

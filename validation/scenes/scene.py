@@ -71,7 +71,7 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check_pressed_part(self) -> Self:
-        if self.column is not None:
+        if self.kind != "block":
             return self
         (x1, y1), (x2, y2) = self.block.edge(self.block.top)
         half = math.hypot(x2 - x1, y2 - y1) / 2
@@ -89,7 +89,7 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check_rule(self) -> Self:
-        if self.column is not None or self.contact.rule in ("newmark", "augmented"):
+        if self.kind != "block" or self.contact.rule in ("newmark", "augmented"):
             return self
         rule = f"rule = {self.contact.rule!r}"
         t = self.time

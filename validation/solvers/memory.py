@@ -24,7 +24,9 @@ GIGABYTE = 1e9
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    if scene.column is not None:
+    if scene.rigid is not None:
+        model = 0.0, "rigid.box"
+    elif scene.column is not None:
         model = _column(scene, solver)
     else:
         model = _mesh(scene, solver) if solver.meshed else _blocks(scene)

@@ -64,8 +64,11 @@ def _failed(run: Run, outcome: Outcome, note: str) -> Run:
 def reach(scene: Scene) -> float:
     """Return the bound of the displacement that the load and the given energy of a scene can drive [m].
 
-    It is infinite where the motion of the base cannot be read: the solver that ran the scene has not read it either.
+    It is infinite where the motion of the base cannot be read: the solver that ran the scene has not read it either;
+    and of rigid boxes, whose columns are positions.
     """
+    if scene.rigid is not None:
+        return math.inf
     with np.errstate(all="ignore"):
         try:
             bound = _reach_of_block(scene) if scene.column is None else _reach_of_column(scene)

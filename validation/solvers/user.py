@@ -244,7 +244,7 @@ def factor(name: str, values: Array, expected: Array, scene: Scene) -> str | Non
             return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
     if correlation < 0:
         return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
-    width = 1.0 if scene.column is not None else scene.block.base_length
+    width = scene.block.base_length if scene.kind == "block" else 1.0
     if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:
         return f"wrong units: {name} is {width:g} times what is expected, the length of the base: a force?"
     return None

@@ -14,15 +14,57 @@ HABIT = "dda"
 FINE = "dda-fine"
 ELEMENTS = "fem"
 APT = "pip install examples/peers, and apt install"
-RECIPES = {  # name to title and recipe
-    "opensees": ("OpenSees", "pip install 'examples/peers[opensees]'"),
-    "mujoco": ("MuJoCo", "pip install 'examples/peers[mujoco]'"),
-    "siconos": ("Siconos", f"{APT} python3-siconos"),
-    "yade": ("Yade", f"{APT} yade"),
-    "calculix": ("CalculiX", f"{APT} calculix-ccx"),
-    "ntdda": ("ntdda", "pip install examples/peers; its histories come with it"),
-}
-WITHOUT_DEFAULT = ("ntdda",)
+NEWTON = "pip install 'examples/peers[newton]'"
+
+
+@dataclass(frozen=True)
+class Known:
+    """A program whose adapter the suite has.
+
+    Attributes
+    ----------
+    name, title
+        Of the solver, and what people call the program.
+    recipe
+        How it is installed.
+    springs, boxes
+        Whether it is asked the problems of blocks on springs, and those of rigid boxes.
+    default
+        Whether it stands there as it comes as well.
+    family
+        What it is made for: ``"mechanics"``, ``"robotics"`` or ``"games"``; the curves mark the best of each.
+    halvings
+        How often its own step is halved for the curves of error over cost: as often as `BUDGET` allows, measured.
+    """
+
+    name: str
+    title: str
+    recipe: str
+    springs: bool = False
+    boxes: bool = False
+    default: bool = True
+    family: str = "mechanics"
+    halvings: int = 4
+
+
+KNOWN = (
+    Known("opensees", "OpenSees", "pip install 'examples/peers[opensees]'", springs=True),
+    Known("mujoco", "MuJoCo", "pip install 'examples/peers[mujoco]'", springs=True, boxes=True, family="robotics"),
+    Known("siconos", "Siconos", f"{APT} python3-siconos", springs=True, boxes=True),
+    Known("yade", "Yade", f"{APT} yade", springs=True),
+    Known("calculix", "CalculiX", f"{APT} calculix-ccx", springs=True),
+    Known("ntdda", "ntdda", "pip install examples/peers; its histories come with it", springs=True, default=False),
+    Known("lmgc90", "LMGC90", "pip install 'examples/peers[lmgc90]'", boxes=True),
+    Known("exudyn", "Exudyn", "pip install 'examples/peers[exudyn]'", boxes=True),
+    Known("drake", "Drake", "pip install 'examples/peers[drake]'", boxes=True, family="robotics"),
+    Known("dart", "DART", "pip install 'examples/peers[dart]'", boxes=True, family="robotics"),
+    Known("bullet", "Bullet", "pip install 'examples/peers[bullet]'", boxes=True, family="robotics"),
+    Known("newton-xpbd", "Newton XPBD", NEWTON, boxes=True, family="robotics"),
+    Known("newton-semi-implicit", "Newton SemiImplicit", NEWTON, boxes=True, family="robotics"),
+    Known("box2d", "Box2D", "pip install 'examples/peers[box2d]'", boxes=True, family="games"),
+    Known("pymunk", "pymunk", "pip install 'examples/peers[pymunk]'", boxes=True, family="games"),
+)
+BUDGET = 20.0  # s that the finest run of a curve may take, about, on one core
 
 
 @dataclass(frozen=True)
@@ -94,18 +136,21 @@ OWN = (
 
 
 def known() -> Iterator[Program]:
-    """Yield the programs whose adapters the suite has, installed or not."""
+    """Yield the programs of blocks on springs whose adapters the suite has, installed or not."""
     entry_point_names = entry_points()
-    for name, (title, recipe) in RECIPES.items():
-        yield Program(name, title, recipe, "chosen", name in entry_point_names)
-        if name not in WITHOUT_DEFAULT:
-            default_name = name + DEFAULT
-            yield Program(default_name, f"{title}, as it comes", recipe, "default", default_name in entry_point_names)
+    for one in KNOWN:
+        if not one.springs:
+            continue
+        yield Program(one.name, one.title, one.recipe, "chosen", one.name in entry_point_names)
+        if one.default:
+            default_name = one.name + DEFAULT
+            title = f"{one.title}, as it comes"
+            yield Program(default_name, title, one.recipe, "default", default_name in entry_point_names)
 
 
 def brought() -> Iterator[Program]:
     """Yield the solvers that other installed packages bring."""
-    names = {program.name for program in known()}
+    names = {name for one in KNOWN for name in (one.name, one.name + DEFAULT)}
     for name in entry_points():
         if name not in names:
             yield Program(name, name, "", "user", True)

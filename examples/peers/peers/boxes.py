@@ -1,0 +1,83 @@
+"""Rigid boxes for programs of contact: the program's own step beside the instants of a scene, and the columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from validation.runs.history import Array
+from validation.scenes.rigid import RigidSection
+from validation.scenes.scene import Scene
+
+Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
+ROUNDING = 1e-9
+
+
+def boxes_of(scene: Scene) -> RigidSection:
+    """Return the rigid boxes of a scene.
+
+    Raises
+    ------
+    NotImplementedError
+        The scene is of a block or a column.
+    """
+    if scene.rigid is None:
+        raise NotImplementedError("rigid boxes only: its bodies neither strain nor stand on springs of given stiffness")
+    return scene.rigid
+
+
+def substeps(scene: Scene, own_step: float) -> int:
+    """Return how many steps a program makes in one of the scene's.
+
+    Parameters
+    ----------
+    scene
+        A scene of rigid boxes; `rigid.refine` says how often the program's step is halved.
+    own_step
+        The step that the program is used with [s].
+    """
+    return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
+
+
+def record(
+    scene: Scene,
+    own_step: float,
+    advance: Callable[[float, float], None],
+    poses: Callable[[], Sequence[Pose]],
+    forces: Callable[[], Sequence[float]] | None = None,
+) -> dict[str, Array]:
+    """Step a program through a scene and return its columns.
+
+    Parameters
+    ----------
+    scene
+        A scene of rigid boxes.
+    own_step
+        The step that the program is used with [s]; see `substeps`.
+    advance
+        Makes one step: called with the instant at which it begins [s] and its length [s].
+    poses
+        Position and angle of each box, in the order of the scene.
+    forces
+        Normal force below each box [N]; absent where the program tells none.
+
+    Returns
+    -------
+    Column name to values, one a step of the scene. Rows after a position that is no number are NaN.
+    """
+    per_row = substeps(scene, own_step)
+    step = scene.time.step / per_row
+    count = len(boxes_of(scene).box)
+    rows = np.full((scene.time.steps, count, 3 if forces is None else 4), np.nan)
+    for row in range(scene.time.steps):
+        for part in range(per_row):
+            advance((row * per_row + part) * step, step)
+        rows[row, :, :3] = poses()
+        if forces is not None:
+            rows[row, :, 3] = forces()
+        if not np.isfinite(rows[row, :, :3]).all():
+            break
+    names = ("x", "y", "angle", "force")[: rows.shape[2]]
+    return {f"{name}_{box + 1}": rows[:, box, column] for box in range(count) for column, name in enumerate(names)}
