@@ -110,8 +110,14 @@ class SceneTables(Section):
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:
-        tables = {"block": self.stated_block, "contact": self.stated_contact, "load": self.stated_load}
-        tables |= {"column": self.column, "input": self.stated_input, "rigid": self.rigid}
+        tables: dict[str, Section | None] = {
+            "block": self.stated_block,
+            "contact": self.stated_contact,
+            "load": self.stated_load,
+            "column": self.column,
+            "input": self.stated_input,
+            "rigid": self.rigid,
+        }
         required = OF_KIND[self.kind]
         for field, table in tables.items():
             if table is not None and field not in required:
@@ -122,18 +128,9 @@ class SceneTables(Section):
                 raise ValueError(f"{field}: is required, got nothing")
         if self.column is not None and (more := sorted(self.fem.model_fields_set - {"elements", "degree"})):
             raise ValueError(f"fem: {more[0]} does not go with column, got {getattr(self.fem, more[0])!r}")
-        if self.rigid is not None:
-            self._check_rigid(self.rigid)
+        if self.rigid is not None and (apart := {"damping", "fem"} & self.model_fields_set):
+            raise ValueError(f"{min(apart)}: does not go with rigid, got a table of it")
         return self
-
-    def _check_rigid(self, rigid: RigidSection) -> None:
-        run: RunSection = self.run  # type: ignore[attr-defined]
-        for name in run.columns:
-            if name not in rigid.columns:
-                raise ValueError(f"run: columns must be among {', '.join(rigid.columns)}, got {name!r}")
-        for field in ("damping", "fem"):
-            if field in self.model_fields_set:
-                raise ValueError(f"{field}: does not go with rigid, got a table of it")
 
     def _moves_alone(self) -> bool:
         """Tell whether weight or velocities at t = 0 move a column that nothing drives."""

@@ -82,6 +82,14 @@ class Scene(SceneTables):
         return self
 
     @model_validator(mode="after")
+    def _check_columns_of_boxes(self) -> Self:
+        if self.rigid is not None:
+            for name in self.run.columns:
+                if name not in self.rigid.columns:
+                    raise ValueError(f"run: columns must be among {', '.join(self.rigid.columns)}, got {name!r}")
+        return self
+
+    @model_validator(mode="after")
     def _check_discount(self) -> Self:
         if self.damping.kinetic == "adaptive" and self.time.discount != 1:
             raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
