@@ -1,4 +1,4 @@
-"""The table of rigid boxes on a plane, `[rigid]`, which stands in the place of a block: what contact engines simulate."""
+"""The table of rigid boxes on a plane, `[rigid]`, in the place of a block: what contact engines simulate."""
 
 from __future__ import annotations
 
