@@ -217,7 +217,7 @@ class DDA(Solver):
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why a band and friction do not go together, or what boxes DDA has no blocks for."""
         if scene.rigid is not None:
-            from validation.solvers.rigid.as_blocks import refusal
+            from validation.solvers.boxes import refusal
 
             return refusal(scene.rigid)
         consistent = {features.FRICTION, features.DEAD_BAND} <= set(features.of(scene)) and (
@@ -236,7 +236,7 @@ class DDA(Solver):
 
             return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme_of(scene))
         if scene.rigid is not None:
-            from validation.solvers.rigid.as_blocks import BlocksOfBoxes
+            from validation.solvers.boxes import BlocksOfBoxes
 
             return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
         if features.ROTATION in features.of(scene):
