@@ -106,7 +106,7 @@ class AsItComes(Box2D):
     """Box2D with every setting at its default, at the step and the sub-steps of its documentation."""
 
     default = True
-    settings = "step 1/60 s in 4 sub-steps; no restitution below 1 m/s, contact of 30 Hz and damping ratio 10, sleeping allowed"
+    settings = "step 1/60 s in 4 sub-steps; contact of 30 Hz, no restitution below 1 m/s, sleeping allowed"
 
 
 def program() -> Any:
