@@ -84,7 +84,7 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     kind = next((kind for kind in ("rigid", "column") if kind in data), "block")
     absent = [place for other, places in OF_KIND.items() if other != kind for place in places]
     if kind == "rigid":
-        absent += ["damping", "fem"]  # of blocks and columns
+        absent += set(tables) - {"rigid", "time", "run", "gate"}
     known_keys = []
     for place, table in tables.items():
         if place and place.partition(".")[0] not in absent:
