@@ -1,14 +1,16 @@
-"""What is measured on the positions of rigid boxes: nothing else of a program is needed, and nothing is taken on trust."""
+"""What is measured on the positions of rigid boxes: nothing else of a program is needed or taken on trust."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
 from validation.scenes.rigid import BoxSection, RigidSection
 
+Rows = NDArray[np.bool_]
 SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included
 LATE = 2.0  # s at the end of a run, over which its last energy is taken
 
@@ -18,7 +20,7 @@ def column(history: History, part: str, box: int = 1) -> Array:
     return history.columns[f"{part}_{box}"]
 
 
-def in_flight(history: History, gravity: float) -> Array:
+def in_flight(history: History, gravity: float) -> Rows:
     """Return at which rows a box flies freely, both its neighbours being of the same flight; never at the ends.
 
     In free flight y is a parabola, at the rows of an exact motion and at those of every usual time step alike: its
