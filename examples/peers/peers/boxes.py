@@ -41,6 +41,36 @@ def substeps(scene: Scene, own_step: float) -> int:
     return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
 
 
+def ground_ends(scene: Scene) -> tuple[float, float]:
+    """Return x of both ends of a ground that no box leaves [m].
+
+    For programs whose ground has ends: a box slides without friction, its speed at first and that of its fall turned
+    along the ground, and rolls over a few times beside that.
+    """
+    rigid = boxes_of(scene)
+    duration = scene.time.steps * scene.time.step
+    fastest = max(
+        math.sqrt(math.hypot(*box.velocity) ** 2 + box.inertia / box.mass * box.spin**2 + 2 * rigid.gravity * box.lift)
+        for box in rigid.box
+    )
+    margin = 10.0 + 4 * sum(box.width + box.height for box in rigid.box) + 4 * abs(rigid.base_amplitude)
+    along, _ = rigid.pull
+    free = along * duration**2 / 2
+    starts = [box.x for box in rigid.box]
+    left = min(starts) - margin - fastest * duration + min(free, 0.0)
+    right = max(starts) + margin + fastest * duration + max(free, 0.0)
+    return left, right
+
+
+def base_velocity(scene: Scene, start: float, step: float, position: float) -> float:
+    """Return the velocity [m/s] that takes the ground from where it is [m] to where it must be at the end of a step.
+
+    Read back from the program before every step, so that its rounding does not add up.
+    """
+    end, _ = boxes_of(scene).base(start + step)
+    return (end - position) / step
+
+
 def record(
     scene: Scene,
     own_step: float,
