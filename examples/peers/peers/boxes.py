@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from validation.runs.history import Array
-from validation.scenes.rigid import RigidSection
+from validation.scenes.rigid import FORCE, POSE, RigidSection
 from validation.scenes.scene import Scene
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
@@ -118,5 +118,11 @@ def record(
             rows[row, :, 3] = forces()
         if not np.isfinite(rows[row, :, :3]).all():
             break
-    names = ("x", "y", "angle", "force")[: rows.shape[2]]
-    return {f"{name}_{box + 1}": rows[:, box, column] for box in range(count) for column, name in enumerate(names)}
+    return named(rows)
+
+
+def named(rows: Array) -> dict[str, Array]:
+    """Return columns by name from x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4)."""
+    names = (*POSE, FORCE)[: rows.shape[2]]
+    boxes = range(rows.shape[1])
+    return {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}

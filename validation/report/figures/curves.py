@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
+from validation.scenes import rigid
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Role
 from validation.solvers.registry import by_role, get_solver, is_solver
@@ -22,6 +23,7 @@ from validation.solvers.registry import by_role, get_solver, is_solver
 TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
 RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
 MOST_DOTS = 400  # samples; more dots cannot be told apart
+ROUNDING = 1e-9  # m, rad, N: smaller positions, rotations and forces of rigid boxes are zero
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
 
@@ -35,9 +37,18 @@ COLUMNS = {
     **{name: (name.replace("_", " ").capitalize(), UNITS[name.partition("_")[0]]) for name in AT_HEIGHTS},
 }
 
+OF_BOXES = {"x": "x", "y": "y", "angle": "Rotation", "force": "Normal force"}  # the columns of each rigid box
 
 _OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
 _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
+
+
+def axis_of(column: str, of_boxes: bool = False) -> tuple[str, str]:
+    """Return what a column is, in words, and its unit; ``force_1`` is a stress in a column and a force on a box."""
+    part, _, number = column.rpartition("_")
+    if of_boxes and part in OF_BOXES:
+        return f"{OF_BOXES[part]}, box {number}", rigid.UNITS[part]
+    return COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
 
 
 def style_of(name: str) -> LineStyle:
@@ -111,6 +122,7 @@ class HistoryPanel:
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
+    of_boxes: bool = False  # whether its columns are those of rigid boxes
 
     def sparse(self, columns: Sequence[str]) -> list[str]:
         """Return the solvers that are drawn as dots in one of some columns."""
@@ -137,6 +149,8 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
         columns.append(np.ones(1))
     values = np.concatenate(columns)
     values = values[np.isfinite(values)]
+    if any(panel.of_boxes for panel in panels) and np.abs(values).max() < ROUNDING:
+        return -ROUNDING, ROUNDING  # a box that does not move is at rest, and not a line of rounding errors
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 
