@@ -14,6 +14,7 @@ from validation.solvers.user import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
+SPRING_RESOLUTION = 0.02  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
 def boxes_of(scene: Scene) -> RigidSection:
@@ -40,6 +41,14 @@ def substeps(scene: Scene, own_step: float) -> int:
         The step that the program is used with [s].
     """
     return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
+
+
+def spring_step(scene: Scene) -> float:
+    """Return a step that resolves a contact of given stiffness [s]; no bound where none is given."""
+    rigid = boxes_of(scene)
+    if rigid.stiffness is None:
+        return math.inf
+    return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
 
 
 def ground_ends(scene: Scene) -> tuple[float, float]:
