@@ -18,7 +18,6 @@ import numpy as np
 from validation.errors import InputError
 from validation.metrics import boxes as measures
 from validation.runs.history import History
-from validation.runs.row import Value
 from validation.scenes.rigid import FORCE, RigidSection
 from validation.scenes.scene import Scene, load_scene
 from validation.theory.boxes import (
