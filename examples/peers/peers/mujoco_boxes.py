@@ -1,9 +1,9 @@
 """Rigid boxes on MuJoCo's own contact.
 
 MuJoCo's contact is a law of accelerations: a point that touches is given a = -k r - b v, for its depth r and its
-velocity v, whatever else pushes it. With b = (1 + e) / h a step of length h turns an approach v into -e v: Newton's law in one
-step, where a spring would need a dozen. The tangents have a law of their own (`solreffriction`), b = 1 / h, which takes
-the sliding velocity to zero as far as Coulomb's cone allows.
+velocity v, whatever else pushes it. With b = (1 + e) / h a step of length h turns an approach v into -e v: Newton's
+law in one step, where a spring would need a dozen. The tangents have a law of their own (`solreffriction`), b = 1 / h,
+which takes the sliding velocity to zero as far as Coulomb's cone allows.
 
 A spring of given stiffness is the other end of the same law: with an impedance near zero the contact hardly counters
 what else pushes, and its force is proportional to the depth.
@@ -16,16 +16,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, spring_step, substeps
 from peers.mujoco_model import Columns, March, model_text, refuse
 from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
 STEP = 0.0005  # s
+TIME_CONSTANT = 0.02  # s: that of MuJoCo's contact as it comes
 IMPEDANCE = 0.9999  # the greatest that MuJoCo takes: how much of what else pushes a contact counters
 COMPLIANT = 0.0001  # the least
 CORRECTION_RATE = 1.0  # 1/s: depth decays so, slowly, for it throws a box up by as much
-SPRING_RESOLUTION = 0.02  # angular frequency times step of a box on a contact of given stiffness
 CORNERS = 4  # contact points of a box that lies flat
 HALF_DEPTH = 0.5  # m of boxes
 THICKNESS = 1.0  # m of a ground that moves
@@ -52,8 +52,7 @@ class World:
             )
             soft = "contact of given stiffness with friction: MuJoCo softens both together"
             refuse(soft, where=rigid.friction != 0)
-            resolved = SPRING_RESOLUTION / math.sqrt(rigid.stiffness / rigid.box[0].mass)
-            self.own_step = min(self.own_step, resolved)
+            self.own_step = min(self.own_step, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
         along, up = rigid.pull
         options = f'timestep="{step!r}"' if default else f'timestep="{step!r}" {OPTIONS}'
@@ -99,7 +98,8 @@ class World:
     def _pairs(self, step: float) -> Iterator[str]:
         rigid = boxes_of(self.scene)
         approach = (1 + rigid.restitution) / step
-        law = f'solref="{-CORRECTION_RATE / step!r} {-approach!r}" solreffriction="0 {-1 / step!r}"'
+        stop = math.sqrt(step * TIME_CONSTANT)
+        law = f'solref="{-CORRECTION_RATE / step!r} {-approach!r}" solreffriction="0 {-1 / stop!r}"'
         law += f' solimp="{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2"'
         friction = rigid.friction_coefficient
         law += f' condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else ' condim="1"'
@@ -128,21 +128,20 @@ class World:
     def _soften(self, stiffness: float) -> None:
         """Make the contact of a box with the ground a spring.
 
-        A contact's force is k' r / R with k' = K / d of `solref` and R = A (1 - d) / d, where A is the inverse mass
-        that MuJoCo takes the contact for; it is read from the box as it would lie flat, a micrometre deep.
+        A contact's force is k' r / R with k' = K / d of `solref`, d the impedance, and R the regularisation that MuJoCo
+        works out from d and an inverse mass; R is read from the box as it would lie flat, a micrometre deep.
         """
         model = self.march.model
         data = self.march.data
-        start = data.qpos.copy()
         box = boxes_of(self.scene).box[0]
+        start = data.qpos.copy()
+        model.pair_solimp[:, :2] = COMPLIANT
         data.qpos[self.first + 1] = box.height / 2 - boxes_of(self.scene).starts[0][1] - 1e-6
         data.qpos[self.first + 2] = 0.0
         self.march.look()
-        inverse_mass = float(data.efc_diagApprox[0])
+        regularisation = float(data.efc_R[0])
         data.qpos[:] = start
-        share = stiffness * (1 - COMPLIANT) * inverse_mass / CORNERS
-        model.pair_solref[:] = -share, 0.0
-        model.pair_solimp[:, :2] = COMPLIANT
+        model.pair_solref[:] = -stiffness / CORNERS * COMPLIANT * regularisation, 0.0
 
     def advance(self, start: float, step: float) -> None:
         """Make one step of MuJoCo, and follow the angles of boxes that are free in space, which are folded at pi."""
