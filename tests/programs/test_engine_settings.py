@@ -134,18 +134,23 @@ def test_mujoco(numbers: tuple[float, ...], is_box: bool) -> None:
 def test_mujoco_as_it_comes() -> None:
     import mujoco
 
-    advice = advise_landing(landing(3.7, 1.0), "mujoco", Targets(1e-4))
-    comes = EngineAdvice(
-        "", "", 3.7, 1, 0.002, {"solref": (0.02, 1.0), "solimp": (0.9, 0.95, 0.001, 0.5, 2.0)}, 0, None, 0
-    )
+    settings = {"solref": (0.02, 1.0), "solimp": (0.9, 0.95, 0.001, 0.5, 2.0)}
+    comes = EngineAdvice("", "", 3.7, 1, 0.002, settings, 0, None, 0)
     model = MuJoCo(comes, 0.0, 0.0).model
     plain = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
     assert plain.opt.timestep == 0.002
     assert np.array_equal(plain.geom_solref[0], model.geom_solref[0])
     assert np.array_equal(plain.geom_solimp[0], model.geom_solimp[0])
-    assert (
-        largest_drift(MuJoCo(comes, -advice.defaults["penetration"], 0.0), advice.defaults["penetration"], 500) < SOLVED
-    )
+    for speed in (1.3, 7.9):
+        defaults = advise_landing(landing(3.7, speed), "mujoco", Targets(1e-4)).defaults
+        measured = [
+            rebound(MuJoCo(comes, x * speed * 0.002, speed), speed) for x in np.linspace(0.05, 0.95, 10).tolist()
+        ]
+        # ten phases have the mean of rebounds that range over 0.05 to a tenth of that
+        assert np.mean(measured) == pytest.approx(defaults["restitution"], abs=0.005)
+        depth = defaults["penetration"]
+        assert largest_drift(MuJoCo(comes, -depth, 0.0), depth, 500) < SOLVED
+    assert defaults["restitution"] > 0.05
 
 
 @needs("mujoco")

@@ -28,7 +28,9 @@ from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
 from validation.theory.soft_contact import (
+    Impedance,
     SoftContact,
+    curve_rebounds,
     implicit_step,
     shared_impedance,
 )
@@ -38,6 +40,7 @@ FINE_STEP = 0.2  # w h of the programs that have no step of their own, 31 steps 
 YADE_SAFETY = 0.8  # of GlobalStiffnessTimeStepper, over sqrt(2) / w
 SUBSTEPS = 4  # of Box2D in a step, as its documentation has it
 FINEST_STEP = 0.002  # w h, of a step that is sought
+LAST_DIGITS = 1e-9  # by which a timeconst at the edge of refsafe stays on its right side
 REACHED = 1e-6  # of a restitution
 IMPEDANCE = 0.95  # MuJoCo's default dmax
 CRITICAL = 1.0  # damping ratio where no restitution is stated
@@ -304,12 +307,24 @@ def defaults(program: Program, landing: Landing, points: int) -> dict[str, float
     gravity = max(landing.acceleration, 0.0)
     box = landing.box if points > 1 else None
     comes = engines.translate(program.name, mass=landing.mass, gravity=gravity, points=points, box=box, static=True)
-    restitution = 0.0 if program.name == "box2d" else None
+    restitution = 0.0 if program.name == "box2d" else _mujoco_as_it_comes(program, landing, points)
     return {
         "penetration": comes.rest_penetration if gravity else None,
         "restitution": restitution,
         "hidden": None if program.name == "box2d" else 0.0,
     }
+
+
+def _mujoco_as_it_comes(program: Program, landing: Landing, points: int) -> float | None:
+    """Return the mean rebound of MuJoCo's default contact at its own step; None where nothing lands."""
+    if landing.speed <= 0:
+        return None
+    solimp = program.defaults["solimp"]
+    assert isinstance(solimp, tuple)
+    assert program.step is not None
+    solref = (program.default("timeconst"), program.default("dampratio"))
+    gravity = max(landing.acceleration, 0.0)
+    return float(curve_rebounds(Impedance(*solimp), *solref, points, program.step, landing.speed, gravity).mean())
 
 
 # ---- a dashpot for a restitution ------------------------------------------------------------------------------------
@@ -456,7 +471,7 @@ def _pybullet(question: _Question) -> EngineAdvice:
 
     def contact_of(zeta: float) -> SoftContact:
         c = 2 * zeta * landing.mass * w
-        is_box = landing.box is not None
+        is_box = question.points > 1
         return SoftContact(landing.mass, k, c, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
 
     def ratio_at(h: float) -> float | None:
@@ -485,7 +500,7 @@ def _pybullet(question: _Question) -> EngineAdvice:
         "one behind the other, the dampings add up, and 0.1 is what a body comes with",
         "linearDamping = 0 of the body: as it comes 0.04 slows a free fall",
     ]
-    if landing.box is not None:
+    if question.points > 1:
         notes.append(
             "on ground of GEOM_BOX, where a box has 4 contact points; on GEOM_PLANE it has 2 and lands otherwise"
         )
@@ -567,7 +582,7 @@ def _mujoco_contact(question: _Question, penetration: float, step: float) -> tup
         if contact.damping == 0:
             return math.inf  # the direct format, which refsafe leaves as it is
         together = shared_impedance(d, question.points)
-        return 2 * landing.mass * together / d / contact.damping / (MUJOCO_STEPS * step) - 1
+        return 2 * landing.mass * together / d / contact.damping / (MUJOCO_STEPS * step) - 1 - LAST_DIGITS
 
     most = MUJOCO_IMPEDANCES[1]
     d = IMPEDANCE

@@ -225,13 +225,15 @@ def _bullet(body: Body, parameters: Parameters) -> SoftContact:
 
 
 def _pybullet(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of contactStiffness and contactDamping."""
+    """Return the contact of contactStiffness and contactDamping; a ball is braked ahead, a box once it overlaps."""
     stiffness = parameters["contact_stiffness"]
     damping = parameters["contact_damping"]
     _require(0 < stiffness < math.inf, "must be positive and finite", "contact_stiffness", stiffness)
     _require(0 <= damping < math.inf, "must not be negative", "contact_damping", damping)
     k = body.points * stiffness
-    return SoftContact(body.mass, k, body.points * damping, stops_ahead=True, slop=PYBULLET_SLOP)
+    is_box = body.points > 1
+    c = body.points * damping
+    return SoftContact(body.mass, k, c, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
 
 
 def _mujoco(body: Body, parameters: Parameters) -> SoftContact:

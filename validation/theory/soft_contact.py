@@ -23,12 +23,15 @@ a cycle, both at any stiffness, mass and speed.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.runs.history import Array
 
+Mask = NDArray[np.bool_]
 PHASES = 200
 """Landings within a step that a rebound is taken over, any as likely as another."""
 LONGEST = 100_000
@@ -232,36 +235,77 @@ class SoftContact:
         """
         W2 = (self.frequency * step) ** 2
         loss = 2 * self.ratio * self.frequency * step
-        x = (np.arange(PHASES) + 0.5) / PHASES  # in V h, before the first step that ends at or below the contact
-        v = np.full(PHASES, -1.0)
-        e = np.zeros(PHASES)
-        has_touched = np.zeros(PHASES, dtype=bool)
-        has_turned = np.zeros(PHASES, dtype=bool)
-        is_over = np.zeros(PHASES, dtype=bool)
-        for _ in range(LONGEST):
-            if self.implicit:
-                free = v - load
-                end = x + free
-                is_closed = x < 0 if self.starts_inside else end < 0
-                resisted = W2 * end + loss * free
-                if self.stops_ahead:
-                    resisted = np.where(x > 0, (W2 + loss) * end, resisted)
-                force = np.maximum(-resisted / (1 + loss + W2), 0.0)
-            else:
-                is_closed = x < 0
-                force = np.maximum((1 - self.load_share) * load - W2 * x - loss * v, 0.0)
-            sum_of_forces = np.where(is_closed, force, 0.0) - load
-            if self.local_damping:
-                sum_of_forces *= 1 - self.local_damping * np.sign(sum_of_forces * (v + sum_of_forces / 2))
-            has_touched |= is_closed
-            v = v + sum_of_forces
-            x = x + v
-            has_turned |= has_touched & (v > REST)
-            has_left = has_touched & (x >= 0) & (v >= 0)
-            has_sunk_back = has_turned & (v <= 0)  # the weight holds it
-            is_stuck = has_touched & (np.abs(v) < REST)
-            e = np.where(has_left & ~is_over, v, e)
-            is_over |= has_left | has_sunk_back | is_stuck
-            if np.all(is_over):
-                break
-        return np.where(e < REST, 0.0, e)
+
+        def implicit(x: Array, v: Array) -> tuple[Array, Mask]:
+            free = v - load
+            end = x + free
+            resisted = W2 * end + loss * free
+            if self.stops_ahead:
+                resisted = np.where(x > 0, (W2 + loss) * end, resisted)
+            force = np.maximum(-resisted / (1 + loss + W2), 0.0)
+            return force, x < 0 if self.starts_inside else end < 0
+
+        def explicit(x: Array, v: Array) -> tuple[Array, Mask]:
+            return np.maximum((1 - self.load_share) * load - W2 * x - loss * v, 0.0), x < 0
+
+        return _landings(implicit if self.implicit else explicit, load, self.local_damping)
+
+
+def curve_rebounds(
+    curve: Impedance, timeconst: float, dampratio: float, points: int, step: float, speed: float, gravity: float
+) -> Array:
+    """Return the rebounds of MuJoCo's steps where the impedance follows the penetration, shape (PHASES,).
+
+    Parameters
+    ----------
+    curve
+        ``solimp``.
+    timeconst, dampratio
+        ``solref`` [s], [-].
+    points
+        Contact points that share the body.
+    step
+        h [s].
+    speed
+        At which it lands, V [m/s].
+    gravity
+        g [m/s2].
+    """
+    way = speed * step  # the unit of x
+    k = (step / (curve.greatest * timeconst * dampratio)) ** 2
+    b = 2 * step / (curve.greatest * timeconst)
+    load = gravity * step / speed
+
+    def forces(x: Array, v: Array) -> tuple[Array, Mask]:
+        d = np.array([curve(float(depth)) for depth in x * way])
+        together = points * d / (1 + (points - 1) * d)
+        return np.maximum(together * (load - b * v - k * d * x), 0.0), x < 0
+
+    return _landings(forces, load)
+
+
+def _landings(forces: Callable[[Array, Array], tuple[Array, Mask]], load: float, local_damping: float = 0.0) -> Array:
+    """Return the rebounds of all phases; `forces` are those of the contact, and whether it acts, before a step."""
+    x = (np.arange(PHASES) + 0.5) / PHASES  # in V h, before the first step that ends at or below the contact
+    v = np.full(PHASES, -1.0)
+    e = np.zeros(PHASES)
+    has_touched = np.zeros(PHASES, dtype=bool)
+    has_turned = np.zeros(PHASES, dtype=bool)
+    is_over = np.zeros(PHASES, dtype=bool)
+    for _ in range(LONGEST):
+        force, is_closed = forces(x, v)
+        sum_of_forces = np.where(is_closed, force, 0.0) - load
+        if local_damping:
+            sum_of_forces *= 1 - local_damping * np.sign(sum_of_forces * (v + sum_of_forces / 2))
+        has_touched |= is_closed
+        v = v + sum_of_forces
+        x = x + v
+        has_turned |= has_touched & (v > REST)
+        has_left = has_touched & (x >= 0) & (v >= 0)
+        has_sunk_back = has_turned & (v <= 0)  # the weight holds it
+        is_stuck = has_touched & (np.abs(v) < REST)
+        e = np.where(has_left & ~is_over, v, e)
+        is_over |= has_left | has_sunk_back | is_stuck
+        if np.all(is_over):
+            break
+    return np.where(e < REST, 0.0, e)
