@@ -10,6 +10,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
+from validation.solvers.user import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
@@ -95,7 +96,8 @@ def record(
 
     Returns
     -------
-    Column name to values, one a step of the scene. Rows after a position that is no number are NaN.
+    Column name to values, one a step of the scene, and how many steps the program made. Rows after a position that is
+    no number are NaN.
     """
     per_row = substeps(scene, own_step)
     step = scene.time.step / per_row
@@ -110,4 +112,5 @@ def record(
         if not np.isfinite(rows[row, :, :3]).all():
             break
     names = ("x", "y", "angle", "force")[: rows.shape[2]]
-    return {f"{name}_{box + 1}": rows[:, box, column] for box in range(count) for column, name in enumerate(names)}
+    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in range(count) for column, name in enumerate(names)}
+    return columns | {PROGRAM_STEPS: np.array(float(per_row * scene.time.steps))}
