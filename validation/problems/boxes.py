@@ -621,7 +621,7 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
         return None if values is None else measures.peak(values)
 
     def rebound(history: History) -> float | None:
-        flying = measures.in_flight(history, rigid.gravity)
+        flying = measures.in_flight(history, rigid)
         flying &= history.time > lands + exact.duration
         if not flying.any():
             return None

@@ -30,7 +30,9 @@ class World:
     def __init__(self, scene: Scene, *, default: bool) -> None:
         rigid = boxes_of(scene)
         if rigid.stiffness is not None:
-            raise NotImplementedError("contact of given stiffness: Box2D relaxes its springs rigidly in every sub-step")
+            raise NotImplementedError(
+                "contact of given stiffness: Box2D's hertz correct overlap, its contacts stop a box dead"
+            )
         self.scene = scene
         self.box2d = program()
         self.world = self.box2d.World(gravity=rigid.pull)

@@ -8,12 +8,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from validation.runs.history import Array
-from validation.scenes.rigid import RigidSection
+from validation.scenes.rigid import FORCE, POSE, RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers.user import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
+SPRING_RESOLUTION = 0.02  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
 def boxes_of(scene: Scene) -> RigidSection:
@@ -40,6 +41,14 @@ def substeps(scene: Scene, own_step: float) -> int:
         The step that the program is used with [s].
     """
     return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
+
+
+def spring_step(scene: Scene) -> float:
+    """Return a step that resolves a contact of given stiffness [s]; no bound where none is given."""
+    rigid = boxes_of(scene)
+    if rigid.stiffness is None:
+        return math.inf
+    return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
 
 
 def ground_ends(scene: Scene) -> tuple[float, float]:
@@ -111,6 +120,20 @@ def record(
             rows[row, :, 3] = forces()
         if not np.isfinite(rows[row, :, :3]).all():
             break
-    names = ("x", "y", "angle", "force")[: rows.shape[2]]
-    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in range(count) for column, name in enumerate(names)}
-    return columns | {PROGRAM_STEPS: np.array(float(per_row * scene.time.steps))}
+    return named(rows, per_row * scene.time.steps)
+
+
+def named(rows: Array, program_steps: int | None = None) -> dict[str, Array]:
+    """Return the columns of an answer.
+
+    Parameters
+    ----------
+    rows
+        x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
+    program_steps
+        How many steps the program made, for the curves of error over cost; None: one a row.
+    """
+    names = (*POSE, FORCE)[: rows.shape[2]]
+    boxes = range(rows.shape[1])
+    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
+    return columns | {PROGRAM_STEPS: np.array(float(program_steps or len(rows)))}
