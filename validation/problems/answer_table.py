@@ -28,6 +28,7 @@ SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks"}  # that stand wher
 ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds", "m/s": "metres per second"}
 CELL = re.compile(r'(\s*"(?:[^"]|"")*"[^,]*|[^,]*)(?:,|$)')
 FORTRAN = re.compile(r"[+-]?[\d.]+[dDqQ][+-]?\d+")
+OF_NUMPY = re.compile(r"np\.float\d+\(.*\)")
 GROUPED = re.compile(r"[+-]?\d{1,3}(?:[ '\u2019_\u00a0]\d{3})+(?:\.\d*)?")
 COMMENTS = ("#", "%", "//", "!")
 
@@ -219,6 +220,8 @@ def _meant(text: str) -> str | None:
         return "a decimal comma?"
     if FORTRAN.fullmatch(text):
         return "an exponent is written with E"
+    if OF_NUMPY.fullmatch(text):
+        return "numpy's repr; float(x) of it is a number"
     return "digits are not grouped" if GROUPED.fullmatch(text) else None
 
 

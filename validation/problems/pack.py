@@ -48,7 +48,7 @@ ANSWERS_TEMPLATE = {
     "settings_name": "default",
     "settings": "damping, tolerances, iterations: what another user would need to repeat it",
     "scheme": "its time scheme, or event-driven",
-    "step_s": 0.001,
+    "step_s": "its time step, a number [s]; an object where it differs by problem; null where there is none",
     "contact_model": "what its contacts are made of, and their parameters",
     "processor": "the processor it ran on",
     "who": TEMPLATE["who"],
@@ -56,7 +56,7 @@ ANSWERS_TEMPLATE = {
     "link": None,
     "not_reported": {},
 }
-CHOSEN = ("settings_name", "step_s")  # of these, what may stay as the template has it
+CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 
 def problem_data(one: Problem, reference: Standard) -> ProblemData:

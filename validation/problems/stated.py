@@ -159,7 +159,7 @@ def checked(document: Document, model: type[Stated], template: dict[str, Any], d
         for one in error.errors(include_url=False):
             _add(document, model, dict(one), defects)
     for field, blank in template.items():
-        if blank and document.content.get(field) == blank:
+        if blank and document.content.get(field) == blank and not defects.has(document.path, field):
             defects.add(document.place((field,)), "must be filled in", field=field, value=clip(blank))
     return stated if len(defects) == before else None
 
