@@ -61,6 +61,20 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
     assert (data.block is None) == (data.contact is None) == (data.load is None) == (name in OF_COLUMNS)
 
 
+def test_rigid_boxes_are_answered_by_the_files_of_the_pack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("tumbling", "impact")
+    monkeypatch.setattr(pack, "PROBLEMS", names)
+    pack.write_problems(tmp_path / "pack")
+    for name in names:
+        problems = tmp_path / "pack" / "problems"
+        data = ProblemData.model_validate_json((problems / f"{name}.json").read_text())
+        assert data.rigid is not None and data.block is data.column is None
+        assert [column.name for column in data.answer] == ["x_1_m", "y_1_m", "angle_1_rad"]
+        assert all(number.low <= number.exact <= number.high for number in data.numbers)
+        assert len(data.numbers) == 3
+        assert answered(problems, name, tmp_path / name) == "PASS"
+
+
 def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
     for schema, data in (("problem", ProblemData), ("submission", SubmissionData)):
         assert data.model_json_schema().items() <= json.loads((written / f"{schema}.schema.json").read_text()).items()

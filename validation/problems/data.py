@@ -12,7 +12,7 @@ from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import Scene
 
-PACK: Final = "3.0"
+PACK: Final = "3.1"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
@@ -26,6 +26,9 @@ UNITS = {
     "force": "Pa",
     "gap": "m",
     "slip": "m",
+    "x": "m",
+    "y": "m",
+    "angle": "rad",
 }
 MEANINGS = {
     DISPLACEMENT: "vertical displacement of the centroid, upwards positive",
@@ -39,12 +42,15 @@ MEANINGS = {
         "open (of shear: along the positive displacement)"
     ),
     "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
+    "x": "position of the centre of box {n} along the ground, which does not move with it",
+    "y": "height of the centre of box {n} above the ground",
+    "angle": "angle of box {n}, counter-clockwise positive, not folded",
     "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
 }
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
-UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
+UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|rad_per_s|s)$")
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
 PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Version of the pack that is answered.")]
 Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
@@ -56,7 +62,9 @@ def unit(column: str) -> str:
 
 
 def united(column: str) -> str:
-    """Return a history's column as the pack names it, with its unit."""
+    """Return a history's column as the pack names it, with its unit; a number of rigid boxes has its own name."""
+    if kind(column)[0] not in UNITS:
+        return column
     return f"{column}_{in_names(unit(column))}"
 
 
@@ -208,6 +216,32 @@ class ColumnData(Data):
     input: InputData | None = Field(description="Null: weight and velocities alone move it.")
 
 
+class BoxData(Data):
+    """A rigid box of unit depth."""
+
+    width_m: float
+    height_m: float
+    density_kg_per_m3: float
+    x_m: float = Field(description="Of the centre at t = 0.")
+    lift_m: float = Field(description="Of the lowest corner at t = 0 above what is below.")
+    tilt_deg: float = Field(description="At t = 0, counter-clockwise.")
+    velocity_m_per_s: tuple[float, float] = Field(description="Of the centre at t = 0, along the ground and upwards.")
+    spin_rad_per_s: float = Field(description="At t = 0, counter-clockwise.")
+
+
+class RigidData(Data):
+    """Rigid boxes on a plane, on each other in this order, the first one on the ground."""
+
+    boxes: tuple[BoxData, ...]
+    gravity_m_per_s2: float
+    slope_deg: float = Field(description="Gravity is turned to g (sin, -cos) in x and y; x is along the ground.")
+    friction_deg: float = Field(description="Angle of friction of every contact; 0: frictionless.")
+    restitution: float = Field(description="Rebound over approach speed of every contact.")
+    stiffness_N_per_m: float | None = Field(description="Of the contact of a box with the ground; null: rigid.")
+    base_amplitude_m: float = Field(description="A of the ground's motion A (1 - cos(2 pi f t)) along itself.")
+    base_frequency_Hz: float
+
+
 class SamplingData(Data):
     """The instants of an answer: step, 2 step, ... up to the last one; no program has to step so."""
 
@@ -216,12 +250,23 @@ class SamplingData(Data):
 
 
 class ColumnOfAnswer(Data):
-    """A column that an answer holds, and the band of its error."""
+    """A column that an answer holds, and the band of its error; null where numbers that it yields are judged."""
 
     name: str
     meaning: str
-    measure: str
-    until_s: float
+    measure: str | None
+    until_s: float | None
+    low: float | None
+    high: float | None
+    reason: str | None
+
+
+class NumberOfAnswer(Data):
+    """A number that is measured on the columns of an answer, its exact value, and its band."""
+
+    name: str
+    unit: str
+    exact: float
     low: float
     high: float
     reason: str
@@ -231,7 +276,7 @@ class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["3.0"] = PACK
+    pack: Literal["3.1"] = PACK
     problem: str
     digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str
@@ -241,8 +286,10 @@ class ProblemData(Data):
     load: LoadData | None
     geometry: Literal["small", "large rotation"]
     column: ColumnData | None
+    rigid: RigidData | None = None
     sampling: SamplingData
     answer: tuple[ColumnOfAnswer, ...]
+    numbers: tuple[NumberOfAnswer, ...] = Field((), description="Of rigid boxes, which are judged by them.")
     exact: str = Field(description="CSV file of the exact motion, beside this one's directory.")
 
 
@@ -308,6 +355,13 @@ def contact_data(scene: Scene) -> ContactData:
 def load_data(scene: Scene) -> LoadData:
     """Return the loads of a scene."""
     return LoadData.of(scene.load)
+
+
+def rigid_data(scene: Scene) -> RigidData | None:
+    """Return the rigid boxes of a scene, if it has some."""
+    if scene.rigid is None:
+        return None
+    return RigidData.of(scene.rigid, boxes=tuple(map(BoxData.of, scene.rigid.box)))
 
 
 def column_data(scene: Scene) -> ColumnData | None:

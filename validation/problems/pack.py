@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +13,14 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.problems.bands import Band, Standard, standard
+from validation.problems.boxes import problem_posed
 from validation.problems.data import (
     ANSWERS,
     PACK,
     SUBMISSION,
     AnswersData,
     ColumnOfAnswer,
+    NumberOfAnswer,
     ProblemData,
     SamplingData,
     SubmissionData,
@@ -29,6 +31,7 @@ from validation.problems.packs import digest, question
 from validation.problems.problem import PROBLEMS, Problem, problem
 from validation.runs.files import write_atomically
 from validation.runs.history import History
+from validation.scenes.scene import Scene
 
 Progress = Callable[[int, int, str], None]
 PLACE = "problems"  # directory of a pack that holds this part
@@ -42,7 +45,7 @@ TEMPLATE = {  # what a submitter changes
     "who": "who ran it",
     "not_reported": [],
 }
-ANSWERS_TEMPLATE = {
+ANSWERS_TEMPLATE: dict[str, Any] = {
     "program": TEMPLATE["program"],
     "version": TEMPLATE["version"],
     "settings_name": "default",
@@ -62,7 +65,7 @@ CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 def problem_data(one: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
     scene = one.scene
-    judged = [_judged(column, reference.bands[column]) for column in scene.run.columns]
+    judged = [_judged(column, reference.bands.get(column)) for column in scene.run.columns]
     return ProblemData(
         problem=one.name,
         digest=digest(one),
@@ -71,11 +74,24 @@ def problem_data(one: Problem, reference: Standard) -> ProblemData:
         **question(scene),
         sampling=SamplingData(step_s=scene.time.step, count=len(reference.exact.time)),
         answer=tuple(judged),
+        numbers=tuple(_numbers(scene)),
         exact=f"exact/{one.name}.csv",
     )
 
 
-def _judged(column: str, band: Band) -> ColumnOfAnswer:
+def _numbers(scene: Scene) -> Iterator[NumberOfAnswer]:
+    """Yield the numbers that rigid boxes are judged by."""
+    if scene.rigid is None:
+        return
+    for one in problem_posed(scene).quantities(scene):
+        if not one.optional:
+            yield NumberOfAnswer.of(one)
+
+
+def _judged(column: str, band: Band | None) -> ColumnOfAnswer:
+    if band is None:
+        nothing = dict.fromkeys(("measure", "until_s", "low", "high", "reason"))
+        return ColumnOfAnswer(name=united(column), meaning=meaning(column), **nothing)
     return ColumnOfAnswer(
         name=united(column),
         meaning=meaning(column),

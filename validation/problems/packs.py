@@ -20,7 +20,7 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-from validation.problems.data import PACK, block_data, column_data, contact_data, load_data
+from validation.problems.data import PACK, block_data, column_data, contact_data, load_data, rigid_data
 from validation.problems.problem import Problem
 from validation.scenes.scene import Scene
 
@@ -30,13 +30,14 @@ DIGEST_LENGTH = 16  # hexadecimal digits
 
 def question(scene: Scene) -> dict[str, Any]:
     """Return what a scene asks as plain data: the parts of a problem by their names."""
-    on_base = scene.column is None
+    on_base = scene.kind == "block"
     return {
         "block": block_data(scene) if on_base else None,
         "contact": contact_data(scene) if on_base else None,
         "load": load_data(scene) if on_base else None,
         "geometry": "large rotation" if scene.run.geometry == "updated" else "small",
         "column": column_data(scene),
+        "rigid": rigid_data(scene),
     }
 
 
