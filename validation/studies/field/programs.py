@@ -49,7 +49,15 @@ class Known:
 
 KNOWN = (
     Known("opensees", "OpenSees", "pip install 'examples/peers[opensees]'", springs=True),
-    Known("mujoco", "MuJoCo", "pip install 'examples/peers[mujoco]'", springs=True, boxes=True, family="robotics"),
+    Known(
+        "mujoco",
+        "MuJoCo",
+        "pip install 'examples/peers[mujoco]'",
+        springs=True,
+        boxes=True,
+        family="robotics",
+        halvings=7,
+    ),
     Known("siconos", "Siconos", f"{APT} python3-siconos", springs=True, boxes=True),
     Known("yade", "Yade", f"{APT} yade", springs=True),
     Known("calculix", "CalculiX", f"{APT} calculix-ccx", springs=True),
@@ -58,11 +66,11 @@ KNOWN = (
     Known("exudyn", "Exudyn", "pip install 'examples/peers[exudyn]'", boxes=True),
     Known("drake", "Drake", "pip install 'examples/peers[drake]'", boxes=True, family="robotics"),
     Known("dart", "DART", "pip install 'examples/peers[dart]'", boxes=True, family="robotics"),
-    Known("bullet", "Bullet", "pip install 'examples/peers[bullet]'", boxes=True, family="robotics"),
+    Known("bullet", "Bullet", "pip install 'examples/peers[bullet]'", boxes=True, family="robotics", halvings=5),
     Known("newton-xpbd", "Newton XPBD", NEWTON, boxes=True, family="robotics"),
     Known("newton-semi-implicit", "Newton SemiImplicit", NEWTON, boxes=True, family="robotics"),
-    Known("box2d", "Box2D", "pip install 'examples/peers[box2d]'", boxes=True, family="games"),
-    Known("pymunk", "pymunk", "pip install 'examples/peers[pymunk]'", boxes=True, family="games"),
+    Known("box2d", "Box2D", "pip install 'examples/peers[box2d]'", boxes=True, family="games", halvings=8),
+    Known("pymunk", "pymunk", "pip install 'examples/peers[pymunk]'", boxes=True, family="games", halvings=8),
 )
 BUDGET = 20.0  # s that the finest run of a curve may take, about, on one core
 
