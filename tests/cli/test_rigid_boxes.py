@@ -62,7 +62,7 @@ def test_numbers_are_those_of_the_formulas(rigid_file: Path) -> None:
 
 
 def test_what_turns_a_box_over_satisfies_the_balance_of_energy(rigid_file: Path) -> None:
-    level = ("--set", "rigid.slope=0.0")
+    level = ("--set", "rigid.slope=0.0", "--set", "rigid.friction=40.0")
     values = {name: value["low"] for name, value in shown(rigid_file, *level)["numbers"].items()}
     half_diagonal = math.hypot(0.6, 1.2) / 2
     about_edge = 1800 * (0.6**2 + 1.2**2) / 12 + 1800 * half_diagonal**2
@@ -70,6 +70,12 @@ def test_what_turns_a_box_over_satisfies_the_balance_of_energy(rigid_file: Path)
     assert about_edge * values["w over"] ** 2 / 2 == pytest.approx(1800 * WEIGHT * rise)
     assert values["p"] ** 2 == pytest.approx(1800 * WEIGHT * half_diagonal / about_edge)
     assert math.tan(math.radians(values["alpha"])) == pytest.approx(0.5)
+
+
+def test_a_box_that_slides_before_it_rocks_is_told_no_rate_that_turns_it_over(rigid_file: Path) -> None:
+    level = ("--set", "rigid.slope=0.0")
+    assert "w over" not in shown(rigid_file, *level, "--set", "rigid.friction=26.0")["numbers"]
+    assert "w over" in shown(rigid_file, *level, "--set", "rigid.friction=27.0")["numbers"]
 
 
 def test_a_landing_a_contact_and_a_ground_that_moves(tmp_path: Path) -> None:

@@ -1,16 +1,18 @@
-"""What is measured on the positions of rigid boxes: nothing else of a program is needed, and nothing is taken on trust."""
+"""What is measured on the positions of rigid boxes: nothing else of a program is needed or taken on trust."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
 from validation.scenes.rigid import BoxSection, RigidSection
 
+Rows = NDArray[np.bool_]
 SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included
-LATE = 2.0  # s at the end of a run, over which its last energy is taken
+LATE = 1.0  # s at the end of a run, over which its last energy is taken; longer than the flight from 1 m
 
 
 def column(history: History, part: str, box: int = 1) -> Array:
@@ -18,19 +20,23 @@ def column(history: History, part: str, box: int = 1) -> Array:
     return history.columns[f"{part}_{box}"]
 
 
-def in_flight(history: History, gravity: float) -> Array:
+def in_flight(history: History, rigid: RigidSection) -> Rows:
     """Return at which rows a box flies freely, both its neighbours being of the same flight; never at the ends.
 
-    In free flight y is a parabola, at the rows of an exact motion and at those of every usual time step alike: its
-    second difference over rows h apart is -g h^2. An impact between two rows changes the second differences at both by
-    v h together, so that one of them may look free: a row counts where its own second difference and those at its two
-    neighbours are of a flight.
+    In free flight y is a parabola, x and the angle are straight, at the rows of an exact motion and at those of every
+    usual time step alike: the second differences over rows h apart are -g h^2 and zero. An impact between two rows
+    changes the second differences at both by v h together, so that one of them may look free: a row counts where its
+    own second differences and those at its two neighbours are of a flight.
     """
-    y = column(history, "y")
+    box = rigid.box[0]
     interval = float(history.time[1] - history.time[0])
-    free = np.zeros(len(y), dtype=bool)
-    free[1:-1] = np.abs(np.diff(y, 2) / (gravity * interval**2) + 1) <= SAME_FALL
-    flying = np.zeros(len(y), dtype=bool)
+    fall = rigid.gravity * interval**2
+    off_fall = np.abs(np.diff(column(history, "y"), 2) + fall)
+    off_straight = np.abs(np.diff(column(history, "x"), 2))
+    off_spin = math.hypot(box.width, box.height) / 2 * np.abs(np.diff(column(history, "angle"), 2))
+    free = np.zeros(len(history.time), dtype=bool)
+    free[1:-1] = np.maximum(np.maximum(off_fall, off_straight), off_spin) <= SAME_FALL * fall
+    flying = np.zeros(len(free), dtype=bool)
     flying[1:-1] = free[:-2] & free[1:-1] & free[2:]
     return flying
 
@@ -73,13 +79,13 @@ def last_energy(history: History, rigid: RigidSection) -> float:
     """
     energy = energies(history, rigid)
     late = (history.time > history.time[-1] - LATE) & np.isfinite(energy)
-    flying = late & in_flight(history, rigid.gravity)
+    flying = late & in_flight(history, rigid)
     return float(np.median(energy[flying if flying.any() else late]))
 
 
 def largest_gain(history: History, rigid: RigidSection) -> float | None:
     """Return by how much the energy of a free flight exceeds that at t = 0, over that; None where it never flies."""
-    flying = in_flight(history, rigid.gravity)
+    flying = in_flight(history, rigid)
     if not flying.any():
         return None
     first = first_energy(rigid)

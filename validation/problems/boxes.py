@@ -1,8 +1,8 @@
 """The problems of rigid boxes: what is measured on an answer, its exact value, and the band around it.
 
-An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what one
-per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it changes
-nothing for who uses the answer.
+An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what
+one per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it
+changes nothing for who uses the answer.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.metrics import boxes as measures
-from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.history import Array, History
 from validation.scenes.rigid import FORCE, RigidSection
 from validation.scenes.scene import Scene, load_scene
 from validation.theory.boxes import (
@@ -255,7 +254,7 @@ def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
 
 FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
 STANDING_CASES = tuple(
-    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 50}) for friction in FRICTIONS
+    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 40}) for friction in FRICTIONS
 )
 
 
@@ -559,8 +558,8 @@ def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
     why = "one per cent of tan(phi), which is not known better, changes it by as much"
     width = {"scale": 1e3 * float(np.max(np.abs(exact))), "of": "the largest slip"}
 
-    def slip(history: History) -> np.ndarray:
-        moved: np.ndarray = measures.column(history, "x") - rigid.box[0].x - ground
+    def slip(history: History) -> Array:
+        moved: Array = measures.column(history, "x") - rigid.box[0].x - ground
         return moved
 
     return (
@@ -613,8 +612,8 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
     changed = [impact_of(scene, *pair) for pair in factors]
     why = "one per cent of stiffness or density, which are not known better, changes it by as much"
 
-    def gap(history: History) -> np.ndarray:
-        lifted: np.ndarray = measures.column(history, "y") - box.reach
+    def gap(history: History) -> Array:
+        lifted: Array = measures.column(history, "y") - box.reach
         return lifted
 
     def reported(history: History) -> float | None:
@@ -622,7 +621,8 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
         return None if values is None else measures.peak(values)
 
     def rebound(history: History) -> float | None:
-        flying = measures.in_flight(history, rigid.gravity) & (history.time > box_lands + exact.duration)
+        flying = measures.in_flight(history, rigid)
+        flying &= history.time > lands + exact.duration
         if not flying.any():
             return None
         energy = float(np.median(measures.energies(history, rigid)[flying])) + rigid.gravity * (
@@ -630,7 +630,7 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
         )
         return math.sqrt(max(0.0, 2 * energy))
 
-    box_lands = (exact.speed + box.velocity[1]) / rigid.gravity
+    lands = (exact.speed + box.velocity[1]) / rigid.gravity
     force = [1e-3 * other.peak_force for other in changed]
     return (
         around(
@@ -695,12 +695,12 @@ def box_problems() -> Mapping[str, BoxProblem]:
     problems = (
         BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}),
         BoxProblem("restitution", restitution, _restitution_cases(), {}),
-        BoxProblem("bouncing", bouncing, curve={"time.steps": 180}),
+        BoxProblem("bouncing", bouncing, curve={"time.steps": 120}),
         BoxProblem("tumbling", tumbling),
         BoxProblem("pile", pile, forces=True),
-        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, {"time.steps": 10}, forces=True),
+        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, forces=True),
         BoxProblem("toppling", toppling, _toppling_cases(), {}),
-        BoxProblem("shaken", shaken, curve={}),
+        BoxProblem("shaken", shaken, curve={"time.steps": 60}),
         BoxProblem("impact", impact, curve={}, forces=True),
     )
     return {one.name: one for one in problems}

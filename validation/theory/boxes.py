@@ -262,6 +262,4 @@ class SpringImpact:
     def sinking(self, time: Array) -> Array:
         """Return how far the spring is pressed at instants since the landing [m]."""
         phase = self.rate * time
-        return np.asarray(
-            self.gravity / self.rate**2 * (1 - np.cos(phase)) + self.speed / self.rate * np.sin(phase)
-        )
+        return np.asarray(self.gravity / self.rate**2 * (1 - np.cos(phase)) + self.speed / self.rate * np.sin(phase))

@@ -10,6 +10,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.rigid import FORCE, POSE, RigidSection
 from validation.scenes.scene import Scene
+from validation.solvers.user import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
@@ -115,7 +116,8 @@ def record(
 
     Returns
     -------
-    Column name to values, one a step of the scene. Rows after a position that is no number are NaN.
+    Column name to values, one a step of the scene, and how many steps the program made. Rows after a position that is
+    no number are NaN.
     """
     per_row = substeps(scene, own_step)
     step = scene.time.step / per_row
@@ -129,11 +131,20 @@ def record(
             rows[row, :, 3] = forces()
         if not np.isfinite(rows[row, :, :3]).all():
             break
-    return named(rows)
+    return named(rows, per_row * scene.time.steps)
 
 
-def named(rows: Array) -> dict[str, Array]:
-    """Return columns by name from x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4)."""
+def named(rows: Array, program_steps: int | None = None) -> dict[str, Array]:
+    """Return the columns of an answer.
+
+    Parameters
+    ----------
+    rows
+        x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
+    program_steps
+        How many steps the program made, for the curves of error over cost; None: one a row.
+    """
     names = (*POSE, FORCE)[: rows.shape[2]]
     boxes = range(rows.shape[1])
-    return {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
+    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
+    return columns | {PROGRAM_STEPS: np.array(float(program_steps or len(rows)))}

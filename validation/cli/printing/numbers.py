@@ -250,7 +250,8 @@ def _rigid(scene: Scene) -> Iterator[Number]:
 def _turning(section: RigidSection) -> Iterator[Number]:
     """Yield what turns a box over that is alone on level ground and does not slide (Housner)."""
     box = section.box[0]
-    if len(section.box) > 1 or section.slope or section.gravity == 0:
+    is_alone_on_level = len(section.box) == 1 and section.slope == 0 and section.gravity > 0
+    if not is_alone_on_level or section.friction_coefficient < box.width / box.height:
         return
     # About an edge, at half the diagonal R from the centre: I = 4 m R^2 / 3, and the centre must rise by R (1 - cos).
     half_diagonal = math.hypot(box.width, box.height) / 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -436,7 +437,7 @@ class _CornerFlight:
                     low = self._top(corner, low, high)
                     if self.height(corner, low) <= 0:
                         continue
-                landing = float(brentq(lambda time: self.height(corner, time), low, high, xtol=1e-15, rtol=1e-14))
+                landing = float(brentq(partial(self.height, corner), low, high, xtol=1e-15, rtol=1e-14))
                 if landing < first[0]:
                     first = (landing, corner)
         return first
@@ -445,4 +446,4 @@ class _CornerFlight:
         """Return the instant at which a corner that rises turns back, the first one where it does not rise."""
         if self.approach(corner, low) <= 0 or self.approach(corner, high) >= 0:
             return low
-        return float(brentq(lambda time: self.approach(corner, time), low, high, xtol=1e-15, rtol=1e-14))
+        return float(brentq(partial(self.approach, corner), low, high, xtol=1e-15, rtol=1e-14))
