@@ -38,7 +38,7 @@ def losses(result):
 
 
 @pytest.mark.parametrize(
-    ("seed", "steps"), [(1, 80), (2, 80), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in range(103))]
+    ("seed", "steps"), [(1, 80), (2, 80), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in range(3, 53))]
 )
 def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed, steps):
     model, dt = random_rolling(seed)

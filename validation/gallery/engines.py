@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
-from validation.report.chapters.engines import ADAPTERS, adapter, installed_programs, outcome, plain_title
+from validation.report.chapters.engines import ADAPTERS, SETTINGS, adapter, installed_programs, outcome, plain_title
 from validation.report.chapters.text import capital
-from validation.studies.engines.table import EngineProgram, EngineTable
+from validation.studies.engines.table import EngineCell, EngineProgram, EngineTable
 
 
 def program_blocks(engines: EngineTable) -> Blocks:
@@ -37,8 +37,17 @@ def _answers(engines: EngineTable, programs: list[EngineProgram]) -> Table:
     rows = []
     for problem in engines.problems:
         cells = [engines.cells[problem.name, program.name] for program in programs]
-        findings = [cell.finding for cell in cells if cell.finding]
-        rows.append((problem.name, *map(outcome, cells), capital("; ".join(dict.fromkeys(findings)))))
+        rows.append((problem.name, *map(outcome, cells), _findings(programs, cells)))
     titles = ["As it comes" if program.kind == "default" else "Chosen settings" for program in programs]
     columns = [TableColumn(title if len(programs) > 1 else "Answer", "outcome") for title in titles]
     return table(["Problem", *columns, TableColumn("Curve", "fill")], rows)
+
+
+def _findings(programs: list[EngineProgram], cells: list[EngineCell]) -> str:
+    """Return what the curves show, with the settings that each is of where there are two."""
+    findings = []
+    for program, cell in zip(programs, cells, strict=True):
+        if cell.finding:
+            words = f"{SETTINGS[program.kind]}: " if len(programs) > 1 else ""
+            findings.append(words + cell.finding)
+    return capital("; ".join(findings))

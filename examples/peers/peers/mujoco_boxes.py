@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, spring_step, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
 from peers.mujoco_model import Columns, March, model_text, refuse
 from validation.scenes.scene import Scene
 
@@ -25,7 +25,6 @@ STEP = 0.0005  # s
 TIME_CONSTANT = 0.02  # s: that of MuJoCo's contact as it comes
 IMPEDANCE = 0.9999  # the greatest that MuJoCo takes: how much of what else pushes a contact counters
 COMPLIANT = 0.0001  # the least
-CORRECTION_RATE = 1.0  # 1/s: depth decays so, slowly, for it throws a box up by as much
 CORNERS = 4  # contact points of a box that lies flat
 HALF_DEPTH = 0.5  # m of boxes
 THICKNESS = 1.0  # m of a ground that moves
@@ -97,9 +96,9 @@ class World:
 
     def _pairs(self, step: float) -> Iterator[str]:
         rigid = boxes_of(self.scene)
-        approach = (1 + rigid.restitution) / step
+        approach = IMPEDANCE * (1 + rigid.restitution) / step
         stop = math.sqrt(step * TIME_CONSTANT)
-        law = f'solref="{-CORRECTION_RATE / step!r} {-approach!r}" solreffriction="0 {-1 / stop!r}"'
+        law = f'solref="{-correction_rate(self.scene) / step!r} {-approach!r}" solreffriction="0 {-1 / stop!r}"'
         law += f' solimp="{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2"'
         friction = rigid.friction_coefficient
         law += f' condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else ' condim="1"'
