@@ -80,6 +80,7 @@ TAKES: dict[str, set[str]] = {
     features.FRICTIONAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
     features.RIGID_BLOCKS: {"dda", "column-events"},
     features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
+    features.RIGID_BOXES: {"dda"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
@@ -134,6 +135,9 @@ def scene_with(values: dict[str, Any], directory: Path) -> Scene:
 def scene_of(feature: str, directory: Path) -> Scene:
     if feature == features.COLUMN:
         return load_scene("waves-base").expand()[0]
+    if feature == features.RIGID_BOXES:
+        box = {"width": 1.0, "height": 1.0, "density": 2e3}
+        return parse_scene({"rigid": {"box": [box]}, "time": {"step": 1e-2, "steps": 5}}, feature)
     if feature in OF_CONTACTS:
         layer = {"thickness": 2.0, "density": 2e3, "young": 1e9, "blocks": 2, "velocity": -1.0}
         column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [layer]} | OF_CONTACTS[feature]

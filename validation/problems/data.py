@@ -6,15 +6,16 @@ import math
 import re
 from typing import Annotated, Any, Final, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import Scene
 
 PACK: Final = "3.0"
-"""Version of the pack; another one is refused. It changes with any problem's data."""
+"""Version of the pack, see `validation.problems.packs` for what changes it."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
+ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
 UNITS = {
     DISPLACEMENT: "m",
     "horizontal_displacement": "m",
@@ -45,6 +46,8 @@ INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
 UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
+PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Version of the pack that is answered.")]
+Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 
 def unit(column: str) -> str:
@@ -230,6 +233,7 @@ class ProblemData(Data):
     format: Literal["dda-validation problem"] = "dda-validation problem"
     pack: Literal["3.0"] = PACK
     problem: str
+    digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str
     asks: str
     block: BlockData | None
@@ -246,7 +250,7 @@ class SubmissionData(Data):
     """What stands beside the table of a submission."""
 
     format: Literal["dda-validation submission"]
-    pack: Literal["3.0"]
+    pack: PackVersion
     problem: Text
     program: Text
     version: Text
@@ -254,11 +258,39 @@ class SubmissionData(Data):
     who: Text
     not_reported: tuple[Text, ...] = Field((), description="Columns that the program cannot report.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if len(set(self.not_reported)) < len(self.not_reported):
-            raise ValueError(f"not_reported must not repeat a column, got {list(self.not_reported)}")
-        return self
+
+class AnswersData(Data):
+    """What stands beside the tables of a folder of answers: one program, one version, one choice of settings.
+
+    The table of a problem is `PROBLEM.csv`; a problem without a table is not answered.
+    """
+
+    format: Literal["dda-validation answers 1"]
+    pack: PackVersion
+    program: Text
+    version: Text = Field(description="Of the program.")
+    settings_name: Annotated[str, Field(max_length=60, pattern=r"^[a-z0-9][a-z0-9.+-]*$")] = Field(
+        description="Name of the folder of these settings, such as default or fine-step."
+    )
+    settings: Text = Field(description="The settings in words: what another user would need to repeat them.")
+    scheme: Text = Field(description="Time scheme, or event-driven.")
+    step_s: Step | dict[str, Step] | None = Field(
+        description="Time step of the program; an object where it differs by problem; null where there is none."
+    )
+    contact_model: Text = Field(description="Penalty springs, impulses, complementarity, ... and their parameters.")
+    processor: Text
+    who: Text
+    licence: Text = Field(description="Of the answers, by which others may publish them, such as CC-BY-4.0.")
+    link: Annotated[str, Field(max_length=2000, pattern=r"^https?://\S+$")] | None = Field(
+        None, description="To the program or to the input files."
+    )
+    not_reported: dict[str, tuple[Text, ...]] = Field(
+        {}, description="Columns that the program cannot report, by problem."
+    )
+
+    def step_of(self, problem: str) -> float | None:
+        """Return the program's time step on a problem [s], None where it has none or states none."""
+        return self.step_s.get(problem) if isinstance(self.step_s, dict) else self.step_s
 
 
 def block_data(scene: Scene) -> BlockData:

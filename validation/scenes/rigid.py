@@ -1,4 +1,4 @@
-"""The table of rigid boxes on a plane, `[rigid]`, which stands in the place of a block: what contact engines simulate."""
+"""The table of rigid boxes on a plane, `[rigid]`, in the place of a block: what contact engines simulate."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ FrictionAngle = Annotated[Angle, Field(ge=0)]
 Restitution = Annotated[Real, Field(ge=0, le=1)]
 POSE = ("x", "y", "angle")  # of the centre of a box [m, m, rad]
 FORCE = "force"  # normal force between a box and what it stands on [N]
+UNITS = {"x": "m", "y": "m", "angle": "rad", FORCE: "N"}  # of the columns of each box
 
 
 class BoxSection(Section):

@@ -14,6 +14,7 @@ from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
+from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
 from validation.solvers.blocks.closed import block_of, dda_limit, load_of
 from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
@@ -183,7 +184,7 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RAMP, features.RIGID_BLOCKS, features.RIGID_JOINTS}
+        | {features.RAMP, features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES}
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.RULES
@@ -200,7 +201,7 @@ class DDA(Solver):
         (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "time", "run")
+    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "rigid", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role = Role.JUDGED
     rank = 0.0
@@ -210,10 +211,15 @@ class DDA(Solver):
         """Return the columns that this solver has."""
         import dda
 
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS)
+        of_boxes = columns_of_boxes(MOST_BOXES)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS, *of_boxes)
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why a band and friction do not go together."""
+        """Return None, or why a band and friction do not go together, or what boxes DDA has no blocks for."""
+        if scene.rigid is not None:
+            from validation.solvers.boxes import refusal
+
+            return refusal(scene.rigid)
         consistent = {features.FRICTION, features.DEAD_BAND} <= set(features.of(scene)) and (
             scene.contact.rules == "consistent"
         )
@@ -229,6 +235,10 @@ class DDA(Solver):
             from validation.solvers.columns.blocks import BlockColumn, ContactColumn
 
             return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme_of(scene))
+        if scene.rigid is not None:
+            from validation.solvers.boxes import BlocksOfBoxes
+
+            return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
         if features.ROTATION in features.of(scene):
             return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):

@@ -1,0 +1,149 @@
+"""Rigid boxes as DDA takes them: blocks of one strain on penalty springs, at a step of DDA's habit.
+
+A box that is alone is a block that may turn by any angle; boxes at rest on each other are a column of blocks.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import dda
+from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes.rigid import RigidSection
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.columns.blocks import ContactColumn
+from validation.solvers.contract import Prepared
+from validation.solvers.translation import naming, no_fields
+
+YOUNG = 1.0e9  # Pa, of the blocks, and N/m, of their springs: p = 1E, where the scene gives no stiffness
+OWN_STEP = 2.0e-3  # s: the step of the damping study that this suite began with
+ROUNDING = 1e-9
+
+
+def refusal(rigid: RigidSection) -> str | None:
+    """Return None, or why DDA cannot express rigid boxes.
+
+    Springs give back what they took, less what the scheme damps: that is restitution 1. A lower one cannot be set, and
+    is refused where a box falls.
+    """
+    if rigid.restitution < 1 and rigid.stiffness is None and any(box.lift for box in rigid.box):
+        why = "DDA has no coefficient of restitution below 1: its springs give back everything"
+        return f"{why}, got {rigid.restitution:g}"
+    if len(rigid.box) == 1:
+        return None
+    if any(box.lift or box.spin or any(box.velocity) for box in rigid.box) or rigid.slope or rigid.base_amplitude:
+        return "several boxes are a column of blocks: at rest, on level ground that does not move"
+    if len({(box.width, box.x) for box in rigid.box}) > 1:
+        return "several boxes are a column of blocks: of one width, above each other"
+    return None
+
+
+class BlocksOfBoxes(Prepared):
+    """Rigid boxes as blocks on springs; a row of the scene is one step of DDA or several."""
+
+    def __init__(self, scene: Scene, rigid: RigidSection, scheme: dda.Scheme) -> None:
+        self.scene = scene
+        self.rigid = rigid
+        self.per_row = max(1, math.ceil(scene.time.step / OWN_STEP - ROUNDING)) * 2**self.rigid.refine
+        self.scheme = replace(scheme, step=scene.time.step / self.per_row)
+        # A box has two corners on the ground.
+        self.corner_stiffness = YOUNG if self.rigid.stiffness is None else self.rigid.stiffness / 2
+
+    def history_run(self, fields: Path | None) -> Run:
+        """Run the scene."""
+        no_fields("dda", self.scene, fields)
+        with naming(self.scene):
+            return self._alone() if len(self.rigid.box) == 1 else self._pile()
+
+    def _alone(self) -> Run:
+        """Run one box as a block that may turn by any angle."""
+        box = self.rigid.box[0]
+        rough = self.rigid.friction > 0
+        contact = dda.Unilateral(
+            self.corner_stiffness,
+            shear=self.corner_stiffness if rough else 0.0,
+            gap=box.lift,
+            friction=self.rigid.friction_coefficient if rough else None,
+        )
+        outline = ((0.0, 0.0), (box.width, 0.0), (box.width, box.height), (0.0, box.height))
+        model = RollingModel(
+            dda.Block(outline, dda.Material(box.density, YOUNG, 0.0)),
+            contact,
+            dda.Load(gravity=self.rigid.gravity, slope=self.rigid.slope, motion=self._motion()),
+            base=0,
+            top=2,
+            tilt=math.radians(box.tilt),
+            velocity=box.velocity,
+            spin=box.spin,
+        )
+        steps = self.scene.time.steps * self.per_row
+        result = solve_rolling(model, self.scheme, steps, ("displacement", "horizontal_displacement"), RollingOptions())
+        x, y, angle = self.rigid.starts[0]
+        columns = {
+            "x_1": x + result.columns["horizontal_displacement"],
+            "y_1": y + result.columns["displacement"],
+            "angle_1": angle + result.angle,
+            "force_1": result.normal.sum(axis=0),
+        }
+        work = {name: int(getattr(result, name)) for name in ("unknowns", "factorisations", "solves")}
+        seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
+        history = History(result.time, columns)
+        return self._rows(Run(Outcome(result.outcome), history, work, seconds, result.notes))
+
+    def _motion(self) -> dda.BaseMotion | None:
+        """Return the motion of the ground at the steps, None where it rests."""
+        if not self.rigid.base_amplitude:
+            return None
+        instants = self.scheme.step * np.arange(self.scene.time.steps * self.per_row + 1)
+        displacement = [(self.rigid.base(float(instant))[0], 0.0) for instant in instants]
+        return dda.BaseMotion(instants, np.array(displacement))
+
+    def _pile(self) -> Run:
+        """Run several boxes as a column of blocks, whose weight acts from t = 0 on."""
+        width = self.rigid.box[0].width
+        centres = []
+        feet = []
+        foot = 0.0
+        for box in self.rigid.box:
+            feet.append(foot)
+            centres.append(foot + box.height / 2)
+            foot += box.height
+        numbers = range(1, len(centres) + 1)
+        column = {
+            "motion": "pressure",
+            "law": "unilateral",
+            "gravity": self.rigid.gravity,
+            "stiffness": 2 * self.corner_stiffness / width,
+            "layer": [{"thickness": box.height, "density": box.density, "young": YOUNG} for box in self.rigid.box],
+            "heights": [*centres, *feet],
+        }
+        observed = [f"displacement_{number}" for number in numbers]
+        observed += [f"force_{len(centres) + number}" for number in numbers]
+        time = {"step": self.scheme.step, "steps": self.scene.time.steps * self.per_row}
+        data = {"name": self.scene.name, "column": column, "time": time, "run": {"columns": observed}}
+        run = ContactColumn(parse_scene(data, self.scene.name), self.scheme).run()
+        if run.history is None:
+            return run
+        still = np.zeros_like(run.history.time)
+        columns = {}
+        for number, (x, y, angle) in enumerate(self.rigid.starts, start=1):
+            columns[f"x_{number}"] = x + still
+            columns[f"y_{number}"] = y + run.history.columns[f"displacement_{number}"]
+            columns[f"angle_{number}"] = angle + still
+            columns[f"force_{number}"] = width * run.history.columns[f"force_{len(centres) + number}"]
+        return self._rows(replace(run, history=History(run.history.time, columns)))
+
+    def _rows(self, run: Run) -> Run:
+        """Return a run at the rows of the scene, with the columns that it asks for."""
+        if run.history is None:
+            return run
+        last_of_row = slice(self.per_row - 1, None, self.per_row)
+        columns = {name: run.history.columns[name][last_of_row] for name in self.scene.run.columns}
+        work = {**run.work, "steps": len(run.history.time)}
+        return replace(run, history=History(run.history.time[last_of_row], columns), work=work)
