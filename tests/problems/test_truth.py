@@ -21,7 +21,7 @@ from validation.solvers.rigid.rocking import friction_needed
 ROCKING = load_scene("field-rocking")
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", [*PROBLEMS, *boxes.ASKS])
 def test_every_problem_has_its_exact_motion(name: str) -> None:
     one = problem(name)
     kinds = {"column": "layers", "rocking": "rigid rocking"}

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
 PACK: Final = "3.1"
@@ -42,15 +43,17 @@ MEANINGS = {
         "open (of shear: along the positive displacement)"
     ),
     "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
-    "x": "position of the centre of box {n} along the ground, which does not move with it",
-    "y": "height of the centre of box {n} above the ground",
-    "angle": "angle of box {n}, counter-clockwise positive, not folded",
     "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
+}
+OF_BOXES = {
+    "x": "position of the centre of box {n} along the ground, down a slope positive",
+    "y": "height of the centre of box {n} above the ground, normal to it",
+    "angle": "angle of box {n}, counter-clockwise positive, not folded",
 }
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
-UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|rad_per_s|s)$")
+UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
 PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Version of the pack that is answered.")]
 Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
@@ -82,6 +85,8 @@ def kind(column: str) -> tuple[str, str]:
 def meaning(column: str) -> str:
     """Return what a column means."""
     plain, number = kind(column)
+    if plain in OF_BOXES:
+        return OF_BOXES[plain].format(n=number)
     return (AT_HEIGHT if number and plain == DISPLACEMENT else MEANINGS[plain]).format(n=number)
 
 
@@ -222,24 +227,38 @@ class BoxData(Data):
     width_m: float
     height_m: float
     density_kg_per_m3: float
-    x_m: float = Field(description="Of the centre at t = 0.")
-    lift_m: float = Field(description="Of the lowest corner at t = 0 above what is below.")
-    tilt_deg: float = Field(description="At t = 0, counter-clockwise.")
-    velocity_m_per_s: tuple[float, float] = Field(description="Of the centre at t = 0, along the ground and upwards.")
+    x_m: float = Field(description="Of the centre at t = 0, along the ground.")
+    y_m: float = Field(description="Of the centre at t = 0, above the ground.")
+    angle_rad: float = Field(description="At t = 0, counter-clockwise.")
+    velocity_x_m_per_s: float = Field(description="Of the centre at t = 0, along the ground.")
+    velocity_y_m_per_s: float = Field(description="Of the centre at t = 0, upwards.")
     spin_rad_per_s: float = Field(description="At t = 0, counter-clockwise.")
 
 
 class RigidData(Data):
-    """Rigid boxes on a plane, on each other in this order, the first one on the ground."""
+    """Rigid boxes on a plane, which is level in its own frame; on a slope gravity is turned to g (sin, -cos)."""
 
-    boxes: tuple[BoxData, ...]
+    boxes: tuple[BoxData, ...] = Field(description="On each other, the first one on the ground.")
     gravity_m_per_s2: float
-    slope_deg: float = Field(description="Gravity is turned to g (sin, -cos) in x and y; x is along the ground.")
-    friction_deg: float = Field(description="Angle of friction of every contact; 0: frictionless.")
-    restitution: float = Field(description="Rebound over approach speed of every contact.")
-    stiffness_N_per_m: float | None = Field(description="Of the contact of a box with the ground; null: rigid.")
+    slope_deg: float = Field(description="Down towards +x.")
+    friction_deg: float = Field(description="Angle of Coulomb friction of every contact; 0: frictionless.")
+    restitution: float = Field(description="Newton's, of every contact: rebound over approach speed.")
+    stiffness_N_per_m: float | None = Field(
+        description="Of the contact of a box with the ground; null: rigid, or the program's own."
+    )
     base_amplitude_m: float = Field(description="A of the ground's motion A (1 - cos(2 pi f t)) along itself.")
-    base_frequency_Hz: float
+    base_frequency_Hz: float = Field(description="f of that motion.")
+
+
+class NumberData(Data):
+    """A number of an answer to a problem of rigid boxes, and the band in which it passes."""
+
+    name: str
+    unit: str
+    exact: float
+    low: float
+    high: float
+    reason: str
 
 
 class SamplingData(Data):
@@ -250,26 +269,15 @@ class SamplingData(Data):
 
 
 class ColumnOfAnswer(Data):
-    """A column that an answer holds, and the band of its error; null where numbers that it yields are judged."""
+    """A column that an answer holds, and the band of its error; null where an answer is judged by numbers."""
 
     name: str
     meaning: str
-    measure: str | None
-    until_s: float | None
-    low: float | None
-    high: float | None
-    reason: str | None
-
-
-class NumberOfAnswer(Data):
-    """A number that is measured on the columns of an answer, its exact value, and its band."""
-
-    name: str
-    unit: str
-    exact: float
-    low: float
-    high: float
-    reason: str
+    measure: str | None = None
+    until_s: float | None = None
+    low: float | None = None
+    high: float | None = None
+    reason: str | None = None
 
 
 class ProblemData(Data):
@@ -289,8 +297,8 @@ class ProblemData(Data):
     rigid: RigidData | None = None
     sampling: SamplingData
     answer: tuple[ColumnOfAnswer, ...]
-    numbers: tuple[NumberOfAnswer, ...] = Field((), description="Of rigid boxes, which are judged by them.")
-    exact: str = Field(description="CSV file of the exact motion, beside this one's directory.")
+    numbers: tuple[NumberData, ...] = Field((), description="What is measured on an answer of rigid boxes.")
+    exact: str | None = Field(description="CSV file of the exact motion, beside this one's directory; null: none.")
 
 
 class SubmissionData(Data):
@@ -357,11 +365,23 @@ def load_data(scene: Scene) -> LoadData:
     return LoadData.of(scene.load)
 
 
-def rigid_data(scene: Scene) -> RigidData | None:
-    """Return the rigid boxes of a scene, if it has some."""
-    if scene.rigid is None:
-        return None
-    return RigidData.of(scene.rigid, boxes=tuple(map(BoxData.of, scene.rigid.box)))
+def rigid_data(rigid: RigidSection) -> RigidData:
+    """Return rigid boxes on a plane, each where it is at t = 0."""
+    boxes = []
+    for box, (x, y, angle) in zip(rigid.box, rigid.starts, strict=True):
+        velocity_x, velocity_y = box.velocity
+        boxes.append(
+            BoxData.of(
+                box,
+                x_m=x,
+                y_m=y,
+                angle_rad=angle,
+                velocity_x_m_per_s=velocity_x,
+                velocity_y_m_per_s=velocity_y,
+                spin_rad_per_s=box.spin,
+            )
+        )
+    return RigidData.of(rigid, boxes=tuple(boxes))
 
 
 def column_data(scene: Scene) -> ColumnData | None:

@@ -42,6 +42,11 @@ class Problem:
         return self.scene.title or self.name
 
     @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of an answer."""
+        return self.scene.run.columns
+
+    @property
     def instants(self) -> Array:
         """Instants at which it is answered [s]: the steps of the scene up to where its exact motion ends."""
         steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)
@@ -62,7 +67,7 @@ ASKS = {
     "joint": "A shear wave through a joint that slips: what passes, what is sent back, and the slip.",
     "mass-ratio": "A heavy block on one of a thousandth of its mass: the light one rings between stiff contacts.",
 }
-PROBLEMS = (*ASKS, *boxes.ASKS)
+PROBLEMS = tuple(ASKS)  # of blocks and columns; those of rigid boxes are in `validation.problems.boxes`
 
 
 def scene_name(name: str) -> str:
