@@ -13,7 +13,7 @@ from validation.gates.gate import Status
 from validation.problems.boxes import box_problems
 from validation.results import Results
 from validation.solvers import registry
-from validation.studies.engines import cells, programs, study
+from validation.studies.engines import cells, predictions, programs, study
 from validation.studies.engines.cells import Point, finding, from_where
 from validation.studies.engines.table import EngineTable, read
 from validation.studies.field import programs as field_programs
@@ -112,6 +112,7 @@ def test_the_table_of_two_problems(brought: None, tmp_path: Path, monkeypatch: p
     assert soft.says.startswith("restitution 0.3 (exact 1), e = 1")
     assert soft.finding == "the error does not shrink with the step: 20 of its band at first, 20 after 4 halvings"
     assert soft.seconds is not None and soft.seconds > 0
+    assert all(point.seconds for point in soft.points)
     assert bounces["pymunk"].verdict == bounces["drake"].verdict == NOT_RUN
     assert bounces["mine"].verdict == FAIL and bounces["mine"].says == "not a number"
     assert bounces["mine"].error is None
@@ -142,7 +143,7 @@ def test_from_where_on_all_flags_are_up(flags: dict[float, bool], value: float) 
 
 
 def points(*errors: float | None, steps: int = 100) -> list[Point]:
-    return [Point(n, 0.1 / 2**n, steps * 2**n, 1.0, error, "completed") for n, error in enumerate(errors)]
+    return [Point(n, 0.1 / 2**n, steps * 2**n, error, "completed") for n, error in enumerate(errors)]
 
 
 @pytest.mark.parametrize(
@@ -166,3 +167,17 @@ def test_a_curve_that_is_short_or_whose_steps_were_not_halved_shows_nothing() ->
     assert finding(points(8.0, 4.0, math.inf, 1.0)) == ""
     same_steps = [replace(point, steps=100) for point in points(8.0, 4.0, 2.0, 1.0)]
     assert finding(same_steps) == ""
+
+
+def test_a_program_that_falls_otherwise_than_its_integrator_is_seen(
+    brought: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both toys are symplectic Euler, and neither is Box2D, which makes four parts of a step."""
+    falls = [predictions.Fall(name, lead, "why") for name, lead in (("box2d", 1.0), ("box2d-default", 0.25))]
+    monkeypatch.setattr(predictions, "FALLS", (*falls, predictions.Fall("mujoco", 1.0, "why")))
+    gates, table = run(("bouncing",), tmp_path, monkeypatch)
+    assert gates["rigid-bouncing box2d falls"] is Status.PASS
+    assert gates["rigid-bouncing box2d-default falls"] is Status.FAIL
+    assert gates["rigid-bouncing mujoco falls"] is Status.NOT_RUN
+    soft = table.cell("bouncing", "box2d-default")
+    assert soft.verdict == FAIL and soft.says.startswith("energy in the end over that at the start")

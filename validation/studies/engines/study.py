@@ -18,7 +18,7 @@ from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.declaration import Study
-from validation.studies.engines import cells
+from validation.studies.engines import cells, predictions
 from validation.studies.engines.cells import BESIDE, case_scenes, curve_scenes
 from validation.studies.engines.programs import BoxProgram, about, box_programs
 from validation.studies.engines.table import STUDY
@@ -34,6 +34,7 @@ def gates() -> Iterator[Gate]:
     for name in box_problems():
         why = "it is the exact motion; what is left is what measuring at the rows adds"
         yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, SAMPLED, why)
+    yield from predictions.gates()
     for program in box_programs():
         if program.kind in ("chosen", "default"):
             why = "a program that is installed answers a problem at least; there are no more than all"
@@ -43,6 +44,7 @@ def gates() -> Iterator[Gate]:
 def derived() -> Iterator[Derived]:
     """Yield the cells, and how many problems each program answers."""
     yield from cells.derived()
+    yield from predictions.derived()
     for program in box_programs():
         if program.kind in ("chosen", "default"):
             yield Derived(STUDY, program.name, (), _answered(program))
@@ -65,12 +67,18 @@ def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which cases each problem has."""
     problems = []
     cases = {}
+    curves = {}
     for name, problem in box_problems().items():
         title = problem.scene().title
         problems.append({"name": name, "scene": PREFIX + name, "title": title, "asks": ASKS[name]})
         cases[name] = [scene.name for _, scene in case_scenes(name)]
-        cases[name] += [scene.name for scene in curve_scenes(name)]
-    return {"problems": problems, "cases": cases, "programs": [_program(one) for one in box_programs()]}
+        curves[name] = [scene.name for scene in curve_scenes(name)]
+    return {
+        "problems": problems,
+        "cases": cases,
+        "curves": curves,
+        "programs": [_program(one) for one in box_programs()],
+    }
 
 
 def _program(program: BoxProgram) -> dict[str, Any]:
