@@ -386,7 +386,7 @@ def programs(engines: EngineTable) -> Blocks:
         "Version",
         TableColumn("Model", "fill"),
         TableColumn("Settings", "fill"),
-        TableColumn("Adapter", "code"),
+        "Adapter",
     )
     note = f"The adapters are in {ADAPTERS} of this suite's repository."
     return [
