@@ -82,7 +82,7 @@ def submission() -> JSON:
 
 
 def answers() -> JSON:
-    return {"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}
+    return {"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE, "step_s": 1e-3}
 
 
 @pytest.mark.parametrize("name", ["locked", "column", "stack", "mass-ratio", "cradle", "joint"])

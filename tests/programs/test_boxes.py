@@ -20,7 +20,7 @@ if str(PEERS) not in sys.path:
     sys.path.insert(0, str(PEERS))
 
 from peers import box2d, bullet, mujoco, mujoco_boxes, mujoco_model, pymunk  # noqa: E402
-from peers.boxes import ground_ends, spring_step, substeps  # noqa: E402
+from peers.boxes import SLOW_CORRECTION, ground_ends, spring_step, substeps  # noqa: E402
 
 DOUBLE = 1e-9
 SINGLE = 3e-4  # m or rad: 400 sub-steps, each rounded by half a unit in the last place of 10 m
@@ -168,11 +168,11 @@ def test_returns_the_asked_share_of_the_velocity_above_every_threshold(program: 
     # Overlap, at most a step of approach, is corrected by a velocity in Bullet and in MuJoCo; of the former as it comes
     # by a fifth a step, beside 8 % of damping. MuJoCo's impedance is not quite 1.
     shares = {
-        bullet.Bullet: program.own_step * bullet.SLOW_CORRECTION,
+        bullet.Bullet: program.own_step * SLOW_CORRECTION,
         bullet.AsItComes: 0.2,
-        mujoco.MuJoCo: program.own_step * mujoco_boxes.CORRECTION_RATE + 2 * (1 - mujoco_boxes.IMPEDANCE),
+        mujoco.MuJoCo: program.own_step * SLOW_CORRECTION + 2 * (1 - mujoco_boxes.REBOUND_IMPEDANCE),
     }
-    within = 2.0 * shares.get(program.solver, 0.0) + 1e-5
+    within = 2.0 * shares.get(program.solver, 0.0) + max(program.rounding, 1e-5)
     assert velocity == pytest.approx(2.0 * restitution, abs=within)
 
 

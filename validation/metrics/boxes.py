@@ -12,7 +12,7 @@ from validation.scenes.rigid import BoxSection, RigidSection
 
 Rows = NDArray[np.bool_]
 SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included
-LATE = 2.0  # s at the end of a run, over which its last energy is taken
+LATE = 1.0  # s at the end of a run, over which its last energy is taken; longer than the flight from 1 m
 
 
 def column(history: History, part: str, box: int = 1) -> Array:

@@ -254,7 +254,7 @@ def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
 
 FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
 STANDING_CASES = tuple(
-    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 50}) for friction in FRICTIONS
+    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 40}) for friction in FRICTIONS
 )
 
 
@@ -695,12 +695,12 @@ def box_problems() -> Mapping[str, BoxProblem]:
     problems = (
         BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}),
         BoxProblem("restitution", restitution, _restitution_cases(), {}),
-        BoxProblem("bouncing", bouncing, curve={"time.steps": 180}),
+        BoxProblem("bouncing", bouncing, curve={"time.steps": 120}),
         BoxProblem("tumbling", tumbling),
         BoxProblem("pile", pile, forces=True),
-        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, {"time.steps": 10}, forces=True),
+        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, forces=True),
         BoxProblem("toppling", toppling, _toppling_cases(), {}),
-        BoxProblem("shaken", shaken, curve={}),
+        BoxProblem("shaken", shaken, curve={"time.steps": 60}),
         BoxProblem("impact", impact, curve={}, forces=True),
     )
     return {one.name: one for one in problems}

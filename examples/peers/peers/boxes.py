@@ -14,6 +14,8 @@ from validation.solvers.user import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
+SLOW_CORRECTION = 0.2  # 1/s
+FAST_CORRECTION = 20.0  # 1/s
 SPRING_RESOLUTION = 0.02  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
@@ -49,6 +51,15 @@ def spring_step(scene: Scene) -> float:
     if rigid.stiffness is None:
         return math.inf
     return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
+
+
+def correction_rate(scene: Scene) -> float:
+    """Return the rate at which overlap is to decay in a program that corrects it by a velocity that stays [1/s].
+
+    A landing overlaps by as much as the program's step, and what it is pushed out by it keeps: with restitution, energy
+    that no one brought. Where boxes come to rest on each other overlap adds up instead, and is to go.
+    """
+    return SLOW_CORRECTION if boxes_of(scene).restitution else FAST_CORRECTION
 
 
 def ground_ends(scene: Scene) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import importlib.metadata
 import math
 from typing import Any
 
-from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, spring_step, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import BoxSection
@@ -18,12 +18,7 @@ from validation.scenes.scene import Scene
 
 RECIPE = "pip install pybullet==3.2.7"
 USUAL_STEP = 1 / 240  # s: Bullet's fixedTimeStep as it comes
-STEP = 1 / 480  # s
-ITERATIONS = 100
-# Overlap decays so [1/s], by a velocity that stays with the box: Bullet's own fifth a step throws one that lands up,
-# however small the step is. Boxes that rebound need little of it, those that come to rest on each other more.
-SLOW_CORRECTION = 1.0
-FAST_CORRECTION = 20.0
+STEP = 1 / 960  # s
 HALF_DEPTH = 0.5  # m of boxes
 THICKNESS = 10.0  # m of the ground, as that of plane.urdf, which is a box too
 CARRIER = 1e-9  # mass of a link between two joints, over that of its box
@@ -55,10 +50,9 @@ class World:
         self.bullet.setTimeStep(step, physicsClientId=self.server)
         if not default:
             self.bullet.setPhysicsEngineParameter(
-                numSolverIterations=ITERATIONS,
                 restitutionVelocityThreshold=0.0,
                 contactSlop=0.0,  # 10 micrometres as it comes: over the step, a velocity that a landing loses
-                contactERP=step * (SLOW_CORRECTION if rigid.restitution else FAST_CORRECTION),
+                contactERP=step * correction_rate(scene),  # a fifth a step as it comes, however small the step is
                 physicsClientId=self.server,
             )
         self.ground, self.ground_link = self._ground()
@@ -222,8 +216,8 @@ class Bullet:
     default = False
     model = "boxes of 1 m on joints that keep them in the plane, ground a box; contact by sequential impulses"
     settings = (
-        f"step 1/480 s, {ITERATIONS} iterations, no damping, restitution at every speed, "
-        "overlap corrected at 20 1/s, with restitution at 1 1/s"
+        "step 1/960 s; no damping, no slop, restitution at every speed, "
+        "overlap corrected at 20 1/s, with restitution at 0.2 1/s"
     )
 
     @property
