@@ -56,7 +56,7 @@ class LMGC90:
             "program": "LMGC90 (compas_lmgc90)",
             "version": version,
             "recipe": RECIPE,
-            "model": "polyhedra kept in a plane; IQS_CLB, RST_CLB with restitution, ELASTIC_REPELL_CLB with a stiffness",
+            "model": "polyhedra kept in a plane; IQS_CLB, with restitution RST_CLB, with stiffness ELASTIC_REPELL_CLB",
             "settings": self.settings,
         }
 
