@@ -22,7 +22,7 @@ KNOWING = ("solvers/", "studies/", "report/", "gallery/", "cli/")  # rooms that 
 NAMED = {
     "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
-    "scenes/kinds.py": {"dda", "fem", "layers", "column-events"},  # the same of a column
+    "scenes/kinds.py": {"dda", "fem", "layers", "column-events", "rigid-exact"},  # the same of a column and of boxes
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},

@@ -487,7 +487,7 @@ WHAT_IS_MISREAD = {  # of tests/oracles/six_unknowns.py: scenes that fail where 
 }
 
 
-@pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 4))
+@pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 8))
 def test_a_datum_that_a_solver_misreads_is_named(solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     answer_here(monkeypatch)
     told = told_by(f"six_unknowns:{solver}", tmp_path)

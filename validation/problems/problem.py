@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from validation.problems.truth import Truth, truth_of
+from validation.runs.history import Array
 from validation.scenes.scene import Scene, load_scene
 
+ROUNDING = 1e-12  # relative, of the last instant
 PREFIX = "field-"  # of the scenes of problems
 
 
@@ -35,6 +39,17 @@ class Problem:
     def title(self) -> str:
         """Title of the scene."""
         return self.scene.title or self.name
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of an answer."""
+        return self.scene.run.columns
+
+    @property
+    def instants(self) -> Array:
+        """Instants at which it is answered [s]: the steps of the scene up to where its exact motion ends."""
+        steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)
+        return np.asarray(steps[steps <= self.truth.until * (1 + ROUNDING)])
 
 
 ASKS = {

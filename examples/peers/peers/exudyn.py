@@ -84,7 +84,8 @@ class Exudyn:
         time.endTime = scene.time.step * scene.time.steps
         time.numberOfSteps = steps * scene.time.steps
         self.choose(time, rigid)
-        return named(model.rows(settings, scene.time.step * np.arange(1.0, scene.time.steps + 1)))
+        rows = model.rows(settings, scene.time.step * np.arange(1.0, scene.time.steps + 1))
+        return named(rows, time.numberOfSteps)
 
     def stiffness(self, rigid: RigidSection, step: float) -> list[float]:
         """Return the stiffness of the contact below each box, where the scene gives none [N/m]."""

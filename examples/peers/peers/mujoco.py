@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
 from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
 from validation.runs.history import Array
@@ -26,7 +27,14 @@ FINE_SLIP, COARSE_SLIP, MANY_SLIP = 0.005, 0.2, 300_000  # of the leapfrog that 
 HEAVY = 1e12  # mass of a base that moves as it is told, over the block's
 STEADY = 1e-3  # settlement of a block that turns over its lift by the tilt up to which it and its base are rigid
 RIGID = 100.0  # stiffness of a block over that of its springs from which a rigid box may stand for it
-OF_CONTACT = {features.UNILATERAL, features.FRICTION, features.SLOPE, features.ROTATION, features.COLUMN}
+OF_CONTACT = {
+    features.UNILATERAL,
+    features.FRICTION,
+    features.SLOPE,
+    features.ROTATION,
+    features.COLUMN,
+    features.RIGID_BOXES,
+}
 GLUE = 100.0  # coefficient of friction of a corner that never slips, of a box
 TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
 
@@ -221,6 +229,8 @@ class MuJoCo:
         NotImplementedError
             MuJoCo is not installed, or the scene has what it cannot express.
         """
+        if scene.rigid is not None:
+            return boxes(scene, default=self.default)
         if scene.column is not None:
             return column(scene, default=self.default)
         refuse("gg below 1 discounts the velocity of DDA's steps, which MuJoCo has not", where=scene.time.discount != 1)

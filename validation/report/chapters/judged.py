@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from validation.problems.bands import Standard
-from validation.problems.data import united
+from validation.problems.data import PACK, united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
 from validation.problems.quantities import COUNTED, Quantity
@@ -69,6 +69,39 @@ def per_cent(share: float | None) -> str:
     return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
+def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
+    """Return a judgement as plain data."""
+    columns = [
+        {
+            "column": united(column.name),
+            "verdict": str(column.word),
+            "error": column.error if column.error is None or column.error < float("inf") else "inf",
+            "allowed": column.band,
+            "until_s": column.until,
+            "within_until_s": column.within,
+            "reason": column.reason,
+        }
+        for column in judged.judgement.columns
+    ]
+    why = judged.cause
+    return {
+        "pack": PACK,
+        "problem": judged.problem.name,
+        "program": program,
+        "verdict": str(judged.judgement.word),
+        "not_reported": [united(name) for name in judged.judgement.withheld],
+        "cause": None if why is None else _cause_data(why),
+        "columns": columns,
+        "warnings": list(judged.warnings),
+        "about": dict(judged.about),
+    }
+
+
+def _cause_data(cause: Cause) -> dict[str, Any]:
+    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
+
+
 def page(answer: JudgedAnswer, directory: Path) -> Blocks:
     """Return the blocks of the page; its figures are written to a directory."""
     judgement = answer.judgement
@@ -85,7 +118,7 @@ def page(answer: JudgedAnswer, directory: Path) -> Blocks:
         _columns(judgement.columns, answer.standard),
         *figures(answer, directory),
         *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
-        table(("Of the answer", TableColumn("", "fill")), tuple(answer.about)),
+        *([table(("Of the answer", TableColumn("", "fill")), tuple(answer.about))] if answer.about else []),
     ]
 
 

@@ -1,0 +1,117 @@
+"""Drake's adapter: that it states a scene of boxes rightly, by what Drake's own integrator and contact must give."""
+
+import math
+import sys
+
+import numpy as np
+import pytest
+from peers.drake import OWN_STEP, AsItComes, Drake, program
+from programs.rigid_scenes import euler, rigid_scene
+
+try:
+    program()
+    ABSENT = False
+except NotImplementedError:
+    ABSENT = True
+installed = pytest.mark.skipif(ABSENT, reason="NOT RUN: Drake is not installed")
+both = pytest.mark.parametrize("solver", [Drake(), AsItComes()], ids=["chosen", "default"])
+SLOPE = math.radians(20.0)
+
+
+def test_refuses_a_restitution_between_none_and_all():
+    with pytest.raises(NotImplementedError, match=r"rigid\.restitution"):
+        Drake().solve(rigid_scene(restitution=0.5))
+
+
+def test_a_program_that_is_absent_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pydrake.all", None)
+    with pytest.raises(NotImplementedError, match="is not installed: pip install"):
+        Drake().solve(rigid_scene())
+
+
+def test_the_corners_of_boxes_on_each_other_have_no_given_stiffness():
+    with pytest.raises(NotImplementedError, match=r"rigid\.stiffness"):
+        Drake().solve(rigid_scene({}, {}, stiffness=1e7))
+
+
+@installed
+def test_its_default_step_is_that_of_a_new_configuration():
+    assert program().MultibodyPlantConfig().time_step == OWN_STEP
+
+
+@installed
+@both
+def test_a_box_falls_and_spins_as_semi_implicit_euler_does(solver):
+    scene = rigid_scene({"lift": 50.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0)
+    _, height, angle = scene.rigid.starts[0]
+    columns = solver.solve(scene)
+    np.testing.assert_allclose(columns["x_1"], euler(scene, solver.step, 3.0, 9.81 * math.sin(SLOPE)), atol=1e-9)
+    fall = euler(scene, solver.step, 1.0, -9.81 * math.cos(SLOPE))
+    np.testing.assert_allclose(columns["y_1"], height + fall, atol=1e-9)
+    np.testing.assert_allclose(columns["angle_1"], angle + euler(scene, solver.step, 9.0, 0.0), atol=1e-9)
+
+
+@installed
+@pytest.mark.parametrize("density", [1.0, 5000.0])
+def test_a_box_without_friction_slides_as_semi_implicit_euler_does_whatever_its_mass(density):
+    scene = rigid_scene({"density": density}, slope=20.0)
+    expected = euler(scene, OWN_STEP, 0.0, 9.81 * math.sin(SLOPE))
+    # What is left is the tilt by which the contact gives way, a part in a hundred thousand.
+    np.testing.assert_allclose(Drake().solve(scene)["x_1"], expected, rtol=1e-5)
+
+
+@installed
+def test_a_box_slides_with_coulomb_friction_to_the_order_of_the_step():
+    """The friction of a step is that of the normal force of the step before: at first of none."""
+    errors = []
+    for refine in (0, 2):
+        scene = rigid_scene(slope=20.0, friction=15.0, refine=refine)
+        acceleration = 9.81 * (math.sin(SLOPE) - math.tan(math.radians(15.0)) * math.cos(SLOPE))
+        exact = acceleration / 2
+        errors.append(abs(Drake().solve(scene)["x_1"][-1] / exact - 1))
+    assert errors[0] < 0.01
+    assert errors[1] < 0.5 * errors[0]
+
+
+@installed
+@both
+def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
+    scene = rigid_scene({"width": 2.0, "height": 1.5}, stiffness=1e7)
+    weight = 9.81 * 3000.0
+    assert 0.75 - solver.solve(scene)["y_1"][-1] == pytest.approx(weight / 1e7, rel=1e-3)
+
+
+@installed
+@both
+def test_no_dissipation_gives_the_speed_back_where_the_step_resolves_the_contact(solver):
+    """Half a period of the contact takes pi (m / k)^(1/2) = 99 ms, of which a step of 1/16 ms loses little."""
+    scene = rigid_scene({"velocity": (0.0, -1.0)}, restitution=1.0, stiffness=1e6, gravity=0.0, refine=4, steps=20)
+    height = solver.solve(scene)["y_1"]
+    rebound = (height[-1] - height[-2]) / scene.time.step
+    omega = math.sqrt(1e6 / 1000.0)
+    # Each implicit step of length h takes away the fraction (omega h)^2 / 2 of the amplitude: pi omega h / 2 over all.
+    assert 1 - rebound == pytest.approx(math.pi * omega * OWN_STEP / 16 / 2, rel=0.2)
+
+
+@installed
+@both
+def test_a_ground_that_moves_takes_a_box_along(solver):
+    scene = rigid_scene(friction=45.0, base_amplitude=0.1, steps=20)
+    times = scene.time.step * np.arange(1, 21)
+    expected = [scene.rigid.base(time)[0] for time in times]
+    tolerance = 2e-5 if solver.chosen else 2e-3  # as it comes the box leans on one point, and rocks
+    np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, atol=tolerance)
+
+
+@installed
+def test_a_ground_that_moves_leaves_a_frictionless_box_where_it_is():
+    scene = rigid_scene(base_amplitude=0.1, steps=50)
+    assert np.max(np.abs(Drake().solve(scene)["x_1"])) < 1e-9
+
+
+@installed
+@both
+def test_forces_of_a_pile_are_the_weights_above(solver):
+    columns = solver.solve(rigid_scene({}, {"density": 500.0}, {"density": 2000.0}, friction=30.0, steps=60))
+    forces = [columns[f"force_{number}"][-10:].mean() for number in (1, 2, 3)]
+    assert forces == pytest.approx([9.81 * 3500.0, 9.81 * 2500.0, 9.81 * 2000.0], rel=0.05)
