@@ -65,6 +65,7 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_pa
         if name.endswith(".svg"):
             ElementTree.fromstring(text)
     index = unescape(re.sub(r"\s+", " ", files["index.html"]))
+    assert "Not answered by any of them: opening, rebound," in index
     assert "FAIL</span> <small>4 % of 1.5 %</small>" in index and "PASS</span> <small>1 % of 5.7 %</small>" in index
     assert "rotation_rad: cause: a <cause> & more." in index
     chart = unescape(files["program_bob-s-code-co.html"])
