@@ -83,6 +83,9 @@ def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path
     assert (row["verdict"], row["step_s"], row["cause"]["ids"]) == ("FAIL", 0.002, ["factor"])
     assert (row["columns"][0]["error"], row["columns"][0]["allowed"]) == (0.04, pytest.approx(0.015, abs=6e-4))
     assert json.loads(typed("judge", layout, "--json").stdout) == verdicts
+    rounding = answered(tmp_path / "rounding", 1 + 1e-13, ("locked",))
+    (row,) = json.loads(typed("judge", rounding, "--json").stdout)["answers"]
+    assert [column["error"] for column in row["columns"]] == [1e-11, 1e-11]
 
 
 def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(
