@@ -133,22 +133,6 @@ def test_energies_of_small_motion_are_the_same():
         assert np.max(np.abs(turned.energies[name] - small.energies[name])) < 1e-6 * size, name
 
 
-def test_a_mirrored_block_moves_as_its_mirror_image():
-    outline = np.array([[0, 0], [1.4, 0], [1.7, 1.9], [0.2, 2.2]])
-    law, load = Unilateral(1e8, 4e7, friction=0.4), Load(2e3, 0.1, 3e3, 9.81, slope=12.0)
-    other = Load(2e3, -0.1, -3e3, 9.81, slope=-12.0)
-    mirror = (outline * [-1, 1])[[1, 0, 3, 2]]
-    given = {"tilt": 0.4, "velocity": (0.3, -0.2), "spin": 0.5}
-    turned = {"tilt": -0.4, "velocity": (-0.3, -0.2), "spin": -0.5}
-    scheme = Scheme(*CONSTANT, 1.0, 5e-3)
-    left = solve_rolling(RollingModel(Block(outline, MATERIAL), law, load, **given), scheme, 100, COLUMNS)
-    right = solve_rolling(RollingModel(Block(mirror, MATERIAL), law, other, **turned), scheme, 100, COLUMNS)
-    assert np.max(np.abs(left.columns["displacement"] - right.columns["displacement"])) < 1e-9
-    assert np.max(np.abs(left.columns["rotation"] + right.columns["rotation"])) < 1e-9
-    assert np.max(np.abs(left.gap[[0, 1]] - right.gap[[1, 0]])) < 1e-9
-    assert np.count_nonzero(np.diff(left.states)) > 3
-
-
 def test_a_base_that_moves_steadily_is_a_block_that_flies_the_other_way():
     scheme, V = Scheme(*AVERAGE, 1.0, 2e-3, "consistent"), np.array([0.4, 0.3])
     motion = BaseMotion([0.0, 1.0], [[0.0, 0.0], V])
