@@ -535,8 +535,8 @@ def test_yade(tmp_path: Path) -> None:
         if alpha < 0.3:
             cycles = len(peaks) - 1
             decayed = math.log(peaks[0] / peaks[-1]) / (2 * math.pi * cycles)
-            # A sampled peak is short by up to (w dt / 2)^2 / 2. The sign of the damping changes four times a cycle, late
-            # by up to half a step, in which force or velocity is w dt / 2 of its amplitude.
+            # A sampled peak is short by up to (w dt / 2)^2 / 2. The sign of the damping changes four times a cycle,
+            # late by up to half a step, in which force or velocity is w dt / 2 of its amplitude.
             W = advice.omega_step
             late = 2 * alpha * W**2
             assert decayed == pytest.approx(advice.hidden, abs=(late + W**2 / 8 / cycles) / (2 * math.pi))

@@ -451,6 +451,7 @@ def _pybullet(question: _Question) -> EngineAdvice:
             f"must be above {PYBULLET_SLOP:g} m, by which PyBullet lets bodies overlap before a contact pushes",
             field="--penetration",
             value=f"{targets.penetration:g} m",
+            advice="state a larger one, or leave the contact rigid as it comes: it stands that deep",
         )
     k = landing.load / (targets.penetration - PYBULLET_SLOP)
     w = math.sqrt(k / landing.mass)
@@ -523,7 +524,8 @@ def _mujoco(question: _Question) -> EngineAdvice:
     stated = targets.penetration
     if stated is None:
         if question.acceleration <= 0:
-            raise InputError("must be given, nothing stands in the contact", field="--penetration")
+            advice = "without a weight the penetration at rest states no stiffness: take a scene with gravity"
+            raise InputError("must be positive", field="load", value=f"{question.landing.load:g} N", advice=advice)
         stated = _mujoco_own_penetration(question)
 
     contact = _mujoco_contact(question, stated, step)
@@ -644,6 +646,7 @@ def _yade(question: _Question) -> EngineAdvice:
             "must be above 0 in Yade, whose damping of all forces would stop every body",
             field="--restitution",
             value=f"{targets.restitution:g}",
+            advice="state a small one, 0.01, or take pybullet or mujoco, whose dashpots stop a body nearly for good",
         )
     settings: Settings = {"local_damping": alpha}
     slower = math.sqrt(1 - alpha)
