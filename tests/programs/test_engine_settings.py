@@ -512,6 +512,7 @@ def yade(runs: list[tuple[float, ...]], folder: Path) -> list[np.ndarray]:
     return [np.array(answer) for answer in json.loads(out.read_text())]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("yade") is None, reason="NOT RUN: yade is not installed")
 def test_yade(tmp_path: Path) -> None:
     advised = [
