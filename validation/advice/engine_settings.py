@@ -425,9 +425,10 @@ def _box2d(question: _Question) -> EngineAdvice:
         speed = question.landing.speed
         settings |= {"restitution": e, "restitution_threshold": min(1.0, speed / 2)}
         if question.points == 1:
-            # the speed is taken where the step begins, up to a step before the landing
-            late = question.acceleration * SUBSTEPS * step / speed
-            rebounds = {"mean": e * (1 - late / 2), "low": max(e * (1 - late), 0.0), "high": e}
+            # The speed is that at the start of a step: before the landing where the contact is seen ahead (20 mm), or
+            # after it. A fall in sub-steps is faster or slower than the exact one by up to a sub-step besides.
+            late = question.acceleration * (SUBSTEPS + 1) * step / speed
+            rebounds = {"mean": e, "low": max(e * (1 - late), 0.0), "high": e * (1 + late)}
         else:
             notes.append(
                 "the rebound of a flat box is not known: Box2D solves its corners one after the other; a circle has "
