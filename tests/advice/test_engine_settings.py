@@ -176,6 +176,6 @@ def test_the_command_is_the_function() -> None:
     expected = advise_engine(load_scene("field-rebound"), "pybullet", penetration=1e-3).as_dict()
     assert json.loads(typed(*words, "--json").stdout) == json.loads(json.dumps(expected))
     page = typed(*words).stdout
-    assert "contact_stiffness" in page and "as it comes" in page
+    assert "contactStiffness" in page and "as it comes" in page
     assert "--damping" in refused(*words, "--damping", 0.05)
     assert "--for" in refused("advise", "field-rebound", "--damping", 0.05, "--penetration", 1e-3)

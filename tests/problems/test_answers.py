@@ -7,17 +7,23 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from oracles.answers import QUICK, STATED, answered
+from oracles.submissions import submitted
 
+from validation.cli.judging import judged_sets
 from validation.errors import InputError
 from validation.problems import packs
 from validation.problems.answers import AnswerSet, folder_name, keep, read_sets
 from validation.problems.data import PACK
 from validation.problems.defects import DefectsError
-from validation.problems.pack import ANSWERS_TEMPLATE, blank_table
+from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
 from validation.problems.problem import problem
-from validation.problems.submission import FILE
+from validation.problems.questions import question
+from validation.problems.submission import FILE, read_submission
+from validation.runs.history import History
+from validation.scenes.rigid import POSE
 
 Rows = list[list[str]]
 
@@ -301,3 +307,42 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path: Path) -> None:
         keep([*read_sets(tmp_path / "another"), *read_sets(mine)], layout)
     assert (place / "locked.csv").read_bytes() == kept
     assert [path.name for path in place.parent.iterdir()] == ["default"]  # neither is half of them written
+
+
+# ---- rigid boxes ----------------------------------------------------------------------------------------------------
+
+
+def boxes_answered(place: Path, name: str, **changed: float) -> None:
+    """Answer a problem of rigid boxes with boxes that stay where they are, columns times factors."""
+    asked = question(name)
+    starts = asked.scene.rigid.starts
+    poses = {f"{part}_{n}": x for n, start in enumerate(starts, start=1) for part, x in zip(POSE, start, strict=True)}
+    columns = {c: np.full(len(asked.instants), changed.get(c, 1.0) * poses[c]) for c in asked.columns}
+    (place / f"{name}.csv").write_text(table_of(History(asked.instants, columns), asked.columns))
+
+
+def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
+    place = answered(tmp_path, names=())
+    for name in ("standing", "standing-friction-19-deg", "pile"):
+        boxes_answered(place, name)
+    (judged,) = judged_sets(read_sets(place), lambda *given: None)
+    words = {name: str(one.word) for name, one in judged.judged.items()}
+    assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
+    assert judged.judged["standing-friction-19-deg"].deciding.quantity.name == "distance slid"
+
+
+def test_heights_in_millimetres_are_named(tmp_path: Path) -> None:
+    boxes_answered(answered(tmp_path, names=()), "pile", y_3=1e3)
+    (line,) = defects_of(tmp_path)
+    assert "pile.csv:1:" in line and "y_3_m: wrong units: it begins with 1000 times what is expected in SI, mm?" in line
+
+
+def test_boxes_are_no_submission_of_one_problem(tmp_path: Path) -> None:
+    (line,) = [str(one) for one in DefectsError.of(_refused(submitted(tmp_path, "", problem="standing"))).defects]
+    assert "problem: is answered in a folder of answers" in line
+
+
+def _refused(place: Path) -> InputError:
+    with pytest.raises(InputError) as caught:
+        read_submission(place)
+    return caught.value

@@ -170,7 +170,7 @@ def test_returns_the_asked_share_of_the_velocity_above_every_threshold(program: 
     shares = {
         bullet.Bullet: program.own_step * SLOW_CORRECTION,
         bullet.AsItComes: 0.2,
-        mujoco.MuJoCo: program.own_step * SLOW_CORRECTION + 2 * (1 - mujoco_boxes.IMPEDANCE),
+        mujoco.MuJoCo: program.own_step * SLOW_CORRECTION + 2 * (1 - mujoco_boxes.REBOUND_IMPEDANCE),
     }
     within = 2.0 * shares.get(program.solver, 0.0) + max(program.rounding, 1e-5)
     assert velocity == pytest.approx(2.0 * restitution, abs=within)

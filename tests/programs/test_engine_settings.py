@@ -320,6 +320,18 @@ def test_box2d_returns_nothing_of_its_spring(ratio: float) -> None:
 
 
 @needs("pyb2d3")
+def test_box2d_falls_asleep_before_a_slow_contact_is_at_rest() -> None:
+    advice = advise_landing(landing(1.0, 0.0), "box2d", Targets(7e-3))
+    assert any("sleep" in note for note in advice.notes)
+    awake = Box2D(advice, 0.0, 0.0)
+    tired = Box2D(advice, 0.0, 0.0)
+    tired.world.sleeping_enabled = True
+    heights = [[program.step()[0] for _ in range(1200)][-1] for program in (awake, tired)]
+    assert heights[0] == pytest.approx(-7e-3, rel=1e-3)
+    assert heights[1] > -0.9 * 7e-3
+
+
+@needs("pyb2d3")
 def test_box2d_as_it_comes() -> None:
     import pyb2d3
 

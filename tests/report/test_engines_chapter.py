@@ -133,7 +133,7 @@ def test_the_finding_says_who_stands_and_who_gains_energy() -> None:
     rows = rows_of(engines.findings(ENGINES))
     stands = rows["Who stands still? (standing, pile)"]
     assert stands == ("In all: Siconos. In part: Newton XPBD (pile), Box2D (standing).", "No: Siconos.")
-    assert rows["Who gains energy?"] == ("Newton XPBD (12 %).", "Siconos (31 times).")
+    assert rows["Who gains energy?"] == ("Newton XPBD (12\u00a0%).", "Siconos (31\u00a0times).")
     assert rows["Who bounces as asked? (restitution)"] == ("–", "–")
     calm = changed("bouncing", "newton-xpbd", quantities=ENGINES.cells["bouncing", "siconos"].quantities)
     assert rows_of(engines.findings(calm))["Who gains energy?"][0] == "None."
@@ -144,10 +144,10 @@ def test_the_overview_has_a_mark_and_an_error_in_every_cell() -> None:
     assert overview.rows == (
         ("Mechanics",),
         ("Siconos", "chosen", "PASS 0.5", "–", "PASS < 0.001", "PASS < 0.001"),
-        ("", "as it comes", "FAIL 240", "–", "FAIL > 1000", "–"),
+        ("", "as\u00a0it\u00a0comes", "FAIL 240", "–", "FAIL > 1000", "–"),
         ("Robotics",),
         ("Newton XPBD", "chosen", "FAIL 30", "n. a.", "FAIL 12", "PASS 0.1"),
-        ("", "as it comes", "–", "n. a.", "–", "–"),
+        ("", "as\u00a0it\u00a0comes", "–", "n. a.", "–", "–"),
         ("Games",),
         ("Box2D", "chosen", "PASS < 0.001", "–", "–", "–"),
         ("This suite",),
@@ -167,15 +167,20 @@ def test_prices_are_those_of_the_best_of_each_family() -> None:
     prices = engines.prices(ENGINES)
     assert [column.title for column in prices.columns] == ["Problem", "Mechanics", "Robotics", "Games"]
     assert prices.rows == (
-        ("standing", "Siconos: 0.04 s, 400 steps", "no run within the band", "Box2D: 0.002 s, 100 steps"),
+        (
+            "standing",
+            "Siconos: 0.04\u00a0s, 400\u00a0steps",
+            "no run within the band",
+            "Box2D: 0.002\u00a0s, 100\u00a0steps",
+        ),
     )
 
 
 def test_curves_of_one_finding_stand_in_one_line() -> None:
     rows = rows_of(engines.curve_findings(ENGINES, PROBLEMS[0]))
     falls = "The error falls at each of 3 halvings of the step, order 1.0"
-    assert rows[falls] == ("Siconos (0.04 s); Newton XPBD",)
-    assert rows["No error at any step"] == ("Box2D (0.002 s)",)
+    assert rows[falls] == ("Siconos (0.04\u00a0s); Newton XPBD",)
+    assert rows["No error at any step"] == ("Box2D (0.002\u00a0s)",)
 
 
 def test_bands_are_told_once_with_their_reason() -> None:

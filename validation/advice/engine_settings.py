@@ -44,7 +44,7 @@ LAST_DIGITS = 1e-9  # by which a timeconst at the edge of refsafe stays on its r
 REACHED = 1e-6  # of a restitution
 IMPEDANCE = 0.95  # MuJoCo's default dmax
 CRITICAL = 1.0  # damping ratio where no restitution is stated
-SETTLING = 0.1  # s, of a contact of Box2D that creeps into its rest longer than a body stays awake
+SETTLING = 0.06  # s, of a contact of Box2D's creep: exp(-0.5 / 0.06) is left when a slow body falls asleep
 PROGRAMS_ADVISED = ("box2d", "mujoco", "opensees", "pybullet", "yade")
 
 
@@ -417,8 +417,8 @@ def _box2d(question: _Question) -> EngineAdvice:
         settling = 2 * contact.ratio / contact.frequency
         if settling > SETTLING:
             notes.append(
-                f"it creeps into its rest in {settling:.3g} s: Box2D may put the body to sleep before, which "
-                "sleep_threshold = 0 prevents"
+                f"it creeps into its rest with a time constant of {settling:.3g} s, and Box2D puts a slow body to "
+                "sleep after 0.5 s: a sleep threshold of 0 lets it settle"
             )
     rebounds = None
     if targets.restitution is not None:
@@ -430,10 +430,9 @@ def _box2d(question: _Question) -> EngineAdvice:
             late = question.acceleration * SUBSTEPS * step / speed
             rebounds = {"mean": e * (1 - late / 2), "low": max(e * (1 - late), 0.0), "high": e}
         else:
-            one_by_one = (1 + 3 * lever) / (1 + lever) ** 2
             notes.append(
-                f"the restitution is that of a circle: Box2D solves the corners of a flat box one after the other, and "
-                f"its centre leaves with about {one_by_one:.3g} of it"
+                "the rebound of a flat box is not known: Box2D solves its corners one after the other; a circle has "
+                "the restitution"
             )
         notes.append("restitution is that of both shapes: Box2D takes the larger one")
     return question.answer(contact, settings, step, rebounds, None, notes)

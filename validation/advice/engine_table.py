@@ -50,10 +50,6 @@ class Program:
         return {one.name: one.default for one in self.parameters if one.default is not None}
 
 
-def _hertz(name: str, meaning: str, default: float) -> Parameter:
-    return Parameter(name, "Hz", meaning, "w = 2 pi hertz; twice that on a static body", default)
-
-
 PROGRAMS = {
     program.name: program
     for program in (
@@ -64,20 +60,20 @@ PROGRAMS = {
             1 / 240,
             2,
             (
-                _hertz("hertz", "b2WorldDef.contactHertz, b2World_SetContactTuning", 30.0),
-                Parameter("damping_ratio", "", "b2WorldDef.contactDampingRatio", "zeta", 10.0),
+                Parameter("hertz", "Hz", "contactHertz", "w = 2 pi hertz; twice that on a static body", 30.0),
+                Parameter("damping_ratio", "", "contactDampingRatio", "zeta", 10.0),
             ),
-            "b2MakeSoft, b2World_Step and b2SolveOverflowContacts of Box2D's solver.h, world.c and contact_solver.c",
+            "b2MakeSoft, b2World_Step, b2SolveOverflowContacts and b2ApplyOverflowRestitution of Box2D's source",
         ),
         Program(
             "bullet",
             "Bullet",
-            "3.25 (pybullet 3.2.7)",
+            "of pybullet 3.2.7",
             None,
             4,
             (
-                Parameter("erp", "", "error reduction of a contact", "erp = h k / (h k + c)"),
-                Parameter("cfm", "m/(N s)", "constraint force mixing of a contact", "cfm = 1 / (h k + c)"),
+                Parameter("erp", "", "erp", "erp = h k / (h k + c)"),
+                Parameter("cfm", "m/(N s)", "cfm", "cfm = 1 / (h k + c)"),
             ),
             "btSequentialImpulseConstraintSolver::setupContactConstraint",
         ),
@@ -88,10 +84,10 @@ PROGRAMS = {
             1 / 240,
             4,
             (
-                Parameter("contact_stiffness", "N/m", "changeDynamics contactStiffness", "k of a contact point"),
-                Parameter("contact_damping", "N s/m", "changeDynamics contactDamping", "c of a contact point"),
+                Parameter("contact_stiffness", "N/m", "contactStiffness", "k of a contact point"),
+                Parameter("contact_damping", "N s/m", "contactDamping", "c of a contact point"),
             ),
-            "setupContactConstraint as above; btManifoldResult::calculateCombinedContactStiffness and -Damping",
+            "setupContactConstraint as of Bullet; btManifoldResult::calculateCombinedContactStiffness and -Damping",
         ),
         Program(
             "mujoco",
@@ -102,8 +98,10 @@ PROGRAMS = {
             (
                 Parameter("timeconst", "s", "solref[0]", "w = 1 / (timeconst dampratio) at d = dmax", 0.02),
                 Parameter("dampratio", "", "solref[1]", "zeta at d = dmax", 1.0),
-                Parameter("dmax", "", "solimp[0] = solimp[1]: impedance d", "share 1 - d of the load"),
-                Parameter("solimp", "", "dmin, dmax, width, midpoint, power", "d(x)", (0.9, 0.95, 0.001, 0.5, 2.0)),
+                Parameter("dmax", "", "solimp, dmin = dmax = d", "share 1 - d of the load"),
+                Parameter(
+                    "solimp", "", "solimp", "d(x) by dmin, dmax, width, midpoint, power", (0.9, 0.95, 0.001, 0.5, 2.0)
+                ),
             ),
             "MuJoCo's documentation, Modeling, Solver parameters; getimpedance and mj_makeImpedance",
         ),
@@ -114,7 +112,7 @@ PROGRAMS = {
             None,
             1,
             (
-                Parameter("normal_stiffness", "N/m", "kn of the contact; E r of a sphere on a wall", "k"),
+                Parameter("normal_stiffness", "N/m", "kn", "k"),
                 Parameter("local_damping", "", "NewtonIntegrator.damping", "e = sqrt((1 - alpha) / (1 + alpha))", 0.2),
             ),
             "Yade's documentation, Formulation: numerical damping, critical timestep; Ip2_FrictMat_FrictMat_FrictPhys",
@@ -125,8 +123,8 @@ PROGRAMS = {
             "3.7.1 (openseespy 3.7.1.2)",
             None,
             2,
-            (Parameter("penalty", "N/m", "k_n of ENT, zeroLengthContact, zeroLengthImpact", "k of a contact point"),),
-            "OpenSees' documentation of zeroLengthContact, ENT and Newmark",
+            (Parameter("penalty", "N/m", "penalty k_n", "k of a contact point"),),
+            "OpenSees' documentation of the material ENT, the element zeroLengthContact and the integrator Newmark",
         ),
     )
 }

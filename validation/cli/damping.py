@@ -188,11 +188,15 @@ def _print_settings(advice: EngineAdvice, as_json: bool) -> None:
     if as_json:
         echo_json(advice.as_dict())
         return
+    from validation.advice.engine_table import PROGRAMS
+
+    program = PROGRAMS[advice.program]
+    meanings = {one.name: one.meaning for one in program.parameters}
     settings = []
     for name, value in advice.settings.items():
         numbers = value if isinstance(value, tuple) else (value,)
-        settings.append((f"  {name}", " ".join(f"{number:.6g}" for number in numbers)))
-    echo(f"{advice.program} {advice.version}: set")
+        settings.append((f"  {meanings.get(name, name)}", " ".join(f"{number:.6g}" for number in numbers)))
+    echo(f"{program.title}: set")
     echo(in_columns(settings, terminal_width()))
     body = f"{advice.mass:.6g} kg on {advice.points} contact point{'' if advice.points == 1 else 's'}"
     at_step = "" if advice.step is None else f", step {advice.step:.6g} s"
@@ -211,14 +215,15 @@ def _print_settings(advice: EngineAdvice, as_json: bool) -> None:
     if advice.stiffness_ratio is not None:
         facts.append(("  contact over block", f"k h / (E a) = {advice.stiffness_ratio:.4g}"))
     comes = advice.defaults
-    depth = "not known" if comes["penetration"] is None else f"{1e3 * comes['penetration']:.4g} mm"
-    e = "not known" if comes["restitution"] is None else f"{comes['restitution']:.4g}"
-    hidden = "not known" if comes["hidden"] is None else _in_percent(comes["hidden"])
+    depth = "-" if comes["penetration"] is None else f"{1e3 * comes['penetration']:.4g} mm"
+    e = "-" if comes["restitution"] is None else f"{comes['restitution']:.4g}"
+    hidden = "-" if comes["hidden"] is None else _in_percent(comes["hidden"])
     facts.append(("  as it comes", f"penetration {depth}, restitution {e}, hidden damping {hidden}"))
     echo("which gives")
     echo(in_columns(facts, terminal_width()))
     for note in advice.notes:
         echo(broken(f"note: {note}"))
+    echo(broken(f"source: {program.source}; checked with {program.title} {program.version}"))
 
 
 def _advise_contacts(case: Scene, bounds: ColumnLimits, as_json: bool) -> None:

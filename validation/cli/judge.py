@@ -142,15 +142,18 @@ def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool
 
 def _print_set(judged: JudgedSet) -> None:
     """Print the verdict on each answer of a folder, then how many passed."""
-    from validation.gallery.answers import cells, headline
+    from validation.gallery.answers import NOT_ANSWERED, cells, headline
 
     name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
     echo(f"{name}: {headline(judged)}\n")
-    echo(f"  {'problem':<12} {'verdict':<12} {'error':>11} {'allowed':>8}  column and cause")
-    for cell in cells(judged):
+    shown = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
+    width = max(len(cell.problem) for cell in shown)
+    echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
+    for cell in shown:
         said = "; ".join(text for text in (cell.column, cell.reason) if text)
-        echo(f"  {cell.problem:<12} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {said}".rstrip())
-    echo("")
+        echo(f"  {cell.problem:<{width}} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {said}".rstrip())
+    missing = len(cells(judged)) - len(shown)
+    echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
 
 def _judge_target(

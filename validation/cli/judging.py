@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from validation.problems.answers import AnswerSet
     from validation.problems.problem import Problem
     from validation.report.chapters.judged import JudgedAnswer
+    from validation.report.chapters.judged_boxes import JudgedBoxes
     from validation.runs.history import History
 
 Progress = Callable[[int, int, str], None]
@@ -70,19 +71,27 @@ def judged_answer(
 def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet]:
     """Judge all answers of folders."""
     from validation.gallery.answers import JudgedSet
+    from validation.problems.boxes import measured
+    from validation.problems.problem import Problem
+    from validation.problems.questions import BoxQuestion
+    from validation.report.chapters.judged_boxes import JudgedBoxes
 
     total = sum(len(answer_set.answers) for answer_set in sets)
     number = 0
     judged_of_sets = []
     for answer_set in sets:
-        judged: dict[str, JudgedAnswer] = {}
+        judged: dict[str, JudgedAnswer | JudgedBoxes] = {}
         for answer in answer_set.answers:
             name = " ".join([answer_set.program, answer_set.settings_name, answer.name])
 
             def step(label: str, name: str = name, number: int = number) -> None:
                 progress(number, total, f"{name}: {label}")
 
-            if answer.problem is not None and answer.history is not None:
+            if isinstance(answer.problem, BoxQuestion) and answer.history is not None:
+                step("the numbers")
+                numbers = measured(answer.problem.quantities, answer.history)
+                judged[answer.name] = JudgedBoxes(answer.problem, answer.history, numbers)
+            elif isinstance(answer.problem, Problem) and answer.history is not None:
                 about = (("not reported", ", ".join(answer.withheld)),) if answer.withheld else ()
                 judged[answer.name] = judged_answer(answer.problem, answer.history, about, step)
             number += 1

@@ -22,8 +22,9 @@ from validation.gallery.svg import Sheet
 from validation.problems.answers import AnswerSet
 from validation.problems.data import PACK, AnswersData, united
 from validation.problems.judge import Word
-from validation.problems.problem import PROBLEMS, problem
+from validation.problems.questions import names, question
 from validation.report.chapters.judged import JudgedAnswer, as_data, page, per_cent
+from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, page_of_boxes, shares
 from validation.report.chapters.text import DASH, short
 from validation.runs.files import atomic_directory
 
@@ -53,7 +54,7 @@ class JudgedSet:
     """A folder of answers and the judgement of each that is not stale, by problem."""
 
     answers: AnswerSet
-    judged: Mapping[str, JudgedAnswer]
+    judged: Mapping[str, JudgedAnswer | JudgedBoxes]
 
     @property
     def stem(self) -> str:
@@ -82,7 +83,7 @@ def cells(judged: JudgedSet) -> list[AnswerCell]:
     """Return what a table holds of a folder of answers: each problem of the pack, then those that are in it no more."""
     by_name = {answer.name: answer for answer in judged.answers.answers}
     rows = []
-    for name in [*PROBLEMS, *(name for name in by_name if name not in PROBLEMS)]:
+    for name in dict.fromkeys([*names(), *by_name]):
         answer = by_name.get(name)
         if answer is None:
             rows.append(AnswerCell(name, NOT_ANSWERED))
@@ -93,7 +94,12 @@ def cells(judged: JudgedSet) -> list[AnswerCell]:
     return rows
 
 
-def _cell(judged: JudgedAnswer) -> AnswerCell:
+def _cell(judged: JudgedAnswer | JudgedBoxes) -> AnswerCell:
+    if isinstance(judged, JudgedBoxes):
+        number = judged.deciding
+        error, allowed = shares(number)
+        name = judged.question.name
+        return AnswerCell(name, str(judged.word), per_cent(error), _allowed(allowed), number.quantity.name)
     judgement = judged.judgement
     deciding = judgement.deciding
     reasons = [f"cause: {judged.cause.sentence}"] if judged.cause is not None else []
@@ -110,6 +116,10 @@ def _cell(judged: JudgedAnswer) -> AnswerCell:
     )
 
 
+def _allowed(share: float) -> str:
+    return per_cent(share) if share else "0 %"
+
+
 def summary(sets: Sequence[JudgedSet]) -> Counter[str]:
     """Return how many answers there are of each word."""
     words = (cell.word for judged in sets for cell in cells(judged))
@@ -117,10 +127,10 @@ def summary(sets: Sequence[JudgedSet]) -> Counter[str]:
 
 
 def headline(judged: JudgedSet) -> str:
-    """Return how many problems a folder of answers passes, in a few words."""
+    """Return how many of its answers pass, in a few words."""
     counts = summary([judged])
     others = [f"{count} {word}" for word, count in sorted(counts.items()) if word != Word.PASS]
-    return ", ".join([f"{counts[Word.PASS]} of {len(PROBLEMS)} PASS", *others])
+    return ", ".join([f"{counts[Word.PASS]} of {counts.total()} PASS", *others])
 
 
 # ---- plain data -----------------------------------------------------------------------------------------------------
@@ -152,7 +162,14 @@ def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
         if answer.stale is not None:
             rows.append(row | {"verdict": STALE, "reason": answer.stale})
             continue
-        judgement = as_data(judged.judged[answer.name], judged.answers.program)
+        of_answer = judged.judged[answer.name]
+        if isinstance(of_answer, JudgedBoxes):
+            judgement = data_of_boxes(of_answer)
+            for number in judgement["numbers"]:
+                number.update({key: _rounded(number[key]) for key in ("value", "error", "allowed")})
+            rows.append(row | judgement)
+            continue
+        judgement = as_data(of_answer, judged.answers.program)
         for key in ("pack", "problem", "program", "about"):
             del judgement[key]
         for column in judgement["columns"]:
@@ -168,7 +185,7 @@ def _rounded(value: Any) -> Any:
     """Return a number to a few digits; what is smaller than rounding stands as that."""
     if not isinstance(value, float) or not math.isfinite(value) or value == 0:
         return value
-    return float(f"{max(value, LEAST_ERROR):.{DIGITS}g}")
+    return float(f"{math.copysign(max(abs(value), LEAST_ERROR), value):.{DIGITS}g}")
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------
@@ -284,7 +301,11 @@ class Site:
             blocks = []
             if answer.stale is None:
                 with tempfile.TemporaryDirectory() as directory:
-                    drawn = page(judged.judged[answer.name], Path(directory))
+                    of_answer = judged.judged[answer.name]
+                    if isinstance(of_answer, JudgedBoxes):
+                        drawn = page_of_boxes(of_answer, Path(directory))
+                    else:
+                        drawn = page(of_answer, Path(directory))
                     blocks = [placed(block, Path(directory), sheet) for block in drawn]
             sections.append({"cell": by_name[answer.name], "blocks": blocks})
         data = judged.answers.data
@@ -301,11 +322,10 @@ class Site:
 def _table(sets: Sequence[JudgedSet]) -> list[dict[str, Any]]:
     """Return the rows of a table: a problem, and its cell in each folder of answers; no row that none answers."""
     columns = [{cell.problem: cell for cell in cells(judged)} for judged in sets]
-    names = list(dict.fromkeys(itertools.chain.from_iterable(columns)))
     rows = []
-    for name in names:
+    for name in dict.fromkeys(itertools.chain.from_iterable(columns)):
         row = [column.get(name, AnswerCell(name, NOT_ANSWERED)) for column in columns]
-        asks = problem(name).asks if name in PROBLEMS else f"no problem of pack {PACK} any more"
+        asks = question(name).asks if name in names() else f"no problem of pack {PACK} any more"
         rows.append({"name": name, "asks": asks, "cells": list(zip(sets, row, strict=True))})
     return rows
 

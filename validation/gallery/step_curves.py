@@ -9,8 +9,9 @@ from typing import Any
 
 from validation.problems.answers import AnswerSet
 from validation.problems.data import AnswersData
-from validation.problems.problem import PROBLEMS
+from validation.problems.questions import names
 from validation.report.chapters.judged import JudgedAnswer
+from validation.report.chapters.judged_boxes import JudgedBoxes
 from validation.report.chapters.text import short
 
 WIDTH = 240.0
@@ -22,11 +23,11 @@ BOTTOM = 20.0
 LEAST_RATIO = 1e-9  # of error and what is allowed: an answer nearer than that is the exact motion
 
 
-def step_curves(sets: Sequence[tuple[AnswerSet, Mapping[str, JudgedAnswer]]]) -> list[dict[str, Any]]:
+def step_curves(sets: Sequence[tuple[AnswerSet, Mapping[str, JudgedAnswer | JudgedBoxes]]]) -> list[dict[str, Any]]:
     """Return a chart for each problem that one version answered at two steps of one scheme or more."""
     charts = []
-    for name in PROBLEMS:
-        points = [point for answers, judged in sets if (point := _point(answers, judged.get(name))) is not None]
+    for name in names():
+        points = [point for answers, judged in sets if (point := _point(answers, name, judged.get(name))) is not None]
         points.sort(key=lambda point: point[0])
         for (version, scheme), group in itertools.groupby(points, key=lambda point: point[0]):
             ratio_by_step = {step: ratio for _, step, ratio in group}
@@ -35,18 +36,27 @@ def step_curves(sets: Sequence[tuple[AnswerSet, Mapping[str, JudgedAnswer]]]) ->
     return charts
 
 
-def _point(answers: AnswerSet, judged: JudgedAnswer | None) -> tuple[tuple[str, str], float, float] | None:
+def _point(
+    answers: AnswerSet, name: str, judged: JudgedAnswer | JudgedBoxes | None
+) -> tuple[tuple[str, str], float, float] | None:
     """Return version and scheme, step [s] and error over what is allowed of an answer; None where one is missing."""
     if judged is None or not isinstance(answers.data, AnswersData):
         return None
-    step = answers.data.step_of(judged.problem.name)
-    deciding = judged.judgement.deciding
-    if step is None or deciding is None or deciding.error is None or not deciding.band:
-        return None
-    ratio = deciding.error / deciding.band
-    if not math.isfinite(ratio):
+    step = answers.data.step_of(name)
+    ratio = _beside(judged)
+    if step is None or ratio is None or not math.isfinite(ratio):
         return None
     return (answers.data.version, answers.data.scheme), step, max(ratio, LEAST_RATIO)
+
+
+def _beside(judged: JudgedAnswer | JudgedBoxes) -> float | None:
+    """Return the error over what is allowed of the column or number that decides; None where there is none."""
+    if isinstance(judged, JudgedBoxes):
+        return judged.deciding.beside
+    deciding = judged.judgement.deciding
+    if deciding is None or deciding.error is None or not deciding.band:
+        return None
+    return deciding.error / deciding.band
 
 
 def _chart(name: str, version: str, scheme: str, points: Sequence[tuple[float, float]]) -> dict[str, Any]:

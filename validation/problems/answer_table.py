@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,12 +17,13 @@ from validation.problems.data import in_names, kind, unit, united
 from validation.problems.defects import Defects, Place
 from validation.problems.judge import SAME_INSTANT
 from validation.problems.pack import TIME
-from validation.problems.problem import Problem
+from validation.problems.questions import BoxQuestion, Question
 from validation.problems.stated import read_text
-from validation.runs.history import Array, History
+from validation.runs.history import DISPLACEMENT, Array, History
 from validation.solvers.user import UNITS, factor
 
 LARGEST_FILE = 100_000_000  # bytes
+FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 LARGEST = 1e100  # of a value in SI units; the squares of larger ones overflow
 SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks"}  # that stand where commas belong
 ALL_UNITS = {"m": "metres", "Pa": "pascals", "rad": "radians", "s": "seconds", "m/s": "metres per second"}
@@ -45,7 +46,7 @@ class Cell:
 Row = Sequence[Cell]
 
 
-def read_answer(path: Path, problem: Problem, columns: Sequence[str], defects: Defects) -> History | None:
+def read_answer(path: Path, problem: Question, columns: Sequence[str], defects: Defects) -> History | None:
     """Return the history of a table; None where it has defects, or where it is blank.
 
     Parameters
@@ -126,7 +127,7 @@ def _is_blank(names: Sequence[str], rows: Sequence[Row]) -> bool:
 # ---- the header -----------------------------------------------------------------------------------------------------
 
 
-def _is_header(path: Path, rows: Sequence[Row], problem: Problem, columns: Sequence[str], defects: Defects) -> bool:
+def _is_header(path: Path, rows: Sequence[Row], problem: Question, columns: Sequence[str], defects: Defects) -> bool:
     """Whether the first row names each column once; else its defects are added."""
     before = len(defects)
     header = rows[0]
@@ -162,14 +163,14 @@ def _is_header(path: Path, rows: Sequence[Row], problem: Problem, columns: Seque
     return len(defects) == before
 
 
-def _rule(name: str, unit_by_name: dict[str, str], problem: Problem) -> str:
+def _rule(name: str, unit_by_name: dict[str, str], problem: Question) -> str:
     """Return what is wrong with a name: its unit, or all of it."""
     for united_name, its_unit in unit_by_name.items():
         plain = united_name.removesuffix(f"_{in_names(its_unit)}")
         other_unit = name.removeprefix(f"{plain}_").replace("_", "")
         if name == plain or (name.startswith(f"{plain}_") and other_unit.isalpha()):
             return f"must be in {ALL_UNITS[its_unit]}, as {united_name}"
-    if name in map(united, problem.scene.run.columns):
+    if name in map(united, problem.columns):
         return "must not stand in the table and in not_reported of submission.json"
     return f"must be among {', '.join(unit_by_name)}"
 
@@ -255,8 +256,25 @@ def _check_times(path: Path, rows: Sequence[Row], times: Array, instants: Array,
         defects.add(place, f"must be {instants[row]:.9g}", field=TIME, value=f"{times[row]:.9g}", advice=advice)
 
 
-def _check_units(path: Path, header: Row, history: History, problem: Problem, defects: Defects) -> None:
+def _check_units(path: Path, header: Row, history: History, problem: Question, defects: Defects) -> None:
     """Add a defect for each column that is the exact one in another unit or of another sign."""
+    for column, difference in _differences(history, problem):
+        cell = next(cell for cell in header if cell.text == united(column))
+        place = Place(path, cell.line, cell.column)
+        defects.add(place, difference, field=united(column))
+
+
+def _differences(history: History, problem: Question) -> Iterator[tuple[str, str]]:
+    """Yield the columns that are the exact ones, or begin where they do, in another unit or of another sign."""
+    if isinstance(problem, BoxQuestion):
+        for column, values in history.columns.items():
+            plain, number = kind(column)
+            start = problem.scene.rigid.starts[int(number) - 1][1] if plain == "y" and problem.scene.rigid else 0.0
+            for ratio, other_unit in UNITS[DISPLACEMENT].items():
+                if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
+                    rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
+                    yield column, rule
+        return
     exact = standard(problem).exact
     for column, values in history.columns.items():
         plain = kind(column)[0]
@@ -264,6 +282,4 @@ def _check_units(path: Path, header: Row, history: History, problem: Problem, de
             continue
         difference = factor(plain, values, exact.columns[column], problem.scene)
         if difference is not None:
-            cell = next(cell for cell in header if cell.text == united(column))
-            place = Place(path, cell.line, cell.column)
-            defects.add(place, difference.replace(plain, "it", 1), field=united(column))
+            yield column, difference.replace(plain, "it", 1)

@@ -20,7 +20,9 @@ from validation.problems.data import PACK, SUBMISSION, AnswersData, SubmissionDa
 from validation.problems.defects import Defects, Place
 from validation.problems.pack import ANSWERS_TEMPLATE, CHOSEN
 from validation.problems.packs import packs, stale
-from validation.problems.problem import PROBLEMS, Problem, problem
+from validation.problems.questions import Question
+from validation.problems.questions import names as names_of_pack
+from validation.problems.questions import question as question_named
 from validation.problems.stated import Document, checked, read_document
 from validation.problems.submission import EXPORT, FILE, check_pack, read_submission, reported
 from validation.runs.files import atomic_directory
@@ -37,7 +39,7 @@ class Answer:
     """An answer to a problem, or why an answer to an earlier pack is none any more."""
 
     name: str  # of the problem
-    problem: Problem | None  # None of a stale answer
+    problem: Question | None  # None of a stale answer
     history: History | None  # of the columns that are reported; None of a stale answer
     withheld: tuple[str, ...] = ()  # columns that the program cannot report, as the pack names them
     stale: str | None = None
@@ -185,7 +187,7 @@ def _answers(
             answers[name] = Answer(name, None, None, stale=reason)
             continue
         step(name)
-        posed = problem(name)
+        posed = question_named(name)
         withheld = withheld_by_name.get(name, [])
         columns = reported(document, ("not_reported", name), withheld, posed, defects)
         history = read_answer(path, posed, columns, defects) if columns else None
@@ -193,7 +195,7 @@ def _answers(
             answers[name] = Answer(name, posed, history, tuple(withheld))
     for field in ("not_reported", "step_s"):
         _check_problems(document, field, asked, names, defects)
-    order = [*PROBLEMS, *sorted(set(answers) - set(PROBLEMS))]
+    order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
     return tuple(answers[name] for name in order if name in answers)
 
 

@@ -10,9 +10,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
-PACK: Final = "3.0"
+PACK: Final = "3.1"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
@@ -26,6 +27,9 @@ UNITS = {
     "force": "Pa",
     "gap": "m",
     "slip": "m",
+    "x": "m",
+    "y": "m",
+    "angle": "rad",
 }
 MEANINGS = {
     DISPLACEMENT: "vertical displacement of the centroid, upwards positive",
@@ -40,6 +44,11 @@ MEANINGS = {
     ),
     "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
     "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
+}
+OF_BOXES = {
+    "x": "position of the centre of box {n} along the ground, down a slope positive",
+    "y": "height of the centre of box {n} above the ground, normal to it",
+    "angle": "angle of box {n}, counter-clockwise positive, not folded",
 }
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
@@ -74,6 +83,8 @@ def kind(column: str) -> tuple[str, str]:
 def meaning(column: str) -> str:
     """Return what a column means."""
     plain, number = kind(column)
+    if plain in OF_BOXES:
+        return OF_BOXES[plain].format(n=number)
     return (AT_HEIGHT if number and plain == DISPLACEMENT else MEANINGS[plain]).format(n=number)
 
 
@@ -208,6 +219,46 @@ class ColumnData(Data):
     input: InputData | None = Field(description="Null: weight and velocities alone move it.")
 
 
+class BoxData(Data):
+    """A rigid box of unit depth."""
+
+    width_m: float
+    height_m: float
+    density_kg_per_m3: float
+    x_m: float = Field(description="Of the centre at t = 0, along the ground.")
+    y_m: float = Field(description="Of the centre at t = 0, above the ground.")
+    angle_rad: float = Field(description="At t = 0, counter-clockwise.")
+    velocity_x_m_per_s: float = Field(description="Of the centre at t = 0, along the ground.")
+    velocity_y_m_per_s: float = Field(description="Of the centre at t = 0, upwards.")
+    spin_rad_per_s: float = Field(description="At t = 0, counter-clockwise.")
+
+
+class RigidData(Data):
+    """Rigid boxes on a plane, which is level in its own frame; on a slope gravity is turned to g (sin, -cos)."""
+
+    boxes: tuple[BoxData, ...] = Field(description="On each other, the first one on the ground.")
+    gravity_m_per_s2: float
+    slope_deg: float = Field(description="Down towards +x.")
+    friction_deg: float = Field(description="Angle of Coulomb friction of every contact; 0: frictionless.")
+    restitution: float = Field(description="Newton's, of every contact: rebound over approach speed.")
+    stiffness_N_per_m: float | None = Field(
+        description="Of the contact of a box with the ground; null: rigid, or the program's own."
+    )
+    base_amplitude_m: float = Field(description="A of the ground's motion A (1 - cos(2 pi f t)) along itself.")
+    base_frequency_Hz: float = Field(description="f of that motion.")
+
+
+class NumberData(Data):
+    """A number of an answer to a problem of rigid boxes, and the band in which it passes."""
+
+    name: str
+    unit: str
+    exact: float
+    low: float
+    high: float
+    reason: str
+
+
 class SamplingData(Data):
     """The instants of an answer: step, 2 step, ... up to the last one; no program has to step so."""
 
@@ -216,22 +267,22 @@ class SamplingData(Data):
 
 
 class ColumnOfAnswer(Data):
-    """A column that an answer holds, and the band of its error."""
+    """A column that an answer holds, and the band of its error; null where an answer is judged by numbers."""
 
     name: str
     meaning: str
-    measure: str
-    until_s: float
-    low: float
-    high: float
-    reason: str
+    measure: str | None = None
+    until_s: float | None = None
+    low: float | None = None
+    high: float | None = None
+    reason: str | None = None
 
 
 class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["3.0"] = PACK
+    pack: Literal["3.1"] = PACK
     problem: str
     digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str
@@ -241,9 +292,11 @@ class ProblemData(Data):
     load: LoadData | None
     geometry: Literal["small", "large rotation"]
     column: ColumnData | None
+    rigid: RigidData | None = None
     sampling: SamplingData
     answer: tuple[ColumnOfAnswer, ...]
-    exact: str = Field(description="CSV file of the exact motion, beside this one's directory.")
+    numbers: tuple[NumberData, ...] = Field((), description="What is measured on an answer of rigid boxes.")
+    exact: str | None = Field(description="CSV file of the exact motion, beside this one's directory; null: none.")
 
 
 class SubmissionData(Data):
@@ -308,6 +361,25 @@ def contact_data(scene: Scene) -> ContactData:
 def load_data(scene: Scene) -> LoadData:
     """Return the loads of a scene."""
     return LoadData.of(scene.load)
+
+
+def rigid_data(rigid: RigidSection) -> RigidData:
+    """Return rigid boxes on a plane, each where it is at t = 0."""
+    boxes = []
+    for box, (x, y, angle) in zip(rigid.box, rigid.starts, strict=True):
+        velocity_x, velocity_y = box.velocity
+        boxes.append(
+            BoxData.of(
+                box,
+                x_m=x,
+                y_m=y,
+                angle_rad=angle,
+                velocity_x_m_per_s=velocity_x,
+                velocity_y_m_per_s=velocity_y,
+                spin_rad_per_s=box.spin,
+            )
+        )
+    return RigidData.of(rigid, boxes=tuple(boxes))
 
 
 def column_data(scene: Scene) -> ColumnData | None:

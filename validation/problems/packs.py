@@ -20,36 +20,37 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-from validation.problems.data import PACK, block_data, column_data, contact_data, load_data
-from validation.problems.problem import Problem
+from validation.problems.data import PACK, block_data, column_data, contact_data, load_data, rigid_data
+from validation.problems.questions import Question
 from validation.scenes.scene import Scene
 
 DIGITS = 12  # of a number in a digest: the last ones of a computed one may differ from processor to processor
 DIGEST_LENGTH = 16  # hexadecimal digits
 
 
-def question(scene: Scene) -> dict[str, Any]:
+def parts(scene: Scene) -> dict[str, Any]:
     """Return what a scene asks as plain data: the parts of a problem by their names."""
-    on_base = scene.column is None
+    on_base = scene.kind == "block"
     return {
         "block": block_data(scene) if on_base else None,
         "contact": contact_data(scene) if on_base else None,
         "load": load_data(scene) if on_base else None,
         "geometry": "large rotation" if scene.run.geometry == "updated" else "small",
         "column": column_data(scene),
+        "rigid": None if scene.rigid is None else rigid_data(scene.rigid),
     }
 
 
-def digest(problem: Problem) -> str:
+def digest(problem: Question) -> str:
     """Return the digest of a problem's question, in hexadecimal digits."""
     scene = problem.scene
-    parts = {
+    stated: dict[str, Any] = {
         name: part if part is None or isinstance(part, str) else part.model_dump(mode="json")
-        for name, part in question(scene).items()
+        for name, part in parts(scene).items()
     }
-    parts["sampling"] = {"step_s": scene.time.step, "count": scene.time.steps}
-    parts["columns"] = list(scene.run.columns)
-    text = json.dumps(_canonical(parts), sort_keys=True)
+    stated["sampling"] = {"step_s": scene.time.step, "count": scene.time.steps}
+    stated["columns"] = list(problem.columns)
+    text = json.dumps(_canonical(stated), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
 
 

@@ -41,6 +41,11 @@ class Problem:
         return self.scene.title or self.name
 
     @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of an answer."""
+        return self.scene.run.columns
+
+    @property
     def instants(self) -> Array:
         """Instants at which it is answered [s]: the steps of the scene up to where its exact motion ends."""
         steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)

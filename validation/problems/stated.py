@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -147,7 +148,7 @@ def read_document(path: Path, advice: str) -> Document:
         raise InputError(f"cannot be read: {error.strerror}", source=Place(path)) from None
 
 
-def checked(document: Document, model: type[Stated], template: dict[str, Any], defects: Defects) -> Stated | None:
+def checked(document: Document, model: type[Stated], template: Mapping[str, Any], defects: Defects) -> Stated | None:
     """Return what a document states as plain data; None, and the defects, where it does not conform."""
     before = len(defects)
     for key, place in document.repeated:

@@ -14,6 +14,7 @@ from validation.problems.defects import Defects, Place
 from validation.problems.pack import TEMPLATE
 from validation.problems.packs import packs, stale
 from validation.problems.problem import Problem, problem
+from validation.problems.questions import Question, box_questions
 from validation.problems.stated import Document, checked, read_document
 from validation.runs.history import History
 
@@ -85,6 +86,10 @@ def _problem_of_pack(document: Document, name: str, defects: Defects) -> Problem
     pack = stated_pack if stated_pack in packs() else PACK  # by which the table is checked all the same
     place = document.place(("problem",))
     names = packs()[pack]
+    if name in box_questions():
+        rule = "is answered in a folder of answers"
+        defects.add(place, rule, field="problem", value=repr(name), advice=EXPORT)
+        return None
     if name not in names:
         near = difflib.get_close_matches(name, names, n=1)
         advice = f"did you mean {near[0]}?" if near else None
@@ -98,12 +103,12 @@ def _problem_of_pack(document: Document, name: str, defects: Defects) -> Problem
 
 
 def reported(
-    document: Document, address: tuple[str, ...], withheld: object, posed: Problem, defects: Defects
+    document: Document, address: tuple[str, ...], withheld: object, posed: Question, defects: Defects
 ) -> list[str]:
     """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
     if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
         return []
-    columns = posed.scene.run.columns
+    columns = posed.columns
     names = [united(column) for column in columns]
     field = ".".join(address)
     before = len(defects)

@@ -170,8 +170,8 @@ def _who_gains(engines: EngineTable, kinds: Collection[str]) -> str:
 
 def _percent(share: float) -> str:
     if share > 10:
-        return f"{short(1 + share, 2)} times"
-    return f"{short(100 * share, 2)} %"
+        return f"{short(1 + share, 2)}\u00a0times"
+    return f"{short(100 * share, 2)}\u00a0%"
 
 
 def plain_title(program: EngineProgram) -> str:
@@ -210,7 +210,8 @@ def overview(engines: EngineTable) -> Table:
             rows.append((FAMILIES[family],))
         name = "" if plain_title(program) == title else plain_title(program)
         title = plain_title(program)
-        rows.append((name, SETTINGS.get(program.kind, ""), *map(_mark, _cells(engines, program))))
+        settings = SETTINGS.get(program.kind, "").replace(" ", "\u00a0")
+        rows.append((name, settings, *map(_mark, _cells(engines, program))))
     missing = [plain_title(p) for p in engines.programs if p not in installed and p.kind != "default"]
     notes = [NOTE, f"Not installed: {', '.join(missing)}."] if missing else [NOTE]
     columns = [TableColumn(problem.name, "outcome") for problem in engines.problems]
@@ -278,14 +279,14 @@ def _families(engines: EngineTable) -> list[str]:
 def _best(engines: EngineTable, problem: str, family: str) -> str:
     best = best_of_family(engines, problem, family)
     if best:
-        return ", ".join(f"{p.title}: {seconds(point.seconds)}, {point.steps} steps" for p, point in best)
+        return ", ".join(f"{p.title}: {seconds(point.seconds)}, {point.steps}\u00a0steps" for p, point in best)
     has_curve = any(engines.cells[problem, p.name].points for p in engines.programs if p.family == family)
     return "no run within the band" if has_curve else DASH
 
 
 def seconds(value: float | None) -> str:
     """Return seconds to two digits."""
-    return DASH if value is None else f"{short(float(f'{value:.2g}'), 2)} s"
+    return DASH if value is None else f"{short(float(f'{value:.2g}'), 2)}\u00a0s"
 
 
 def absent(engines: EngineTable) -> Table:
