@@ -105,7 +105,7 @@ def test_the_table_of_two_problems(brought: None, tmp_path: Path, monkeypatch: p
     steps = [point.steps for point in bounces["box2d"].points]
     assert steps == [60 * 8 * 2**n for n in range(5)]
     assert bounces["box2d"].points[0].step == pytest.approx(1 / 480, rel=1e-5)
-    assert bounces["box2d"].finding == "the error is below a thousandth of its band at every step"
+    assert bounces["box2d"].finding == "the error is below a twentieth of its band at every step"
     soft = bounces["box2d-default"]
     assert soft.verdict == FAIL
     assert soft.error == pytest.approx(70, rel=1e-3)
@@ -152,9 +152,10 @@ def points(*errors: float | None, steps: int = 100) -> list[Point]:
         ((8.0, 4.0, 2.0, 1.0), "falls at each of 3 halvings of the step, order 1.0"),
         ((16.0, 4.0, 1.0, 0.25), "falls at each of 3 halvings of the step, order 2.0"),
         ((1.0, 2.0, 4.0, 8.0), "grows at each of 3 halvings of the step, order -1.0"),
+        ((0.4, 0.1, 0.025, 0.006), "falls at each of 3 halvings of the step, order 2.0"),
         ((3.0, 3.1, 2.9, 3.0), "does not shrink with the step: 3 of its band at first, 3 after 3 halvings"),
         ((3.0, 5.0, 0.5, 0.6), "falls unevenly, from 3 to 0.6"),
-        ((1e-5, 1e-6, 0.0, 1e-5), "below a thousandth of its band at every step"),
+        ((0.01, 0.04, 0.0, 0.011), "below a twentieth of its band at every step"),
     ],
 )
 def test_what_a_curve_shows(errors: tuple[float, ...], sentence: str) -> None:

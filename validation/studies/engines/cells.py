@@ -36,7 +36,7 @@ from validation.studies.field.table import FAIL, PARTIAL, PASS, WRONG
 JUDGED = "judged "  # before a program's name: the derived row that is its cell
 BESIDE = "error over band"
 LEVELS = 4  # points that an order is fitted over, at least
-SETTLED = 1e-3  # of the band: an error that is none
+SETTLED = 0.05  # of the band: what measuring at rows adds, greatest for a time of contact between two of them
 FALLS = 1.2  # factor by which an error falls at every halving of the step that has an order
 SHRINKS = 0.7  # of the first error: what the last one is below of a curve that shrinks
 
@@ -307,8 +307,8 @@ def finding(points: Sequence[Point]) -> str:
     errors = [point.error or 0.0 for point in curve]
     count = len(errors) - 1
     if max(errors) <= SETTLED:
-        return "the error is below a thousandth of its band at every step"
-    if min(errors) > SETTLED:
+        return "the error is below a twentieth of its band at every step"
+    if min(errors) > 0:
         ratios = [before / after for before, after in itertools.pairwise(errors)]
         order = -float(np.polyfit(np.arange(len(errors)), np.log2(errors), 1)[0])
         if min(ratios) >= FALLS:

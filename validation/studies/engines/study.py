@@ -26,14 +26,13 @@ from validation.studies.field.table import is_absent
 
 ENDS = tuple(o for o in Outcome if o not in (Outcome.COMPLETED, Outcome.NOT_RUN, Outcome.NOT_APPLICABLE))
 ANSWERED = "problems answered"
-SAMPLED = 0.05  # of a band: what measuring at rows adds, greatest for a time of contact between two of them
 
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on this suite's own answers, and that programs which are there answer."""
     for name in box_problems():
         why = "it is the exact motion; what is left is what measuring at the rows adds"
-        yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, SAMPLED, why)
+        yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, cells.SETTLED, why)
     yield from predictions.gates()
     for program in box_programs():
         if program.kind in ("chosen", "default"):
