@@ -56,11 +56,11 @@ KNOWN = (
     Known("ntdda", "ntdda", "pip install examples/peers; its histories come with it", springs=True, default=False),
     Known("lmgc90", "LMGC90", "pip install 'examples/peers[lmgc90]'", boxes=True),
     Known("exudyn", "Exudyn", "pip install 'examples/peers[exudyn]'", boxes=True),
-    Known("drake", "Drake", "pip install 'examples/peers[drake]'", boxes=True, family="robotics"),
+    Known("drake", "Drake", "pip install 'examples/peers[drake]'", boxes=True, family="robotics", halvings=3),
     Known("dart", "DART", "pip install 'examples/peers[dart]'", boxes=True, family="robotics"),
     Known("bullet", "Bullet", "pip install 'examples/peers[bullet]'", boxes=True, family="robotics"),
     Known("newton-xpbd", "Newton XPBD", NEWTON, boxes=True, family="robotics"),
-    Known("newton-semi-implicit", "Newton SemiImplicit", NEWTON, boxes=True, family="robotics"),
+    Known("newton-semi-implicit", "Newton SemiImplicit", NEWTON, boxes=True, family="robotics", halvings=5),
     Known("box2d", "Box2D", "pip install 'examples/peers[box2d]'", boxes=True, family="games"),
     Known("pymunk", "pymunk", "pip install 'examples/peers[pymunk]'", boxes=True, family="games"),
 )
