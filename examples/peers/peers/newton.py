@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import atexit
 import importlib.metadata
 import math
 import os
+import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -47,7 +49,9 @@ def program() -> Any:
     # Nobody differentiates: less to compile, and the same numbers.
     warp.config.enable_backward = False
     if warp.config.kernel_cache_dir is None and not _has_writable_cache():
-        warp.config.kernel_cache_dir = tempfile.mkdtemp(prefix="warp-")
+        folder = tempfile.mkdtemp(prefix="warp-")
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        warp.config.kernel_cache_dir = folder
     try:
         import newton
     except ImportError:
