@@ -24,7 +24,7 @@ gallery: $(READY)  ## the results as a static site with calculators, in reports/
 	@$(BIN)/dda-validate gallery --out reports/gallery
 
 field: $(PEERS)  ## other people's programs on the problems, and their table; minutes. FIELD='--require yade' insists on one
-	@$(BIN)/dda-validate run field --results reports/field $(FIELD); status=$$?; \
+	@$(BIN)/dda-validate run field engines --results reports/field $(FIELD); status=$$?; \
 	$(BIN)/dda-validate report --results reports/field --out reports/field.pdf && exit $$status
 
 test: $(READY)  ## the tests and the accuracy gates, without the long ones
@@ -62,7 +62,7 @@ dist: $(RELEASE)  ## the archives of a release in dist/, built and checked from 
 	$(BIN)/python .ci/dist
 
 clean:
-	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/*.pdf
+	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/submissions reports/*.pdf
 
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c "import ensurepip" 2>/dev/null || { echo "needs the venv module of Python: apt-get install python3-venv"; exit 1; }

@@ -121,9 +121,15 @@ SHORT_CASES = {
 }
 
 
-# Seconds each: an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has tests of its
-# own, and a second process of the distributed solver.
-LONG_GATES = re.compile(r"(slope-quake-exact|subblocks-locking|work-precision)\b|.*:fenicsx:2-")
+# Long are scenes of seconds (an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has
+# tests of its own, columns of many switches), other numbers of a family whose first ones are short (joints, schemes),
+# and a second process of the distributed solver.
+LONG_GATES = re.compile(
+    r"(slope-quake-exact|subblocks-locking|work-precision|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
+    r"|columns-(slips|spall|spall-bars|shaken)|columns-joint-0\.(1|5|75|9)"
+    r"|methods-\w+-(ch-0|ch-0\.8|bathe-half|bathe-0\.5|implicit-euler|nine-sixteenths))(?=[:\[])"
+    r"|.*:fenicsx:2-"
+)
 
 
 def short_gates(names: Sequence[str]) -> set[str]:

@@ -11,6 +11,7 @@ from validation.errors import InputError
 from validation.runs.files import check_ending
 from validation.runs.history import DISPLACEMENT
 from validation.runs.run import Outcome, Run
+from validation.scenes import rigid
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 
@@ -42,7 +43,7 @@ class Solution(Run):
             name = DISPLACEMENT if DISPLACEMENT in self.history.columns else next(iter(self.history.columns))
             values = self.history.columns[name]
             peak = max(map(float, values), key=abs, default=0.0)
-            parts.append(f"peak {name} {peak:.4g}{_unit(name)}")
+            parts.append(f"peak {name} {peak:.4g}{_unit(name, self.scene)}")
         parts.append(f"{sum(self.seconds.values()):.2g} s")
         return f"<Solution: {', '.join(parts)}>"
 
@@ -78,15 +79,17 @@ class Solution(Run):
                 raise InputError(f"must be among {', '.join(history.columns)}", field="columns", value=repr(name))
         target = None if path is None else Path(path)
         check_ending(target, "path")
-        figure = solution_figure(history, names, self.solver)
+        figure = solution_figure(history, names, self.solver, self.scene.rigid is not None)
         if target is not None:
             save_as(figure, target)
         return figure
 
 
-def _unit(column: str) -> str:
+def _unit(column: str, scene: Scene) -> str:
     kind = column.removeprefix("horizontal_").partition("_")[0]
     unit = {"displacement": "m", "velocity": "m/s", "rotation": "rad", "contact": "Pa", "stress": "Pa"}.get(kind)
+    if scene.rigid is not None:
+        unit = rigid.UNITS.get(kind)
     return f" {unit}" if unit else ""
 
 

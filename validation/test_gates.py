@@ -43,6 +43,12 @@ def finished(finished_cases: Path) -> Finished:
 
 
 @pytest.fixture(scope="session")
+def finished_studies() -> dict[str, Finished]:
+    """Return by study the same cases with what is derived from them, which is computed once for all gates that ask."""
+    return {}
+
+
+@pytest.fixture(scope="session")
 def session(finished_cases: Path, pytestconfig: pytest.Config) -> Session | None:
     """Return the user's solver on its way through the gates, None where the suite judges its own."""
     user = pytestconfig.getoption("--dda-solver", None)
@@ -51,11 +57,15 @@ def session(finished_cases: Path, pytestconfig: pytest.Config) -> Session | None
 
 @pytest.mark.validation
 def test_gate(
-    name: str, finished: Finished, session: Session | None, tell: Callable[[Mapping[str, object]], None]
+    name: str,
+    finished: Finished,
+    finished_studies: dict[str, Finished],
+    session: Session | None,
+    tell: Callable[[Mapping[str, object]], None],
 ) -> None:
     """Run what the gate asks for and judge it."""
     if session is None:
-        verdict = _verdict(name, finished)
+        verdict = _verdict(name, finished, finished_studies)
     else:
         verdict, statement = session.judge(name)
         tell(plain(statement))
@@ -67,7 +77,7 @@ def test_gate(
         pytest.fail(f"{gate.id}: {verdict.why or measured}", pytrace=False)
 
 
-def _verdict(name: str, finished: Finished) -> Verdict:
+def _verdict(name: str, finished: Finished, finished_studies: dict[str, Finished]) -> Verdict:
     """Judge one of the suite's own solvers, whose cases are run where they were not yet."""
     study, gate = gates()[name]
     missing = [pair for pair in study_of(study).needs(gate) if pair not in finished.rows]
@@ -75,7 +85,9 @@ def _verdict(name: str, finished: Finished) -> Verdict:
         finished_keys = finished.results.rows()
         pending = [_gated_case(cases(study)[pair], finished_keys) for pair in missing]
         finished.rows.update(finish(pending, study_of(study), finished.results).rows)
-    return evaluate(gate, Finished(finished.rows, finished.results, recipes(study)))
+    if study not in finished_studies:
+        finished_studies[study] = Finished(finished.rows, finished.results, recipes(study))
+    return evaluate(gate, finished_studies[study])
 
 
 def _gated_case(case: Case, finished_keys: Container[str]) -> Case:

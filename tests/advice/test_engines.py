@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 from conftest import refused, typed
+from oracles.pages import ROOT, page_with
 
 from validation import InputError, translate
-from validation.advice.engines import PARAMETERS
+from validation.advice.engine_table import PARAMETERS, PROGRAMS
 
 STEP = 1 / 240
 
@@ -94,3 +95,16 @@ def test_the_command_is_the_function() -> None:
     assert "solimp" in refused(
         "translate", "mujoco", "--timeconst", 0.02, "--dampratio", 1, "--mass", 1, "--solimp", "a,b"
     )
+
+
+def test_the_page_has_the_table_of_the_programs() -> None:
+    page = (ROOT / "docs/engines.md").read_text(encoding="utf-8")
+    rows = ["| program | number | | is | as it comes |", "|---|---|---|---|---|"]
+    for program in PROGRAMS.values():
+        for one in program.parameters:
+            default = " ".join(f"{number:g}" for number in one.default)
+            rows.append(f"| {program.title} | `{one.meaning}` | {one.unit} | {one.formula} | {default} |")
+    rows += ["", "Checked with, and after:", ""]
+    rows += [f"- {one.title} {one.version}: {one.source}." for one in PROGRAMS.values()]
+    table = "\n" + "\n".join(rows) + "\n"
+    assert page == page_with(table, page, "<!-- programs -->", "<!-- /programs -->")

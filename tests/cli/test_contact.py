@@ -48,6 +48,7 @@ def test_the_page_states_what_json_holds() -> None:
     assert [alarm["kind"] for alarm in found["alarms"]] == ["step too large for contact"]
 
 
+@pytest.mark.long
 def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_stiffer_springs() -> None:
     scene = load_scene("unlocked-constant").expand()[0].with_values({"time.steps": 400})
     rows = {"block-events": execute(Case(scene, "block-events"), "", "")[0]}
@@ -183,6 +184,7 @@ def test_when_a_block_first_opens_and_lands(
     assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words  # type: ignore[arg-type]
 
 
+@pytest.mark.long
 def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked() -> None:
     slope = ("field-sliding", "--set", "load.slope=30", "--set", "contact.friction=20", "--set", "time.steps=74")
     hops = typed("contact", *slope, "--set", "contact.gap=0.5").stdout

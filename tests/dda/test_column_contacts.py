@@ -24,8 +24,8 @@ from dda.scheme.newmark import Scheme, Start
 from dda.stepping import compiled
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
-MANY, FEW = 500, 10  # columns drawn, and those of the short set
-PROBLEMS, FEW_PROBLEMS = 4000, 60
+MANY, FEW = 250, 10  # columns drawn, and those of the short set
+PROBLEMS, FEW_PROBLEMS = 2000, 60
 RIGID = math.inf
 
 
@@ -71,8 +71,8 @@ def test_the_finest_steps_have_the_printed_errors(name: str) -> None:
     }
     average, constant = printed.get(name, (4e-5, 1e-2))
     assert error_of(CASES[name], AVERAGE, 16000) < 1.3 * average
-    coarse, fine = (error_of(CASES[name], CONSTANT, steps) for steps in (16000, 32000))
-    assert coarse < 1.3 * constant
+    coarse, fine = (error_of(CASES[name], CONSTANT, steps) for steps in (8000, 16000))
+    assert fine < 1.3 * constant
     assert 0.75 < math.log2(coarse / fine) < 1.1
 
 
@@ -196,7 +196,7 @@ def test_changing_one_state_at_a_time_ends_in_the_same_solution(monkeypatch: pyt
     assert solves > together
 
 
-@pytest.mark.parametrize("seeds", short_and_long(40, 2000))
+@pytest.mark.parametrize("seeds", short_and_long(40, 1000))
 def test_weakly_coupled_contacts_contract(seeds: range) -> None:
     for seed in seeds:
         rng = np.random.default_rng(seed)

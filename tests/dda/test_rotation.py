@@ -38,7 +38,7 @@ def losses(result):
 
 
 @pytest.mark.parametrize(
-    ("seed", "steps"), [(1, 80), (2, 80), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in range(103))]
+    ("seed", "steps"), [(1, 80), (2, 80), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in range(3, 53))]
 )
 def test_no_energy_is_gained_at_delta_one_however_far_a_block_turns(seed, steps):
     model, dt = random_rolling(seed)
@@ -131,22 +131,6 @@ def test_energies_of_small_motion_are_the_same():
     size = max(np.max(np.abs(values)) for values in small.energies.values())
     for name in (*STORED, *LOST[:3]):
         assert np.max(np.abs(turned.energies[name] - small.energies[name])) < 1e-6 * size, name
-
-
-def test_a_mirrored_block_moves_as_its_mirror_image():
-    outline = np.array([[0, 0], [1.4, 0], [1.7, 1.9], [0.2, 2.2]])
-    law, load = Unilateral(1e8, 4e7, friction=0.4), Load(2e3, 0.1, 3e3, 9.81, slope=12.0)
-    other = Load(2e3, -0.1, -3e3, 9.81, slope=-12.0)
-    mirror = (outline * [-1, 1])[[1, 0, 3, 2]]
-    given = {"tilt": 0.4, "velocity": (0.3, -0.2), "spin": 0.5}
-    turned = {"tilt": -0.4, "velocity": (-0.3, -0.2), "spin": -0.5}
-    scheme = Scheme(*CONSTANT, 1.0, 5e-3)
-    left = solve_rolling(RollingModel(Block(outline, MATERIAL), law, load, **given), scheme, 100, COLUMNS)
-    right = solve_rolling(RollingModel(Block(mirror, MATERIAL), law, other, **turned), scheme, 100, COLUMNS)
-    assert np.max(np.abs(left.columns["displacement"] - right.columns["displacement"])) < 1e-9
-    assert np.max(np.abs(left.columns["rotation"] + right.columns["rotation"])) < 1e-9
-    assert np.max(np.abs(left.gap[[0, 1]] - right.gap[[1, 0]])) < 1e-9
-    assert np.count_nonzero(np.diff(left.states)) > 3
 
 
 def test_a_base_that_moves_steadily_is_a_block_that_flies_the_other_way():

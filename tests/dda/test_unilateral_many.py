@@ -8,7 +8,7 @@ from oracles.unilateral_checks import apart, checked, mirrored, random_model, si
 
 from dda import Scheme, UnilateralOptions, solve_unilateral
 
-MANY, FEW = 500, 4  # scenes, and those of the short set
+MANY, FEW = 250, 4  # scenes, and those of the short set
 STEPS = 50
 NAMES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n", "gap_m", "gap_n", "velocity")
 ENERGIES = UnilateralOptions(energies=True)

@@ -106,14 +106,13 @@ def test_a_change_of_one_contact_alone_says_where() -> None:
     assert "the contact at 0 m" in answer.sentence
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "change", "cause"),
     [
         (SHEARED, ColumnChange(bonded=True), "no-slip"),
-        pytest.param(DROPPED, ColumnChange(bonded=True), "contact-locked", marks=pytest.mark.long),
-        pytest.param(
-            SHEARED, ColumnChange({"column.stiffness": math.inf}, bonded=True), "contact-welded", marks=pytest.mark.long
-        ),
+        (DROPPED, ColumnChange(bonded=True), "contact-locked"),
+        (SHEARED, ColumnChange({"column.stiffness": math.inf}, bonded=True), "contact-welded"),
     ],
 )
 def test_contacts_that_hold_are_named(scene: Scene, change: ColumnChange, cause: str) -> None:
@@ -176,6 +175,7 @@ def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
     assert factors == {"springs-factor": pytest.approx(0.8), "density-factor": pytest.approx(1.25)}
 
 
+@pytest.mark.long
 def test_a_reversed_input_in_shear_has_the_rows_of_a_reversed_sign() -> None:
     answer = judged(SHEARED, input__velocity=-0.2)
     assert answer.causes == ["unexplained"]
@@ -199,6 +199,7 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch)
 # ---- reading ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_units_are_read_and_named() -> None:
     foreign = history(DROPPED, {}, DIGITS)
     answer = compare(DROPPED, replace(foreign, displacement=1e3 * foreign.displacement))

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import typed
+from conftest import thinned, typed
 from faults import seams
 from oracles import compared_schemes
 from oracles.compared_schemes import Case, dashpot_of, made, scene_of, verdict
@@ -165,10 +165,7 @@ NAMED: list[tuple[str, dict[str, Any], dict[str, Any], list[str]]] = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("method", "numbers", "of_run", "causes"),
-    [*NAMED[:4], *(pytest.param(*m, marks=pytest.mark.long) for m in NAMED[4:])],
-)
+@pytest.mark.parametrize(("method", "numbers", "of_run", "causes"), thinned(NAMED, 4))
 def test_a_method_is_named_by_six_digits(
     method: str, numbers: dict[str, Any], of_run: dict[str, Any], causes: list[str]
 ) -> None:
@@ -224,6 +221,7 @@ def test_a_discount_beside_another_scheme_is_named_with_it() -> None:
     assert answer.values == pytest.approx({"gg": 0.97, "generalised-alpha": 0.8}, rel=1e-4)
 
 
+@pytest.mark.long
 def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number() -> None:
     """Short steps, nine digits: Chung and Hulbert's at rho_inf = 0.368 comes within 2e-7, and is not it."""
     run = Run("weights", {"am": -0.2, "af": 0.2, "zero": False, "form": "force"}, Body(p=5e9), 5.2e-5, 25)

@@ -138,7 +138,7 @@ def test_a_rigid_ball_comes_to_rest_when_its_series_ends(e: float, height: float
 # -- an independent program
 
 
-@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (32, 1.0), (33, 0.1), (34, 2.5)], 2))
+@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (34, 2.5)], 2))
 def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
     problem = dashpot(centred(seed), zeta)
     end = 12 * transit(problem)
@@ -152,7 +152,7 @@ def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
     assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
 
 
-@pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (31, 1.0), (32, 0.0), (33, 1.0), (34, 0.0), (35, 1.0)], 3))
+@pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (33, 1.0), (32, 0.0), (31, 1.0)], 4))
 def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
     problem = falling(seed, e)
     end = 8 * transit(problem)
@@ -168,7 +168,7 @@ def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
     assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
 
 
-@pytest.mark.parametrize(("seed", "e"), thinned([(40, 0.4), (41, 0.6), (42, 0.15), (43, 0.8), (44, 0.3)], 3))
+@pytest.mark.parametrize(("seed", "e"), thinned([(40, 0.4), (42, 0.15), (43, 0.8)], 3))
 def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
     """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
     problem = falling(seed, e)
@@ -213,7 +213,7 @@ def weighted(motion: BlockMotion) -> tuple[BlockHistory, np.ndarray]:
     return motion.at(t), (half[:, None] * w).ravel()
 
 
-@pytest.mark.parametrize("zeta", [0.02, 0.2, 1.7])
+@pytest.mark.parametrize("zeta", thinned([0.2, 0.02, 1.7], 3))
 def test_dashpots_balance_momentum_and_energy(zeta: float) -> None:
     problem = dashpot(replace(PAPER, stiffness=1e10, gravity=9.81), zeta)
     motion = solve(problem, 0.03)
@@ -231,7 +231,7 @@ def test_dashpots_balance_momentum_and_energy(zeta: float) -> None:
     assert np.all(history.normal_force >= 0)
 
 
-@pytest.mark.parametrize(("e", "shear"), [(0.0, 0.0), (0.3, 4e8), (0.6, 0.0), (1.0, 4e8)])
+@pytest.mark.parametrize(("e", "shear"), thinned([(0.3, 4e8), (0.0, 0.0), (0.6, 0.0), (1.0, 4e8)], 4))
 def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
     """With springs aside too, which the strain of a block with Poisson's ratio stretches while it rests."""
     motion = solve(replace(RIGID, restitution=e, gravity=9.81, shear_stiffness=shear, poisson=0.25), 0.02)

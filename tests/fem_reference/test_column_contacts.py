@@ -160,11 +160,8 @@ def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: in
     thinned(
         [
             (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
-            (CRADLE, CONSTANT, (16, 64), 0.7, 3e-2),
-            (TWO_BARS, AVERAGE, (8, 32), 1.2, 8e-3),
             (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
-            pytest.param(SPALL, AVERAGE, (4, 16), 1.2, 4e-3, marks=pytest.mark.long),
-            pytest.param(SPALL, CONSTANT, (4, 16), 0.5, 0.2, marks=pytest.mark.long),
+            (SPALL, AVERAGE, (4, 16), 1.2, 4e-3),
         ],
         4,
     ),

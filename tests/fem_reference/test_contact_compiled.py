@@ -109,7 +109,9 @@ def test_more_unknowns_than_can_be_turned_to_modes_run_as_they_stand(long):
 
 def test_what_stands_in_the_place_of_a_function_bites_a_long_history_too(long):
     problem = make(elements=2)
-    sound = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
+    with long.context() as patch:  # the sound history need not be compiled, which takes half a minute in a fresh clone
+        patch.setattr(compilation, "compiled", lambda: (None, "plain"))
+        sound = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
     long.setattr(kernel, "corrected", lambda law, trial, gap, states, guess: (guess, -1))
     welded = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
     assert welded.notes[-1].endswith("a function of the kernel was replaced")

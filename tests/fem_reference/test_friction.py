@@ -186,22 +186,6 @@ def test_no_limit_glues_and_none_at_all_lets_go(foundation):
             assert np.abs(found[name] - expected[name]).max() <= 1e-9 * size, name
 
 
-@pytest.mark.parametrize("degree", thinned([1, 2], 2))
-def test_a_mirrored_incline_mirrors_the_block(degree):
-    contact = replace(RUBBING, velocity=-0.1, friction=Friction(12.0, 3e4))
-    right, left = (
-        solve_unilateral(incline(b, degree=degree), CONSTANT, 120, contact, every_point=True, columns=())
-        for b in (20.0, -20.0)
-    )
-    assert set(np.unique(right.states)) >= {0, 1, 2}
-    flat = np.abs(right.slid).max()
-    assert flat > 1e-4 and np.abs(right.slid + left.slid[:, ::-1]).max() <= 1e-10 * flat
-    assert np.abs(right.normal - left.normal[:, ::-1]).max() <= 1e-9 * right.normal.max()
-    assert np.abs(right.shear + left.shear[:, ::-1]).max() <= 1e-9 * np.abs(right.shear).max()
-    mirrored = np.where(np.abs(left.states) == 2, -left.states, left.states)[:, ::-1]
-    assert np.array_equal(right.states, mirrored)
-
-
 class Refusing(ContactStepper):
     """A stepper that finds no contact in steps longer than 0.3 of its own."""
 

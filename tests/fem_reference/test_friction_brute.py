@@ -79,7 +79,6 @@ class Brute:
     ("scheme", "elements"),
     [
         (replace(CONSTANT, step=1e-3), 1),
-        pytest.param(replace(CONSTANT, step=1e-3), 2, marks=pytest.mark.long),
         pytest.param(replace(AVERAGE, step=5e-4), 2, marks=pytest.mark.long),
     ],
 )

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, named_scheme, solve_unilateral
@@ -34,7 +35,7 @@ def rest(scheme, steps, **parts):
 
 
 @pytest.mark.parametrize("base", ["half-space", "prescribed"])
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_steps_settle_in_the_frequency_response(name, options, base):
     """A wave below and a pressure on top that vibrate; what begins dies in the half-space, or by gg."""
     explicit = name == "leapfrog"
@@ -111,7 +112,7 @@ def finest_history(law):
     return switching_history(law, scheme, FINEST).columns["displacement"]
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 @pytest.mark.parametrize("law", ["unilateral", "frictional"])
 def test_orders_with_contacts_that_open_or_slip(law, name, options):
     """Second order through the switches, against average acceleration in steps 8 times shorter."""

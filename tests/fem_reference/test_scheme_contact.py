@@ -83,7 +83,7 @@ def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, erro
     assert solves.min() == (2 if name == "composite" else 1)
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_orders_through_switching(name, options):
     """Second order from lift-off to after landing."""
     v = exact().at(np.linspace(0.001, 0.03, 30)).displacement[1]
@@ -162,7 +162,7 @@ def test_a_block_that_stays_closed_moves_as_on_locked_springs(name, options):
     np.testing.assert_allclose(opened["displacement"], locked, atol=1e-11 * np.abs(locked).max())
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_a_motion_does_not_depend_on_how_it_is_stepped(name, options):
     """One column of elements and the whole block, plain and in natural modes; energies balance with friction."""
     explicit = name == "leapfrog"

@@ -218,7 +218,7 @@ def test_a_start_without_acceleration_costs_an_order():
     assert math.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_every_path_gives_the_stepped_history(name, options):
     """Without and with the savings in space and time, and the work that is counted."""
     explicit = name == "leapfrog"
@@ -295,7 +295,7 @@ def steady(problem, scheme, frequency):
 
 
 @pytest.mark.parametrize("gg", [1.0, 0.95])
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_the_frequency_response_is_the_periodic_motion_of_the_steps(name, options, gg):
     scheme = named_scheme(name, step=1e-4 if name == "leapfrog" else 1e-3, gg=gg, **options)
     problem = make(elements=2, poisson=0.3)

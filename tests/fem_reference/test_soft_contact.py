@@ -20,7 +20,7 @@ from fem_reference.exact import continuum
 from fem_reference.exact.bar import Bar
 from fem_reference.problem.problem import Scheme
 
-SOFTNESS = [2e-12, 2e-8, 4e-6, 1e-3, 0.9]  # of the spring over the bar: twice p / E of a square block
+SOFTNESS = [2e-12, 4e-6, 0.9]  # of the spring over the bar: twice p / E of a square block
 COLUMNS = ["contact_pressure", "displacement"]
 CUT_OFF = 2e-12  # of the sums over modes, as in `test_damped_fronts`
 
@@ -30,10 +30,10 @@ def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
     return float(max(abs(mpf(float(x)) - y) for x, y in zip(found, expected, strict=True)) / scale)
 
 
-CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [0.0, 1e-6, 1e-2, 1.0, 30.0, 300.0])
+CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [1e-6, 0.0, 1.0, 300.0])
 
 
-@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 19))
+@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 11))
 def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19, 59]
@@ -42,7 +42,7 @@ def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> N
     assert over_maximum(found[looked], expected) <= CUT_OFF
 
 
-STIFFNESSES = [1e-15, 1e-12, 3e-9, 1e-6, 1e-3]
+STIFFNESSES = [1e-15, 3e-9, 1e-3]
 SCHEMES = [
     Scheme(0.5, 1.0, 1.0, 2e-3),
     Scheme(0.25, 0.5, 1.0, 5e-5),

@@ -106,6 +106,7 @@ def test_the_first_name_from_python_finds_out(place: Path) -> None:
     assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
 
 
+@pytest.mark.long
 def test_folders_without_code_are_in_nobodys_way(place: Path, installed: Path) -> None:
     for package in PACKAGES:
         (place / package).mkdir()
@@ -129,6 +130,7 @@ def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place: Pat
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.long
 def test_the_process_of_a_users_solver_takes_our_package_and_not_the_folder_beside_it(place: Path) -> None:
     add_package(place, "validation")
     place.joinpath("my_flat_solver.py").write_text(SOLVER)

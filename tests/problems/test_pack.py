@@ -11,9 +11,12 @@ from conftest import refused, typed
 
 from validation.errors import InputError
 from validation.problems import pack
-from validation.problems.data import PACK, ProblemData, SubmissionData, united
+from validation.problems.answers import read_sets
+from validation.problems.data import PACK, AnswersData, ProblemData, SubmissionData, united
+from validation.problems.defects import DefectsError
 from validation.problems.judge import judge
 from validation.problems.problem import PROBLEMS
+from validation.problems.questions import box_questions, names
 from validation.problems.submission import read_submission
 from validation.studies import pack as studies_pack
 
@@ -28,7 +31,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pack, "PROBLEMS", QUICK)
-        assert pack.write_problems(directory) == len(QUICK)
+        assert pack.write_problems(directory) == len(QUICK) + len(box_questions())
     return directory / "problems"
 
 
@@ -62,13 +65,13 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
 
 
 def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
-    for schema, data in (("problem", ProblemData), ("submission", SubmissionData)):
+    for schema, data in (("problem", ProblemData), ("submission", SubmissionData), ("answers", AnswersData)):
         assert data.model_json_schema().items() <= json.loads((written / f"{schema}.schema.json").read_text()).items()
     page = (written / "README.md").read_text()
     assert f"version {PACK};" in page and f"`{united('rotation')}`" in page
     assert [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4][
-        -len(QUICK) :
-    ] == list(QUICK)
+        -len(QUICK) - len(box_questions()) :
+    ] == [*QUICK, *box_questions()]
 
 
 @pytest.fixture
@@ -126,6 +129,36 @@ def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path: Path, monkeypatch:
 def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
     done = typed("export-pack", tmp_path / "pack")
     assert done.returncode == 0, done.stderr
-    assert f"{len(PROBLEMS)} problems for any program" in done.stdout
+    assert f"{len(names())} problems for any program" in done.stdout
     for name in PROBLEMS:
         assert answered(tmp_path / "pack" / "problems", name, tmp_path / name) == "PASS"
+
+
+def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path, tmp_path: Path) -> None:
+    """As it is, every field of words is said to be blank; filled in, a table that is left blank is no answer."""
+    place = tmp_path / "mine"
+    shutil.copytree(written / "answers", place)
+    with pytest.raises(DefectsError) as caught:
+        read_sets(place)
+    fields = {str(defect.field) for defect in caught.value.defects}
+    assert fields == {name for name, blank in pack.ANSWERS_TEMPLATE.items() if blank} - {"settings_name"}
+    stated = json.loads((place / "submission.json").read_text())
+    filled = FILLED | {"scheme": "s", "step_s": None, "contact_model": "c", "processor": "p", "licence": "CC0-1.0"}
+    (place / "submission.json").write_text(json.dumps(stated | filled))
+    with pytest.raises(InputError, match="must hold the table of a problem"):
+        read_sets(place)
+    shutil.copy(written / "exact/rocking.csv", place / "rocking.csv")
+    ((answer,),) = [one.answers for one in read_sets(place)]
+    assert answer.name == "rocking"
+
+
+def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(written: Path) -> None:
+    for name, question in box_questions().items():
+        data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
+        assert data.rigid is not None and data.block is None and data.exact is None
+        assert [number.name for number in data.numbers] == [quantity.name for quantity in question.quantities]
+        assert all(number.low <= number.exact <= number.high for number in data.numbers)
+        assert len(data.answer) == 3 * len(data.rigid.boxes)
+        header, first, *_ = (written / "answers" / f"{name}.csv").read_text().splitlines()
+        assert header.split(",") == [pack.TIME, *(column.name for column in data.answer)]
+        assert float(first.split(",")[0]) == pytest.approx(data.sampling.step_s)

@@ -12,8 +12,8 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from validation.problems.bands import standard
-from validation.problems.data import PACK, SUBMISSION, ProblemData, SubmissionData
-from validation.problems.pack import TEMPLATE, problem_data
+from validation.problems.data import ANSWERS, PACK, SUBMISSION, AnswersData, ProblemData, SubmissionData
+from validation.problems.pack import ANSWERS_TEMPLATE, TEMPLATE, problem_data
 from validation.problems.problem import problem
 
 JSON = dict[str, Any]
@@ -45,13 +45,19 @@ def _holds(keyword: str, rule: Any, value: Any, schema: Mapping[str, Any], root:
         "enum": lambda: value in rule,
         "required": lambda: set(rule) <= set(fields),
         "properties": lambda: all(takes(known[name], part, root) for name, part in fields.items() if name in known),
-        "additionalProperties": lambda: rule or set(fields) <= set(known),
+        "additionalProperties": lambda: _others_taken(rule, {k: v for k, v in fields.items() if k not in known}, root),
+        "exclusiveMinimum": lambda: not isinstance(value, int | float) or value > rule,
         "items": lambda: not isinstance(value, list) or all(takes(rule, part, root) for part in value),
         "minLength": lambda: not isinstance(value, str) or len(value) >= rule,
         "maxLength": lambda: not isinstance(value, str) or len(value) <= rule,
         "pattern": lambda: not isinstance(value, str) or bool(re.search(rule, value)),
     }
     return checks[keyword]()
+
+
+def _others_taken(rule: Any, others: JSON, root: Mapping[str, Any]) -> bool:
+    """Whether properties that a schema does not name are taken: all, none, or those that a schema of theirs takes."""
+    return all(takes(rule, part, root) for part in others.values()) if isinstance(rule, dict) else rule or not others
 
 
 def pydantic_takes(model: type[BaseModel], value: Any) -> bool:
@@ -75,12 +81,18 @@ def submission() -> JSON:
     return {"format": SUBMISSION, "pack": PACK, "problem": "locked", **TEMPLATE}
 
 
+def answers() -> JSON:
+    return {"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE, "step_s": 1e-3}
+
+
 @pytest.mark.parametrize("name", ["locked", "column", "stack", "mass-ratio", "cradle", "joint"])
 def test_what_the_pack_writes_conforms(name: str) -> None:
     schema, data = ProblemData.model_json_schema(), exported(name)
     assert takes(schema, data, schema) and pydantic_takes(ProblemData, data)
     schema = SubmissionData.model_json_schema()
     assert takes(schema, submission(), schema) and pydantic_takes(SubmissionData, submission())
+    schema = AnswersData.model_json_schema()
+    assert takes(schema, answers(), schema) and pydantic_takes(AnswersData, answers())
 
 
 def places(data: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
@@ -113,14 +125,17 @@ def test_the_schema_takes_infinite_data_by_name_only() -> None:
         assert takes(schema, other, schema) is pydantic_takes(ProblemData, other) is taken, value
 
 
-@pytest.mark.parametrize("model", [ProblemData, SubmissionData])
+@pytest.mark.parametrize("model", [ProblemData, SubmissionData, AnswersData])
 def test_schema_and_pydantic_say_the_same_of_changed_data(model: type[BaseModel]) -> None:
     """Pydantic alone takes true for the number one; all else both take or both refuse."""
     schema = model.model_json_schema()
     told: set[bool] = set()
-    for data in (
-        (exported("locked"), exported("column"), exported("stack")) if model is ProblemData else (submission(),)
-    ):
+    documents = {
+        ProblemData: (exported("locked"), exported("column"), exported("stack")),
+        SubmissionData: (submission(),),
+        AnswersData: (answers(), answers() | {"step_s": {"locked": 1e-3}, "not_reported": {"locked": ["gap_2_m"]}}),
+    }
+    for data in documents[model]:
         for at in places(data):
             for value in VALUES:
                 other = changed(data, at, value)

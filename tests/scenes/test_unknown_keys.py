@@ -109,3 +109,30 @@ def test_very_many_are_counted() -> None:
     with pytest.raises(InputError) as refused:
         parse_scene(data, "x.toml")
     assert str(refused.value.field).endswith(" and 10 more")
+
+
+OF_BOXES = {  # the same in a scene of rigid boxes
+    "rigid.mu": "rigid.friction",
+    "rigid.friction_coefficient": "rigid.friction",
+    "rigid.e": "rigid.restitution",
+    "rigid.bounce": "rigid.restitution",
+    "rigid.g": "rigid.gravity",
+    "rigid.angle": "rigid.slope",
+    "rigid.kn": "rigid.stiffness",
+    "rigid.box.mass": "rigid.box.density",
+    "rigid.box.omega": "rigid.box.spin",
+    "rigid.box.angle": "rigid.box.tilt",
+    "rigid.box.w": "rigid.box.width",
+    "rigid.step": "time.step",
+}
+
+
+@pytest.mark.parametrize(("field", "meant"), OF_BOXES.items())
+def test_the_key_of_rigid_boxes_that_was_meant_is_named(field: str, meant: str) -> None:
+    box: dict[str, Any] = {"width": 1.0, "height": 1.0, "density": 2500.0}
+    data: dict[str, Any] = {"rigid": {"box": [box]}, "time": {"step": 0.01, "steps": 10}}
+    place, _, key = field.rpartition(".")
+    {"rigid": data["rigid"], "rigid.box": box}[place][key] = 1.0
+    with pytest.raises(InputError) as refused:
+        parse_scene(data, "boxes")
+    assert refused.value.advice == f"did you mean {meant}?"

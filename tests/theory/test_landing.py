@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import load_scene
 from validation.engine.case import Case
@@ -111,7 +112,7 @@ def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> Non
     assert landing.own_landing(2e9).restitution == pytest.approx(landing.rigid_stop()[-1], abs=1e-4)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", thinned(SCHEMES, 2))
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
 def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
     stepping = Stepping.of(on_springs(ratio, **scheme))
@@ -197,7 +198,7 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
 
 
 @pytest.mark.parametrize("ratio", [0.1, 10.0])
-@pytest.mark.parametrize("scheme", [SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]])
+@pytest.mark.parametrize("scheme", thinned([SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]], 3))
 def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does_not(
     ratio: float, scheme: dict[str, Any]
 ) -> None:

@@ -7,21 +7,22 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from validation.advice.engine_table import (
+    BOX2D_LIMIT,
+    BOX2D_STATIC,
+    GRAVITY,
+    MUJOCO_STEPS,
+    OPTIONAL,
+    PARAMETERS,
+    PROGRAMS,
+    PYBULLET_SLOP,
+)
 from validation.errors import InputError
+from validation.runs.history import Array
 from validation.theory.restitution import damping_ratio, restitution
-from validation.theory.soft_contact import QUARTER, Impedance, SoftContact
+from validation.theory.soft_contact import QUARTER, Impedance, SoftContact, local_damping_restitution
 
-GRAVITY = 9.81  # m/s2
-BOX2D_LIMIT = 0.125  # of the rate of substeps: the greatest hertz of a contact between moving bodies
-BOX2D_STATIC = 2.0  # a contact with a static body has this many times the hertz
-MUJOCO_STEPS = 2.0  # steps that timeconst must have
-PARAMETERS = {  # engine -> its parameters, those that have a default after the others
-    "box2d": ("hertz", "damping_ratio"),
-    "bullet": ("erp", "cfm"),
-    "mujoco": ("timeconst", "dampratio", "dmax", "solimp"),
-    "spring": ("stiffness", "damping", "restitution"),
-}
-OPTIONAL = {"dmax", "solimp", "damping", "restitution"}
+RADIUS_TOLERANCE = 1e-12  # of the spectral radius of a step that keeps the amplitude
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,7 @@ class Translation:
     determinant: float | None  # of a closed step of the engine [-]
     spectral_radius: float | None  # [-]
     rebound: dict[str, float] | None  # of the engine's steps, over the phase: mean, low, high [-]
+    numerical_ratio: float | None  # damping ratio that the steps add to a free vibration of the spring [-]
     forms: dict[str, dict[str, float]]  # engine -> its parameters for this spring and dashpot
     scene: dict[str, float]  # keys of the scene of a block on two corners
     notes: tuple[str, ...]
@@ -59,14 +61,19 @@ def translate(
     block_mass: float | None = None,
     step: float | None = None,
     gravity: float = GRAVITY,
+    points: int = 1,
+    box: tuple[float, ...] | None = None,
+    static: bool = False,
     **parameters: Any,
 ) -> Translation:
     """Return what an engine's soft contact is as spring and dashpot, and in the words of the other engines.
 
+    Without any parameter the program is taken as it comes, at its own step where none is stated.
+
     Parameters
     ----------
     engine
-        "box2d", "bullet", "mujoco", or "spring" for the way back.
+        "box2d", "bullet", "pybullet", "mujoco", "yade", "opensees", or "spring" for the way back.
     mass
         Effective mass of the contact, m [kg]: of one body that meets the ground flat its mass, of two m1 m2/(m1 + m2).
     block_mass
@@ -76,9 +83,16 @@ def translate(
         h [s]; Bullet's parameters have no meaning without.
     gravity
         g [m/s^2] of the weight that stands in the contact.
+    points
+        Contact points that share the body, each with these parameters.
+    box
+        Width and height [m] of a flat box on two points of Box2D, where a point feels less than the mass.
+    static
+        Whether the other body of Box2D's contact is a static one, where the hertz count twice.
     **parameters
-        Of the engine (`PARAMETERS`): hertz and damping_ratio; erp and cfm; timeconst, dampratio and dmax (0.95), or
-        solimp = (dmin, dmax, width, midpoint, power); stiffness and damping or restitution.
+        Of the engine (`PARAMETERS`): hertz and damping_ratio; erp and cfm; contact_stiffness and contact_damping;
+        timeconst, dampratio and dmax (0.95), or solimp = (dmin, dmax, width, midpoint, power); normal_stiffness and
+        local_damping; penalty; stiffness and damping or restitution.
 
     Raises
     ------
@@ -98,16 +112,67 @@ def translate(
         if name not in PARAMETERS[engine]:
             rule = f"is no parameter of {engine}"
             raise InputError(rule, field=name, advice=f"it has {', '.join(PARAMETERS[engine])}")
+    notes = []
+    program = PROGRAMS.get(engine)
+    if program is not None and not parameters and program.defaults:
+        parameters = program.defaults
+        step = program.step if step is None else step
+        at_step = "" if step is None else f", step {step:.6g} s"
+        shown = ", ".join(f"{name} = {_in_words(value)}" for name, value in parameters.items())
+        notes.append(f"{program.title} as it comes: {shown}{at_step}")
     missing = [name for name in PARAMETERS[engine] if name not in parameters and name not in OPTIONAL]
+    if engine == "mujoco" and missing == ["solimp"]:
+        missing = []  # dmax stands in its place
     if missing:
-        raise InputError(f"must be stated for {engine}", field=missing[0])
-    effective, weight = _masses(mass, block_mass, gravity)
+        advice = _ABSENT.get(missing[0])
+        raise InputError(f"must be stated for {engine}", field=missing[0], advice=advice)
+    _require(points >= 1, "must be at least 1", "points", points)
+    if box is not None:
+        _require(len(box) == 2 and min(box) > 0, "must be a positive width and height", "box", box)
     if step is not None:
-        _require(step > 0, "must be positive", "step", step)
-    contact = _CONTACTS[engine](effective, weight, step, parameters)
+        _require(0 < step < math.inf, "must be positive", "step", step)
+    effective, weight = _masses(mass, block_mass, gravity)
+    body = Body(effective, weight, step, points, lever(box, points), static)
+    contact = _CONTACTS[engine](body, parameters)
     if contact.stiffness <= 0 or not math.isfinite(contact.stiffness):
         raise InputError("must be positive and finite", field="stiffness", value=f"{contact.stiffness:g}")
-    return _translation(engine, contact, weight, block_mass or effective, step)
+    solimp = parameters.get("solimp")
+    has_constant_numbers = solimp is None or solimp[0] == solimp[1]
+    if not has_constant_numbers:
+        notes.append("k, c and the restitution are those of the impedance at rest, which a landing passes through")
+    return _translation(engine, contact, body, block_mass or effective, has_constant_numbers, notes)
+
+
+@dataclass(frozen=True)
+class Body:
+    """What stands on a contact."""
+
+    mass: float  # effective [kg]
+    weight: float  # [N]
+    step: float | None = None  # [s]
+    points: int = 1  # contact points that share it
+    lever: float = 0.0  # r^2 m / I of a point at the arm r [-]
+    static: bool = False  # whether the other body is static
+
+
+def lever(box: tuple[float, ...] | None, points: int) -> float:
+    """Return r^2 m / I of a corner of a flat box: 3 w^2 / (w^2 + h^2); 0 of a point below the centre."""
+    if box is None or points == 1:
+        return 0.0
+    width, height = box
+    return 3 * width**2 / (width**2 + height**2)
+
+
+def _in_words(value: float | tuple[float, ...]) -> str:
+    return " ".join(f"{number:g}" for number in value) if isinstance(value, tuple) else f"{value:g}"
+
+
+_ABSENT = {
+    "erp": "as it comes a contact of Bullet is rigid",
+    "contact_stiffness": "as it comes a contact of PyBullet is rigid: bodies stand 0.01 mm deep in each other",
+    "normal_stiffness": "Yade has no default: kn = E r of a sphere of radius r on a wall of the same E",
+    "penalty": "OpenSees has no default",
+}
 
 
 def _require(holds: bool, rule: str, field: str, value: object, advice: str | None = None) -> None:
@@ -137,42 +202,57 @@ def _masses(mass: float | None, block_mass: float | None, gravity: float) -> tup
 Parameters = Mapping[str, Any]
 
 
-def _box2d(mass: float, weight: float, step: float | None, parameters: Parameters) -> SoftContact:
+def _box2d(body: Body, parameters: Parameters) -> SoftContact:
     """Return the contact of hertz and damping ratio."""
     hertz = parameters["hertz"]
     ratio = parameters["damping_ratio"]
     _require(0 < hertz < math.inf, "must be positive and finite", "hertz", hertz)
     _require(0 <= ratio < math.inf, "must not be negative", "damping_ratio", ratio)
-    return SoftContact.of_box2d(mass, hertz, ratio)
+    rate = BOX2D_STATIC * hertz if body.static else hertz
+    return SoftContact.of_box2d(body.mass, rate, ratio, body.points, body.lever)
 
 
-def _bullet(mass: float, weight: float, step: float | None, parameters: Parameters) -> SoftContact:
+def _bullet(body: Body, parameters: Parameters) -> SoftContact:
     """Return the contact of erp and cfm."""
     erp = parameters["erp"]
     cfm = parameters["cfm"]
-    if step is None:
+    if body.step is None:
         advice = "erp and cfm are those of one step: --step 0.0041666667 for 240 a second"
         raise InputError("must be stated for bullet", field="step", advice=advice)
     _require(0 < erp <= 1, "must be above 0 and at most 1", "erp", erp)
     _require(0 < cfm < math.inf, "must be positive", "cfm", cfm, "cfm = 0 is a rigid contact: contact.stiffness = inf")
-    return SoftContact.of_bullet(mass, erp, cfm, step)
+    return SoftContact.of_bullet(body.mass, erp, cfm / body.points, body.step)
 
 
-def _mujoco(mass: float, weight: float, step: float | None, parameters: Parameters) -> SoftContact:
+def _pybullet(body: Body, parameters: Parameters) -> SoftContact:
+    """Return the contact of contactStiffness and contactDamping; a ball is braked ahead, a box once it overlaps."""
+    stiffness = parameters["contact_stiffness"]
+    damping = parameters["contact_damping"]
+    _require(0 < stiffness < math.inf, "must be positive and finite", "contact_stiffness", stiffness)
+    _require(0 <= damping < math.inf, "must not be negative", "contact_damping", damping)
+    k = body.points * stiffness
+    is_box = body.points > 1
+    c = body.points * damping
+    return SoftContact(body.mass, k, c, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
+
+
+def _mujoco(body: Body, parameters: Parameters) -> SoftContact:
     """Return the contact of solref and solimp."""
     timeconst = parameters["timeconst"]
     dampratio = parameters["dampratio"]
-    advice = "a negative solref is (-stiffness, -damping) per mass: translate spring takes k and c"
-    _require(0 < timeconst < math.inf, "must be positive", "timeconst", timeconst, advice)
-    _require(0 < dampratio < math.inf, "must be positive", "dampratio", dampratio, advice)
-    if step is not None:
-        least = MUJOCO_STEPS * step
+    is_direct = timeconst < 0 and dampratio <= 0
+    if not is_direct:
+        advice = "(-stiffness, -damping) per mass is MuJoCo's other form, both not above 0"
+        _require(0 < timeconst < math.inf, "must be positive", "timeconst", timeconst, advice)
+        _require(0 < dampratio < math.inf, "must be positive", "dampratio", dampratio, advice)
+    if body.step is not None and not is_direct:
+        least = MUJOCO_STEPS * body.step
         advice = f"MuJoCo takes {least:g} instead (refsafe): state that, or a step of at most {timeconst / 2:g} s"
         _require(timeconst >= least, f"must be at least two steps, {least:g} s", "timeconst", timeconst, advice)
     if parameters.get("solimp") is None:
         impedance = parameters.get("dmax", 0.95)
         _require(0 < impedance < 1, "must be between 0 and 1", "dmax", impedance)
-        return SoftContact.of_mujoco(mass, timeconst, dampratio, impedance, 1.0)
+        return SoftContact.of_mujoco(body.mass, timeconst, dampratio, impedance, 1.0, body.points)
     if "dmax" in parameters:
         raise InputError("must not be stated beside solimp, whose second number it is", field="dmax")
     numbers = tuple(parameters["solimp"])
@@ -181,11 +261,30 @@ def _mujoco(mass: float, weight: float, step: float | None, parameters: Paramete
     ranges = 0 < curve.least <= curve.greatest < 1 and curve.width > 0 and 0 < curve.midpoint < 1 and curve.power >= 1
     rule = "must have 0 < dmin <= dmax < 1, a positive width, a midpoint between 0 and 1 and a power of at least 1"
     _require(ranges, rule, "solimp", numbers)
-    impedance = curve.at_rest(1 / (timeconst * dampratio), weight / mass)
-    return SoftContact.of_mujoco(mass, timeconst, dampratio, impedance, impedance / curve.greatest)
+    frequency = math.sqrt(-timeconst) if is_direct else 1 / (timeconst * dampratio)
+    # a point of n carries an n-th of the load, and the shared impedance has (1 - d') / d' = (1 - d) / (n d)
+    impedance = curve.at_rest(frequency, body.weight / body.mass / body.points)
+    share = impedance / curve.greatest
+    return SoftContact.of_mujoco(body.mass, timeconst, dampratio, impedance, share, body.points)
 
 
-def _spring(mass: float, weight: float, step: float | None, parameters: Parameters) -> SoftContact:
+def _yade(body: Body, parameters: Parameters) -> SoftContact:
+    """Return the contact of a normal stiffness, and the damping of all forces."""
+    stiffness = parameters["normal_stiffness"]
+    alpha = parameters["local_damping"]
+    _require(0 <= alpha < 1, "must be from 0 to below 1", "local_damping", alpha)
+    _require(0 < stiffness < math.inf, "must be positive and finite", "normal_stiffness", stiffness)
+    return SoftContact(body.mass, body.points * stiffness, 0.0, implicit=False, local_damping=alpha)
+
+
+def _opensees(body: Body, parameters: Parameters) -> SoftContact:
+    """Return the contact of a penalty."""
+    penalty = parameters["penalty"]
+    _require(0 < penalty < math.inf, "must be positive and finite", "penalty", penalty)
+    return SoftContact(body.mass, body.points * penalty, 0.0)
+
+
+def _spring(body: Body, parameters: Parameters) -> SoftContact:
     """Return the contact of k and c, or of k and the restitution that it shall have."""
     stiffness = parameters["stiffness"]
     damping = parameters.get("damping")
@@ -195,47 +294,77 @@ def _spring(mass: float, weight: float, step: float | None, parameters: Paramete
         raise InputError("one of them can be stated", field="damping, restitution", value="both")
     if e is not None:
         _require(0 < e <= 1, "must be above 0 and at most 1", "restitution", e, "a dashpot always returns something")
-        return SoftContact.of_ratio(mass, math.sqrt(stiffness / mass), damping_ratio(e))
+        return SoftContact.of_ratio(body.mass, math.sqrt(stiffness / body.mass), damping_ratio(e))
     damping = 0.0 if damping is None else damping
     _require(0 <= damping < math.inf, "must not be negative", "damping", damping)
-    return SoftContact(mass, stiffness, damping)
+    return SoftContact(body.mass, stiffness, damping)
 
 
-_CONTACTS = {"box2d": _box2d, "bullet": _bullet, "mujoco": _mujoco, "spring": _spring}
+_CONTACTS = {
+    "box2d": _box2d,
+    "bullet": _bullet,
+    "pybullet": _pybullet,
+    "mujoco": _mujoco,
+    "yade": _yade,
+    "opensees": _opensees,
+    "spring": _spring,
+}
+OWN_STEPS = ("bullet", "pybullet", "mujoco", "yade", "spring")
+"""Whose landing is that of `SoftContact.rebounds`; Box2D's relaxation takes the spring's speed again."""
 
 
-def _translation(engine: str, contact: SoftContact, weight: float, body_mass: float, step: float | None) -> Translation:
+def _translation(
+    engine: str,
+    contact: SoftContact,
+    body: Body,
+    body_mass: float,
+    has_constant_numbers: bool,
+    notes: list[str],
+) -> Translation:
     """Return all that follows from a spring, a dashpot and how they are stepped."""
     w = contact.frequency
     ratio = contact.ratio
+    step = body.step
     rebound = None
-    if step is not None and contact.spectral_radius(step) <= 1:
-        values = contact.rebounds(step)
-        rebound = {"mean": float(values.mean()), "low": float(values.min()), "high": float(values.max())}
+    numerical_ratio = None
+    if step is not None and engine in OWN_STEPS and has_constant_numbers:
+        numerical_ratio = contact.numerical_ratio(step)
+        if contact.spectral_radius(step) <= 1 + RADIUS_TOLERANCE:
+            rebound = spread(contact.rebounds(step))
+    has_step_matrix = engine not in ("yade", "opensees")  # damped by a sign; average acceleration
+    e = restitution(ratio)
+    if contact.local_damping:
+        e = local_damping_restitution(contact.local_damping)
     return Translation(
         engine=engine,
         mass=contact.mass,
-        weight=weight,
+        weight=body.weight,
         stiffness=contact.stiffness,
         damping=contact.damping,
         frequency=w,
         damping_ratio=ratio,
-        restitution=restitution(ratio),
-        rest_penetration=contact.rest_penetration(weight),
+        restitution=e,
+        rest_penetration=contact.rest_penetration(body.weight),
         load_share=contact.load_share,
         step=step,
         omega_step=None if step is None else w * step,
-        determinant=None if step is None else contact.determinant(step),
-        spectral_radius=None if step is None else contact.spectral_radius(step),
+        determinant=contact.determinant(step) if step is not None and has_step_matrix else None,
+        spectral_radius=contact.spectral_radius(step) if step is not None and has_step_matrix else None,
         rebound=rebound,
+        numerical_ratio=numerical_ratio,
         forms=_forms(contact, step),
         # both corners of the block act at once, and the scene's ratio is that of its whole mass
         scene={
             "contact.stiffness": contact.stiffness / 2,
             "contact.damping_ratio": contact.damping / (2 * math.sqrt(contact.stiffness * body_mass)),
         },
-        notes=tuple(_notes(engine, contact, step)),
+        notes=(*notes, *_notes(engine, contact, body)),
     )
+
+
+def spread(values: Array) -> dict[str, float]:
+    """Return mean, least and greatest of the rebounds over the phase."""
+    return {"mean": float(values.mean()), "low": float(values.min()), "high": float(values.max())}
 
 
 def _forms(contact: SoftContact, step: float | None) -> dict[str, dict[str, float]]:
@@ -250,29 +379,39 @@ def _forms(contact: SoftContact, step: float | None) -> dict[str, dict[str, floa
         forms["box2d"] |= {"bias_rate": w / a1, "mass_scale": a2 / (1 + a2), "impulse_scale": 1 / (1 + a2)}
         resistance = step * contact.stiffness + contact.damping
         forms["bullet"] = {"erp": step * contact.stiffness / resistance, "cfm": 1 / resistance}
+    forms["pybullet"] = {"contact_stiffness": contact.stiffness, "contact_damping": contact.damping}
     if ratio > 0:  # without a dashpot timeconst = 1 / (w zeta) is infinite
         forms["mujoco"] = {"timeconst": 1 / (w * ratio), "dampratio": ratio}
     return forms
 
 
-def _notes(engine: str, contact: SoftContact, step: float | None) -> list[str]:
+def _notes(engine: str, contact: SoftContact, body: Body) -> list[str]:
     """Return what a user of these numbers should know."""
     notes = []
-    hertz = contact.frequency / (2 * math.pi)
-    if engine == "box2d" and step is not None:
-        limit = min(30.0, BOX2D_LIMIT / step)
-        if hertz > limit * (1 + 1e-6):
-            fixed = BOX2D_STATIC * limit
-            notes.append(
-                f"Box2D gives a contact at this substep at most {limit:.4g} Hz, {fixed:.4g} Hz on a static body"
-            )
+    step = body.step
+    if engine == "box2d":
+        notes.append(
+            "the restitution is that of the spring: Box2D relaxes every sub-step, its contact rebounds by the "
+            "restitution of the shapes alone"
+        )
+        if step is not None:
+            hertz = contact.frequency / math.sqrt(body.points / (1 + body.lever)) / (2 * math.pi)
+            limit = BOX2D_LIMIT / step * (BOX2D_STATIC if body.static else 1.0)
+            if hertz > limit * (1 + 1e-6):
+                fixed = "" if body.static else f", {BOX2D_STATIC * limit:.4g} Hz on a static body"
+                notes.append(f"Box2D gives a contact at this substep at most {limit:.4g} Hz{fixed}")
     if engine == "mujoco":
         notes.append(
             f"MuJoCo's spring carries {contact.load_share:.4g} of the load, its impedance the rest: the other engines "
             f"stand {1 / contact.load_share:.4g} times as deep on the same spring"
         )
-    if step is not None:
+    if engine == "yade":
+        notes.append(
+            "Yade damps the sum of all forces, the weight in free fall too: what falls lands more slowly, at "
+            f"{math.sqrt(1 - contact.local_damping):.4g} of the speed"
+        )
+    if step is not None and engine != "opensees":
         radius = contact.spectral_radius(step)
-        if radius > 1 + 1e-12:
+        if radius > 1 + RADIUS_TOLERANCE:
             notes.append(f"the closed step grows by {radius:.4g}: take a shorter step or a softer contact")
     return notes

@@ -51,8 +51,10 @@ def compare(
     """
     from validation.diagnosis.judgement import compare as judge
     from validation.diagnosis.reading import parse_columns, parse_scale, read
+    from validation.scenes.features import refuse_bonded_column
 
     case = one_case(scene, assignments)
+    refuse_bonded_column(case, "compare")  # before its file is taken for a wrong one
     foreign = read(history, parse_columns(columns), parse_scale(scale))
     with _progress("compare", between_calls=True):
         answer = judge(case, foreign, tolerance)

@@ -21,6 +21,7 @@ from validation.cli.printing.output import broken, echo, echo_json, terminal_wid
 if TYPE_CHECKING:
     from validation.advice.advice import Advice, Solution
     from validation.advice.columns import ColumnLimits
+    from validation.advice.engine_settings import EngineAdvice
     from validation.advice.spectra import Damping
     from validation.scenes.scene import Scene
 
@@ -80,6 +81,36 @@ def advise(
     phase_error: Annotated[
         float, typer.Option("--phase-error", help="Fraction of a period by which the wave may arrive early or late.")
     ] = 0.05,
+    program: Annotated[
+        str | None,
+        typer.Option(
+            "--for",
+            help="What to set in another program instead: box2d, mujoco, opensees, pybullet, yade; with --penetration, "
+            "--restitution or --hidden-damping.",
+            metavar="PROGRAM",
+        ),
+    ] = None,
+    penetration: Annotated[
+        float | None, typer.Option("--penetration", help="With --for: wanted at rest.", metavar="M")
+    ] = None,
+    restitution: Annotated[
+        float | None, typer.Option("--restitution", help="With --for: rebound over approach speed.")
+    ] = None,
+    hidden: Annotated[
+        float | None,
+        typer.Option("--hidden-damping", help="With --for: damping ratio that the program's steps may add, 0.01."),
+    ] = None,
+    speed: Annotated[
+        float | None, typer.Option("--speed", help="With --for: of the landing, if not the scene's.", metavar="M/S")
+    ] = None,
+    step: Annotated[
+        float | None,
+        typer.Option("--step", help="With --for: of the program, if not the scene's or its own.", metavar="S"),
+    ] = None,
+    points: Annotated[
+        int | None,
+        typer.Option("--points", help="With --for: contact points that share the body, if not those of a box."),
+    ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -92,12 +123,48 @@ def advise(
     Across schemes: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --at 5 --no-gain[/bold]
 
     Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
+
+    Another program: [bold]dda-validate advise field-rebound --for mujoco --penetration 1e-4 --restitution 0.5[/bold]
     """
     from validation.advice.columns import limits
     from validation.errors import InputError
     from validation.scenes.features import refuse_nonlinear
 
     case = one_case(scene, assignments)
+    for_program = {
+        "--penetration": penetration,
+        "--restitution": restitution,
+        "--hidden-damping": hidden,
+        "--speed": speed,
+        "--step": step,
+        "--points": points,
+    }
+    of_schemes = {
+        "--damping": damping,
+        "--at": at,
+        "--across": across or None,
+        "--no-gain": no_gain,
+        "--fmax": fmax,
+    }
+    for name, value in (for_program if program is None else of_schemes).items():
+        if value is not None:
+            rule = "goes with --for PROGRAM only" if program is None else "cannot be given with --for"
+            raise InputError(rule, field=name, value=value)
+    if program is not None:
+        from validation.advice.engine_settings import advise_engine
+
+        advice = advise_engine(
+            case,
+            program,
+            penetration=penetration,
+            restitution=restitution,
+            hidden=hidden,
+            speed=speed,
+            step=step,
+            points=points,
+        )
+        _print_settings(advice, as_json)
+        return
     is_across = across or at is not None or no_gain is not None
     if is_across and damping is None:
         raise InputError("must be given with --at, --across and --no-gain", field="--damping", value="nothing")
@@ -114,6 +181,49 @@ def advise(
         _advise_wave(case, float(fmax or 0), (loss, wavelengths, phase_error), as_json)
     else:
         _advise_damping(case, damping, solve_for, as_json)
+
+
+def _print_settings(advice: EngineAdvice, as_json: bool) -> None:
+    """Print what to set in another program, what that does, and what the program does as it comes."""
+    if as_json:
+        echo_json(advice.as_dict())
+        return
+    from validation.advice.engine_table import PROGRAMS
+
+    program = PROGRAMS[advice.program]
+    meanings = {one.name: one.meaning for one in program.parameters}
+    settings = []
+    for name, value in advice.settings.items():
+        numbers = value if isinstance(value, tuple) else (value,)
+        settings.append((f"  {meanings.get(name, name)}", " ".join(f"{number:.6g}" for number in numbers)))
+    echo(f"{program.title}: set")
+    echo(in_columns(settings, terminal_width()))
+    body = f"{advice.mass:.6g} kg on {advice.points} contact point{'' if advice.points == 1 else 's'}"
+    at_step = "" if advice.step is None else f", step {advice.step:.6g} s"
+    facts = [("  body", body + at_step)]
+    if advice.penetration is not None:
+        facts.append(("  penetration at rest", f"{1e3 * advice.penetration:.6g} mm"))
+    if advice.rebound is not None:
+        rebound = advice.rebound
+        facts.append(
+            ("  restitution", f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}")
+        )
+    if advice.hidden is not None:
+        facts.append(("  hidden damping", _in_percent(advice.hidden)))
+    if advice.omega_step is not None:
+        facts.append(("  w h, zeta", f"{advice.omega_step:.4g}, {advice.damping_ratio:.4g}"))
+    if advice.stiffness_ratio is not None:
+        facts.append(("  contact over block", f"k h / (E a) = {advice.stiffness_ratio:.4g}"))
+    comes = advice.defaults
+    depth = "-" if comes["penetration"] is None else f"{1e3 * comes['penetration']:.4g} mm"
+    e = "-" if comes["restitution"] is None else f"{comes['restitution']:.4g}"
+    hidden = "-" if comes["hidden"] is None else _in_percent(comes["hidden"])
+    facts.append(("  as it comes", f"penetration {depth}, restitution {e}, hidden damping {hidden}"))
+    echo("which gives")
+    echo(in_columns(facts, terminal_width()))
+    for note in advice.notes:
+        echo(broken(f"note: {note}"))
+    echo(broken(f"source: {program.source}; checked with {program.title} {program.version}"))
 
 
 def _advise_contacts(case: Scene, bounds: ColumnLimits, as_json: bool) -> None:

@@ -16,6 +16,7 @@ from validation.cli import (
     compare,
     contact,
     damping,
+    field,
     gallery,
     judge,
     merge,
@@ -44,6 +45,7 @@ COMMANDS = (
     contact,
     compare,
     judge,
+    field,
     translate,
     verdicts,
     waves,
@@ -52,7 +54,7 @@ COMMANDS = (
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "merge", "solve"),
     "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
-    "Your own code or program": ("judge", "compare", "export-pack"),
+    "Your own code or program": ("judge", "field", "compare", "export-pack"),
     "Time step, springs and damping": ("advise", "damping", "contact", "translate", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))

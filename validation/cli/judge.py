@@ -1,21 +1,22 @@
-"""The command ``judge``: an answer to a problem, from any program."""
+"""The command ``judge``: answers to problems, from any program."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOption, _progress, app, one_case
+from validation.cli.judging import all_defects, judged_answer, judged_sets, made_directory
 from validation.cli.printing.output import echo, echo_json
+from validation.errors import InputError
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
 if TYPE_CHECKING:
-    from validation.problems.bands import Standard
-    from validation.problems.cause import Cause
+    from validation.gallery.answers import JudgedSet
     from validation.problems.problem import Problem
     from validation.report.chapters.judged import JudgedAnswer
     from validation.runs.history import History
@@ -27,7 +28,8 @@ def judge(
     target: Annotated[
         str,
         typer.Argument(
-            help="Directory with submission.json and one CSV file; with --solver a problem, scene or scene file.",
+            help="Directory with submission.json and the answers as CSV files, or a directory of such; with --solver a "
+            "problem, scene or scene file.",
             metavar="DIR|PROBLEM|SCENE",
         ),
     ],
@@ -40,29 +42,48 @@ def judge(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Directory for page and badge; by default that of the submission.", metavar="DIR"),
+        typer.Option(
+            help="Directory for page and badge, by default that of the submission; of answers to several problems the "
+            "directory for their site, by default none.",
+            metavar="DIR",
+        ),
+    ] = None,
+    keep: Annotated[
+        Path | None,
+        typer.Option(help="Copy the judged answers to DIR/PROGRAM/VERSION/SETTINGS, see docs.", metavar="DIR"),
     ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Judge an answer to a problem against its exact motion, and write page and badge.
+    """Judge answers to problems against their exact motions, and write page and badge.
 
     Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
-    spall, cradle, joint. They and a submission to fill in come with dda-validate export-pack. A column passes where its
-    error is below what one per cent of the problem's data changes. PARTIAL: the columns that it reports pass, others
-    that the problem asks for are withheld. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the
-    solver ended in a named failure.
+    spall, cradle, joint; of rigid boxes, whose numbers are judged: standing, restitution, bouncing, tumbling, pile,
+    heavy-top, toppling, shaken, impact. They and folders to fill in, of one problem or of all, come with dda-validate
+    export-pack. A column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the
+    columns that it reports pass, others that the problem asks for are withheld. What is wrong with the files is listed
+    with file, line and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver
+    ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
     """
-    with _progress("judge") as progress:
+    if solver is None and scene is None and _has_answers(Path(target)):
+        _refuse_set(assignments)
+        with all_defects():
+            _judge_folder(Path(target), out, keep, as_json)
+        return
+    if keep is not None:
+        raise _only_answers()
+    with all_defects(), _progress("judge") as progress:
         judged, program = _judge_target(target, solver, scene, assignments, progress)
         directory = out
         if directory is None and solver is None:
             directory = Path(target)
         written = [] if directory is None else _write_page(judged, program, directory, progress)
     if as_json:
+        from validation.report.chapters.judged import as_data
+
         echo_json(as_data(judged, program))
     else:
         _print(judged, program, written)
@@ -70,10 +91,75 @@ def judge(
         raise typer.Exit(GATE_FAILED)
 
 
+def _has_answers(directory: Path) -> bool:
+    """Whether a directory is not that of an answer to one problem, stated by itself."""
+    from validation.problems.data import SUBMISSION
+    from validation.problems.stated import read_document
+    from validation.problems.submission import EXPORT, FILE
+
+    if not directory.is_dir():
+        return False
+    if not (directory / FILE).exists():
+        return any(directory.rglob(FILE))
+    with all_defects():
+        stated = read_document(directory / FILE, EXPORT).content
+    return stated.get("format") != SUBMISSION and "problem" not in stated
+
+
+def _only_answers() -> InputError:
+
+    rule = "goes with a folder of answers, whose submission.json says licence, scheme and step"
+    return InputError(rule, field="--keep", advice="dda-validate export-pack DIR writes one to fill in")
+
+
+def _refuse_set(assignments: list[str] | None) -> None:
+
+    if assignments:
+        raise InputError("goes with --scene or --solver", field="--set", value="a submission to a problem of the pack")
+
+
+def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool) -> None:
+    """Judge folders of answers, write their site and keep them where that is asked for."""
+    from validation.gallery.answers import summary, verdicts, write_site
+    from validation.problems import answers
+    from validation.problems.judge import Word
+
+    with _progress("judge", between_calls=True) as progress:
+        sets = answers.read_sets(root, progress=progress)
+        judged = judged_sets(sets, progress)
+        written = [f"wrote {write_site(judged, out, progress)}"] if out is not None else []
+        if keep is not None:
+            written += [f"kept in {place}" for place in answers.keep(sets, keep)]
+    if as_json:
+        echo_json(verdicts(judged))
+    else:
+        for one in judged:
+            _print_set(one)
+        for line in written:
+            echo(line)
+    if any(count for word, count in summary(judged).items() if word != Word.PASS):
+        raise typer.Exit(GATE_FAILED)
+
+
+def _print_set(judged: JudgedSet) -> None:
+    """Print the verdict on each answer of a folder, then how many passed."""
+    from validation.gallery.answers import NOT_ANSWERED, cells, headline
+
+    name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
+    echo(f"{name}: {headline(judged)}\n")
+    shown = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
+    width = max(len(cell.problem) for cell in shown)
+    echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
+    for cell in shown:
+        said = "; ".join(text for text in (cell.column, cell.reason) if text)
+        echo(f"  {cell.problem:<{width}} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {said}".rstrip())
+    missing = len(cells(judged)) - len(shown)
+    echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
+
+
 def _judge_target(
     target: str, solver: str | None, scene: str | None, assignments: list[str] | None, progress: Any
 ) -> tuple[JudgedAnswer, str]:
-    from validation.errors import InputError
     from validation.problems.problem import problem_of
     from validation.problems.submission import read_submission
     from validation.runs.text import printable
@@ -87,8 +173,8 @@ def _judge_target(
                 advice="name the scene first",
             )
         return _judge_solver(target, solver, assignments, progress)
-    if assignments and scene is None:
-        raise InputError("goes with --scene or --solver", field="--set", value="a submission to a problem of the pack")
+    if scene is None:
+        _refuse_set(assignments)
     scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
     progress(0, 3, "reading, and the exact motion")
     submission = read_submission(Path(target), scene_problem)
@@ -97,17 +183,24 @@ def _judge_target(
     if data.not_reported:
         about.append(("not reported", ", ".join(data.not_reported)))
     name = printable(f"{data.program} {data.version}")
-    return _judge_history(submission.problem, submission.history, tuple(about), progress), name
+    return judged_answer(submission.problem, submission.history, tuple(about), _step(progress)), name
+
+
+def _step(progress: Any) -> Callable[[str], None]:
+    """Return what tells a progress bar what is done next with one answer."""
+    steps = ("the exact motion and the bands", "the cause")
+    return lambda label: progress(1 + steps.index(label), 3, label)
 
 
 def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[JudgedAnswer, str]:
     from validation.engine.measure import completed
-    from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
+    from validation.problems.boxes import ASKS as BOX_PROBLEMS
+    from validation.problems.problem import PROBLEMS, problem, problem_of, scene_name
     from validation.solvers.registry import get_solver
     from validation.solvers.user import SAME_AS, UserSolver
 
-    of_pack = target in PROBLEMS
-    source = PREFIX + target if of_pack else target
+    of_pack = target in PROBLEMS or target in BOX_PROBLEMS
+    source = scene_name(target) if of_pack else target
     case = one_case(source, assignments)
     posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
     adapter = get_solver(solver)
@@ -115,12 +208,12 @@ def _judge_solver(target: str, solver: str, assignments: list[str] | None, progr
     run = completed(adapter, case)
     history = _completed_history(run, case.name, solver)
     if not isinstance(adapter, UserSolver):
-        return _judge_history(posed_problem, history, (("solver", solver),), progress), solver
+        return judged_answer(posed_problem, history, (("solver", solver),), _step(progress)), solver
     warnings = [f"It is {note}: the suite's own solver was judged." for note in run.notes if note.startswith(SAME_AS)]
     if sum(run.seconds.values()) < REPEATED_WITHIN:
         warnings += _not_repeatable(history, completed(adapter, case).history)
     about = (("solver", solver), *adapter.about().items())
-    return _judge_history(posed_problem, history, about, progress, warnings), solver
+    return judged_answer(posed_problem, history, about, _step(progress), warnings), solver
 
 
 def _not_repeatable(history: History, again: History | None) -> list[str]:
@@ -139,7 +232,6 @@ def _not_repeatable(history: History, again: History | None) -> list[str]:
 
 def _completed_history(run: Run, case: str, solver: str) -> History:
     """Return the history of a run, or end the command with what it ended in."""
-    from validation.errors import InputError
     from validation.runs.run import Outcome
 
     why = "; ".join(run.notes)
@@ -153,83 +245,11 @@ def _completed_history(run: Run, case: str, solver: str) -> History:
     return run.history
 
 
-def _judge_history(
-    problem: Problem,
-    history: History,
-    about: tuple[tuple[str, str], ...],
-    progress: Any,
-    warnings: Sequence[str] = (),
-) -> JudgedAnswer:
-    from validation.metrics.sameness import is_identical
-    from validation.problems.bands import standard
-    from validation.problems.judge import Word
-    from validation.problems.judge import judge as judgement_of
-    from validation.report.chapters.judged import JudgedAnswer
-
-    progress(1, 3, "the exact motion and the bands")
-    bands: Standard = standard(problem)
-    judgement = judgement_of(problem, history, bands)
-    identified_cause = None
-    if judgement.word is Word.FAIL:
-        from validation.problems.cause import cause
-
-        progress(2, 3, "the cause")
-        identified_cause = cause(problem, history, bands)
-    if is_identical(history, bands.exact):
-        warnings = [
-            *warnings,
-            "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back.",
-        ]
-    return JudgedAnswer(problem, history, bands, judgement, identified_cause, about, tuple(warnings))
-
-
 def _write_page(judged: JudgedAnswer, program: str, place: Path, progress: Any) -> list[Path]:
-    from validation.errors import InputError
     from validation.gallery.judged import write_judged
 
     progress(3, 3, "page and badge")
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"cannot be made: {place}: {error.strerror}", field="--out", advice="choose another place"
-        ) from None
-    return write_judged(judged, program, place)
-
-
-def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
-    """Return the judgement as plain data."""
-    from validation.problems.data import PACK, united
-
-    columns = [
-        {
-            "column": united(column.name),
-            "verdict": str(column.word),
-            "error": column.error if column.error is None or column.error < float("inf") else "inf",
-            "allowed": column.band,
-            "until_s": column.until,
-            "within_until_s": column.within,
-            "reason": column.reason,
-        }
-        for column in judged.judgement.columns
-    ]
-    why = judged.cause
-    return {
-        "pack": PACK,
-        "problem": judged.problem.name,
-        "program": program,
-        "verdict": str(judged.judgement.word),
-        "not_reported": [united(name) for name in judged.judgement.withheld],
-        "cause": None if why is None else _cause_data(why),
-        "columns": columns,
-        "warnings": list(judged.warnings),
-        "about": dict(judged.about),
-    }
-
-
-def _cause_data(cause: Cause) -> dict[str, Any]:
-    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
-    return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
+    return write_judged(judged, program, made_directory(place))
 
 
 def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
@@ -249,11 +269,12 @@ def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
         echo(reached(judged))
         if judged.cause.would_tell:
             echo(f"what would tell: {judged.cause.would_tell}")
-    echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
+    width = max([25, *(len(united(column.name)) for column in judged.judgement.columns)])
+    echo(f"\n  {'column':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for column in judged.judgement.columns:
         why = datum(column, judged.standard) or column.reason
         error = per_cent(column.error)
         allowed = per_cent(column.band)
-        echo(f"  {united(column.name):<25} {column.word:<12} {error:>11} {allowed:>8}  {why}")
+        echo(f"  {united(column.name):<{width}} {column.word:<12} {error:>11} {allowed:>8}  {why}")
     for path in written:
         echo(f"wrote {path}")

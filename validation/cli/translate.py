@@ -13,12 +13,12 @@ from validation.cli.printing.output import broken, echo, echo_json, terminal_wid
 if TYPE_CHECKING:
     from validation.advice.engines import Translation
 
-PREFIXES = {"box2d": "Box2D", "bullet": "Bullet", "mujoco": "MuJoCo"}
+PREFIXES = {"box2d": "Box2D", "bullet": "Bullet", "pybullet": "PyBullet", "mujoco": "MuJoCo"}
 
 
 @app.command()
 def translate(
-    engine: Annotated[str, typer.Argument(help="box2d, bullet, mujoco; spring for the way back.")],
+    engine: Annotated[str, typer.Argument(help="box2d, bullet, pybullet, mujoco, yade, opensees; spring.")],
     mass: Annotated[
         float | None, typer.Option("--mass", help="Effective mass m: of a body, or m1 m2/(m1 + m2).", metavar="KG")
     ] = None,
@@ -28,6 +28,11 @@ def translate(
     ] = None,
     step: Annotated[float | None, typer.Option("--step", help="Step (substep) of the engine.", metavar="S")] = None,
     gravity: Annotated[float, typer.Option("--gravity", help="Of the weight at rest.", metavar="M/S2")] = 9.81,
+    points: Annotated[int, typer.Option("--points", help="Contact points that share the body.", min=1)] = 1,
+    box: Annotated[
+        str | None, typer.Option("--box", help="Box2D: sides of a flat box on two points.", metavar="WIDTH,HEIGHT")
+    ] = None,
+    static: Annotated[bool, typer.Option("--static", help="Box2D: on a static body.")] = False,
     hertz: Annotated[float | None, typer.Option("--hertz", help="Box2D: frequency.", metavar="HZ")] = None,
     damping_ratio: Annotated[float | None, typer.Option("--damping-ratio", help="Box2D: damping ratio.")] = None,
     erp: Annotated[float | None, typer.Option("--erp", help="Bullet: error reduction.")] = None,
@@ -38,6 +43,19 @@ def translate(
     solimp: Annotated[
         str | None, typer.Option("--solimp", help="MuJoCo: dmin,dmax,width,midpoint,power.", metavar="NUMBERS")
     ] = None,
+    contact_stiffness: Annotated[
+        float | None, typer.Option("--contact-stiffness", help="PyBullet: of a point.", metavar="N/M")
+    ] = None,
+    contact_damping: Annotated[
+        float | None, typer.Option("--contact-damping", help="PyBullet: of a point.", metavar="NS/M")
+    ] = None,
+    normal_stiffness: Annotated[
+        float | None, typer.Option("--normal-stiffness", help="Yade: kn.", metavar="N/M")
+    ] = None,
+    local_damping: Annotated[
+        float | None, typer.Option("--local-damping", help="Yade: NewtonIntegrator.damping.")
+    ] = None,
+    penalty: Annotated[float | None, typer.Option("--penalty", help="OpenSees: k_n of a point.", metavar="N/M")] = None,
     stiffness: Annotated[float | None, typer.Option("--stiffness", help="Spring: k.", metavar="N/M")] = None,
     damping: Annotated[float | None, typer.Option("--damping", help="Spring: c.", metavar="NS/M")] = None,
     restitution: Annotated[
@@ -45,7 +63,9 @@ def translate(
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Translate a contact of Box2D, Bullet or MuJoCo to spring, dashpot and restitution, and into each other's words.
+    """Translate a contact of another program to spring, dashpot and restitution, and into the others' words.
+
+    Without a parameter the program is taken as it comes: [bold]dda-validate translate mujoco --mass 2700[/bold]
 
     Example: [bold]dda-validate translate box2d --hertz 30 --damping-ratio 10 --step 0.0041666667 --mass 2700[/bold]
 
@@ -63,27 +83,42 @@ def translate(
         "timeconst": timeconst,
         "dampratio": dampratio,
         "dmax": dmax,
-        "solimp": None if solimp is None else _numbers(solimp),
+        "solimp": None if solimp is None else _numbers("--solimp", solimp),
+        "contact_stiffness": contact_stiffness,
+        "contact_damping": contact_damping,
+        "normal_stiffness": normal_stiffness,
+        "local_damping": local_damping,
+        "penalty": penalty,
         "stiffness": stiffness,
         "damping": damping,
         "restitution": restitution,
     }
     parameters = {name: value for name, value in stated.items() if value is not None}
-    translation = engines.translate(engine, mass=mass, block_mass=block_mass, step=step, gravity=gravity, **parameters)
+    translation = engines.translate(
+        engine,
+        mass=mass,
+        block_mass=block_mass,
+        step=step,
+        gravity=gravity,
+        points=points,
+        box=None if box is None else _numbers("--box", box),
+        static=static,
+        **parameters,
+    )
     if as_json:
         echo_json(translation.as_dict())
     else:
         _print_translation(translation)
 
 
-def _numbers(text: str) -> tuple[float, ...]:
+def _numbers(option: str, text: str) -> tuple[float, ...]:
     """Return the numbers of a list with commas."""
     from validation.errors import InputError
 
     try:
         return tuple(float(word) for word in text.split(","))
     except ValueError:
-        raise InputError("must be numbers with commas between", field="--solimp", value=repr(text)) from None
+        raise InputError("must be numbers with commas between", field=option, value=repr(text)) from None
 
 
 def _print_translation(t: Translation) -> None:
@@ -102,6 +137,8 @@ def _print_translation(t: Translation) -> None:
         facts.append(
             ("rebound of the steps", f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}")
         )
+    if t.numerical_ratio is not None:
+        facts.append(("damping of the steps", f"{100 * t.numerical_ratio:.4g} % of critical"))
     for name, form in t.forms.items():
         facts.append((PREFIXES[name], ", ".join(f"{key} = {value:.6g}" for key, value in form.items())))
     facts.append(("scene, two corners", ", ".join(f"{key} = {value:.6g}" for key, value in t.scene.items())))

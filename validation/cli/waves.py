@@ -197,10 +197,13 @@ def rayleigh(
 def _scheme(scene: Scene | None, options: dict[str, float | None]) -> Stepping:
     """Return the scheme of a scene, or of the options, which go before it."""
     from validation.advice.rayleigh import scheme_of
+    from validation.scenes.features import refuse_column
     from validation.theory.stepping import Stepping
 
     values = {name: value for name, value in options.items() if value is not None}
     if scene is not None:
+        if scene.rigid is not None:
+            refuse_column(scene, "rayleigh")
         stepping = Stepping.of(scene)
         values = {name: getattr(stepping, name) for name in options} | values
     return scheme_of(values)

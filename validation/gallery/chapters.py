@@ -9,12 +9,14 @@ from pathlib import Path
 
 from validation.errors import InputError
 from validation.gallery.cases import GalleryScene, GalleryStudy, PlainData, readable
+from validation.gallery.engines import program_blocks
 from validation.gallery.svg import Sheet
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Table
 from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, escaped, unescaped, with_texts
 from validation.runs.results import Results
 from validation.runs.text import printable
+from validation.studies.engines.table import STUDY, read
 
 DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -45,6 +47,8 @@ def chapter_for(results: Results, study: GalleryStudy) -> DrawnChapter:
         try:
             manifest = readable_results.whole(escaped(study.name), histories=True)
             blocks = chapter_of(study.name)(readable_results, manifest, directory)
+            if study.name == STUDY and (engines := read(readable_results)) is not None:
+                blocks += program_blocks(engines)
         except (InputError, *DAMAGED) as error:
             reason = readable(printable(str(error)))
             return DrawnChapter((Callout(f"The chapter cannot be drawn from these results ({reason}).", "fail"),), {})

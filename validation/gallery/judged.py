@@ -73,6 +73,10 @@ def badge(judged: JudgedAnswer) -> str:
         verdict += f" {per_cent(judgement.deciding.error)}"
     if judgement.withheld:
         verdict += f"; {', '.join(judgement.withheld)} not reported"
+    return badge_of(label, verdict, COLORS[judgement.word])
+
+
+def badge_of(label: str, verdict: str, color: str) -> str:
+    """Return a badge: a label, and a verdict on a coloured ground."""
     widths = {name: LETTER * len(text) + MARGIN for name, text in (("left", label), ("right", verdict))}
-    template = environment().get_template("badge.svg.j2")
-    return template.render(label=label, verdict=verdict, color=COLORS[judgement.word], **widths)
+    return environment().get_template("badge.svg.j2").render(label=label, verdict=verdict, color=color, **widths)

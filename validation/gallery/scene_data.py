@@ -13,7 +13,7 @@ from validation.gallery.histories import lines_of
 from validation.metrics.catalogue import CATALOGUE, is_count
 from validation.report.chapters.data import CaseResults
 from validation.report.chapters.text import bounded, cell
-from validation.report.figures.curves import COLUMNS, is_sparse, style_of
+from validation.report.figures.curves import COLUMNS, axis_of, is_sparse, style_of
 from validation.runs.history import History
 from validation.runs.results import WITH_HISTORY, Results
 from validation.runs.row import Value
@@ -86,11 +86,12 @@ def data(results: Results, scene: GalleryScene, most: int, samples: int) -> Plai
     drawn_cases = drawn(scene, most)
     cases = [_case(results, case, samples) for case in drawn_cases]
     names = list(dict.fromkeys(itertools.chain.from_iterable(case["columns"] for case in cases)))
-    ordered = sorted(names, key=[*COLUMNS, *names].index)
+    rigid = scene.cases[0].scene.rigid
+    ordered = sorted(names, key=[*(COLUMNS if rigid is None else rigid.columns), *names].index)
     solvers = dict.fromkeys(itertools.chain.from_iterable(case.rows for case in scene.cases))
     metrics = _metrics(drawn_cases)
     return {
-        "columns": {name: list(COLUMNS.get(name, (name.replace("_", " ").capitalize(), ""))) for name in ordered},
+        "columns": {name: list(axis_of(name, rigid is not None)) for name in ordered},
         "solvers": {readable(name): _style(name) for name in solvers},
         "cases": cases,
         "metrics": [[name, CATALOGUE[name].unit, CATALOGUE[name].says] for name in metrics],

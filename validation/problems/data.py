@@ -6,15 +6,17 @@ import math
 import re
 from typing import Annotated, Any, Final, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field
 
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
-PACK: Final = "3.0"
-"""Version of the pack; another one is refused. It changes with any problem's data."""
+PACK: Final = "3.1"
+"""Version of the pack, see `validation.problems.packs` for what changes it."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
+ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
 UNITS = {
     DISPLACEMENT: "m",
     "horizontal_displacement": "m",
@@ -25,6 +27,9 @@ UNITS = {
     "force": "Pa",
     "gap": "m",
     "slip": "m",
+    "x": "m",
+    "y": "m",
+    "angle": "rad",
 }
 MEANINGS = {
     DISPLACEMENT: "vertical displacement of the centroid, upwards positive",
@@ -40,11 +45,18 @@ MEANINGS = {
     "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
     "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
 }
+OF_BOXES = {
+    "x": "position of the centre of box {n} along the ground, down a slope positive",
+    "y": "height of the centre of box {n} above the ground, normal to it",
+    "angle": "angle of box {n}, counter-clockwise positive, not folded",
+}
 AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
 UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S")]
+PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Version of the pack that is answered.")]
+Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 
 def unit(column: str) -> str:
@@ -53,7 +65,9 @@ def unit(column: str) -> str:
 
 
 def united(column: str) -> str:
-    """Return a history's column as the pack names it, with its unit."""
+    """Return a history's column as the pack names it, with its unit; a number of rigid boxes has its own name."""
+    if kind(column)[0] not in UNITS:
+        return column
     return f"{column}_{in_names(unit(column))}"
 
 
@@ -71,6 +85,8 @@ def kind(column: str) -> tuple[str, str]:
 def meaning(column: str) -> str:
     """Return what a column means."""
     plain, number = kind(column)
+    if plain in OF_BOXES:
+        return OF_BOXES[plain].format(n=number)
     return (AT_HEIGHT if number and plain == DISPLACEMENT else MEANINGS[plain]).format(n=number)
 
 
@@ -205,6 +221,46 @@ class ColumnData(Data):
     input: InputData | None = Field(description="Null: weight and velocities alone move it.")
 
 
+class BoxData(Data):
+    """A rigid box of unit depth."""
+
+    width_m: float
+    height_m: float
+    density_kg_per_m3: float
+    x_m: float = Field(description="Of the centre at t = 0, along the ground.")
+    y_m: float = Field(description="Of the centre at t = 0, above the ground.")
+    angle_rad: float = Field(description="At t = 0, counter-clockwise.")
+    velocity_x_m_per_s: float = Field(description="Of the centre at t = 0, along the ground.")
+    velocity_y_m_per_s: float = Field(description="Of the centre at t = 0, upwards.")
+    spin_rad_per_s: float = Field(description="At t = 0, counter-clockwise.")
+
+
+class RigidData(Data):
+    """Rigid boxes on a plane, which is level in its own frame; on a slope gravity is turned to g (sin, -cos)."""
+
+    boxes: tuple[BoxData, ...] = Field(description="On each other, the first one on the ground.")
+    gravity_m_per_s2: float
+    slope_deg: float = Field(description="Down towards +x.")
+    friction_deg: float = Field(description="Angle of Coulomb friction of every contact; 0: frictionless.")
+    restitution: float = Field(description="Newton's, of every contact: rebound over approach speed.")
+    stiffness_N_per_m: float | None = Field(
+        description="Of the contact of a box with the ground; null: rigid, or the program's own."
+    )
+    base_amplitude_m: float = Field(description="A of the ground's motion A (1 - cos(2 pi f t)) along itself.")
+    base_frequency_Hz: float = Field(description="f of that motion.")
+
+
+class NumberData(Data):
+    """A number of an answer to a problem of rigid boxes, and the band in which it passes."""
+
+    name: str
+    unit: str
+    exact: float
+    low: float
+    high: float
+    reason: str
+
+
 class SamplingData(Data):
     """The instants of an answer: step, 2 step, ... up to the last one; no program has to step so."""
 
@@ -213,23 +269,24 @@ class SamplingData(Data):
 
 
 class ColumnOfAnswer(Data):
-    """A column that an answer holds, and the band of its error."""
+    """A column that an answer holds, and the band of its error; null where an answer is judged by numbers."""
 
     name: str
     meaning: str
-    measure: str
-    until_s: float
-    low: float
-    high: float
-    reason: str
+    measure: str | None = None
+    until_s: float | None = None
+    low: float | None = None
+    high: float | None = None
+    reason: str | None = None
 
 
 class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["3.0"] = PACK
+    pack: Literal["3.1"] = PACK
     problem: str
+    digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str
     asks: str
     block: BlockData | None
@@ -237,16 +294,18 @@ class ProblemData(Data):
     load: LoadData | None
     geometry: Literal["small", "large rotation"]
     column: ColumnData | None
+    rigid: RigidData | None = None
     sampling: SamplingData
     answer: tuple[ColumnOfAnswer, ...]
-    exact: str = Field(description="CSV file of the exact motion, beside this one's directory.")
+    numbers: tuple[NumberData, ...] = Field((), description="What is measured on an answer of rigid boxes.")
+    exact: str | None = Field(description="CSV file of the exact motion, beside this one's directory; null: none.")
 
 
 class SubmissionData(Data):
     """What stands beside the table of a submission."""
 
     format: Literal["dda-validation submission"]
-    pack: Literal["3.0"]
+    pack: PackVersion
     problem: Text
     program: Text
     version: Text
@@ -254,11 +313,39 @@ class SubmissionData(Data):
     who: Text
     not_reported: tuple[Text, ...] = Field((), description="Columns that the program cannot report.")
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if len(set(self.not_reported)) < len(self.not_reported):
-            raise ValueError(f"not_reported must not repeat a column, got {list(self.not_reported)}")
-        return self
+
+class AnswersData(Data):
+    """What stands beside the tables of a folder of answers: one program, one version, one choice of settings.
+
+    The table of a problem is `PROBLEM.csv`; a problem without a table is not answered.
+    """
+
+    format: Literal["dda-validation answers 1"]
+    pack: PackVersion
+    program: Text
+    version: Text = Field(description="Of the program.")
+    settings_name: Annotated[str, Field(max_length=60, pattern=r"^[a-z0-9][a-z0-9.+-]*$")] = Field(
+        description="Name of the folder of these settings, such as default or fine-step."
+    )
+    settings: Text = Field(description="The settings in words: what another user would need to repeat them.")
+    scheme: Text = Field(description="Time scheme, or event-driven.")
+    step_s: Step | dict[str, Step] | None = Field(
+        description="Time step of the program; an object where it differs by problem; null where there is none."
+    )
+    contact_model: Text = Field(description="Penalty springs, impulses, complementarity, ... and their parameters.")
+    processor: Text
+    who: Text
+    licence: Text = Field(description="Of the answers, by which others may publish them, such as CC-BY-4.0.")
+    link: Annotated[str, Field(max_length=2000, pattern=r"^https?://\S+$")] | None = Field(
+        None, description="To the program or to the input files."
+    )
+    not_reported: dict[str, tuple[Text, ...]] = Field(
+        {}, description="Columns that the program cannot report, by problem."
+    )
+
+    def step_of(self, problem: str) -> float | None:
+        """Return the program's time step on a problem [s], None where it has none or states none."""
+        return self.step_s.get(problem) if isinstance(self.step_s, dict) else self.step_s
 
 
 def block_data(scene: Scene) -> BlockData:
@@ -276,6 +363,25 @@ def contact_data(scene: Scene) -> ContactData:
 def load_data(scene: Scene) -> LoadData:
     """Return the loads of a scene."""
     return LoadData.of(scene.load)
+
+
+def rigid_data(rigid: RigidSection) -> RigidData:
+    """Return rigid boxes on a plane, each where it is at t = 0."""
+    boxes = []
+    for box, (x, y, angle) in zip(rigid.box, rigid.starts, strict=True):
+        velocity_x, velocity_y = box.velocity
+        boxes.append(
+            BoxData.of(
+                box,
+                x_m=x,
+                y_m=y,
+                angle_rad=angle,
+                velocity_x_m_per_s=velocity_x,
+                velocity_y_m_per_s=velocity_y,
+                spin_rad_per_s=box.spin,
+            )
+        )
+    return RigidData.of(rigid, boxes=tuple(boxes))
 
 
 def column_data(scene: Scene) -> ColumnData | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,20 +14,21 @@ import numpy as np
 from validation.errors import InputError
 from validation.problems.bands import Band, Standard, standard
 from validation.problems.data import (
+    ANSWERS,
     PACK,
     SUBMISSION,
+    AnswersData,
     ColumnOfAnswer,
+    NumberData,
     ProblemData,
     SamplingData,
     SubmissionData,
-    block_data,
-    column_data,
-    contact_data,
-    load_data,
     meaning,
     united,
 )
+from validation.problems.packs import digest, parts
 from validation.problems.problem import PROBLEMS, Problem, problem
+from validation.problems.questions import BoxQuestion, Question, box_questions
 from validation.runs.files import write_atomically
 from validation.runs.history import History
 
@@ -43,25 +44,55 @@ TEMPLATE = {  # what a submitter changes
     "who": "who ran it",
     "not_reported": [],
 }
+ANSWERS_TEMPLATE: Mapping[str, Any] = {
+    "program": TEMPLATE["program"],
+    "version": TEMPLATE["version"],
+    "settings_name": "default",
+    "settings": "damping, tolerances, iterations: what another user would need to repeat it",
+    "scheme": "its time scheme, or event-driven",
+    "step_s": "its time step, a number [s]; an object where it differs by problem; null where there is none",
+    "contact_model": "what its contacts are made of, and their parameters",
+    "processor": "the processor it ran on",
+    "who": TEMPLATE["who"],
+    "licence": "of these answers, such as CC-BY-4.0",
+    "link": None,
+    "not_reported": {},
+}
+CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 
 def problem_data(one: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
     scene = one.scene
     judged = [_judged(column, reference.bands[column]) for column in scene.run.columns]
-    on_base = scene.column is None
     return ProblemData(
         problem=one.name,
+        digest=digest(one),
         title=one.title,
         asks=one.asks,
-        block=block_data(scene) if on_base else None,
-        contact=contact_data(scene) if on_base else None,
-        load=load_data(scene) if on_base else None,
-        geometry="large rotation" if scene.run.geometry == "updated" else "small",
-        column=column_data(scene),
+        **parts(scene),
         sampling=SamplingData(step_s=scene.time.step, count=len(reference.exact.time)),
         answer=tuple(judged),
         exact=f"exact/{one.name}.csv",
+    )
+
+
+def box_problem_data(one: BoxQuestion) -> ProblemData:
+    """Return a problem of rigid boxes as plain data."""
+    numbers = []
+    for quantity in one.quantities:
+        band = {"exact": quantity.exact, "low": quantity.low, "high": quantity.high}
+        numbers.append(NumberData(name=quantity.name, unit=quantity.unit, reason=quantity.reason, **band))
+    return ProblemData(
+        problem=one.name,
+        digest=digest(one),
+        title=one.title,
+        asks=one.asks,
+        **parts(one.scene),
+        sampling=SamplingData(step_s=one.scene.time.step, count=one.scene.time.steps),
+        answer=tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in one.columns),
+        numbers=tuple(numbers),
+        exact=None,
     )
 
 
@@ -99,17 +130,26 @@ def write_problems(directory: Path, progress: Progress = lambda number, total, l
         reference = standard(one)
         data = problem_data(one, reference)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / data.exact, table_of(reference.exact, one.scene.run.columns))
+        _write(place / str(data.exact), table_of(reference.exact, one.scene.run.columns))
         blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
         _write(place / "submissions" / name / "submission.json", _json(blank))
+        _write(place / "answers" / f"{name}.csv", blank_table(one))
         rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
-    for data_of in (ProblemData, SubmissionData):
+    for name, box_question in box_questions().items():
+        data = box_problem_data(box_question)
+        _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
+        _write(place / "answers" / f"{name}.csv", blank_table(box_question))
+        columns = ", ".join(f"`{column.name}`" for column in data.answer[:3])
+        more = " and those of the other boxes" if len(data.answer) > 3 else ""
+        rows.append(f"| `{name}` | {data.asks} | {columns}{more} |")
+    _write(place / "answers" / "submission.json", _json({"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}))
+    for data_of in (ProblemData, SubmissionData, AnswersData):
         stem = data_of.__name__.removesuffix("Data").lower()
         _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
     readme = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
     _write(place / "README.md", readme.format(pack=PACK, table=table))
-    return len(PROBLEMS)
+    return len(PROBLEMS) + len(box_questions())
 
 
 def table_of(motion: History, columns: Iterable[str]) -> str:
@@ -120,6 +160,14 @@ def table_of(motion: History, columns: Iterable[str]) -> str:
     writer.writerow([TIME, *map(united, names)])
     writer.writerows(np.column_stack([motion.time, *(motion.columns[name] for name in names)]).tolist())
     return text.getvalue()
+
+
+def blank_table(one: Question) -> str:
+    """Return the table of an answer to fill in: header and instants."""
+    columns = one.columns
+    lines = [",".join([TIME, *map(united, columns)])]
+    lines += [format(instant, ".9g") + "," * len(columns) for instant in one.instants]
+    return "\n".join(lines) + "\n"
 
 
 def _json(data: Any) -> str:

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from validation.problems import boxes
 from validation.problems.truth import Truth, truth_of
+from validation.runs.history import Array
 from validation.scenes.scene import Scene, load_scene
 
+ROUNDING = 1e-12  # relative, of the last instant
 PREFIX = "field-"  # of the scenes of problems
 
 
@@ -36,6 +41,17 @@ class Problem:
         """Title of the scene."""
         return self.scene.title or self.name
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of an answer."""
+        return self.scene.run.columns
+
+    @property
+    def instants(self) -> Array:
+        """Instants at which it is answered [s]: the steps of the scene up to where its exact motion ends."""
+        steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)
+        return np.asarray(steps[steps <= self.truth.until * (1 + ROUNDING)])
+
 
 ASKS = {
     "locked": "An undamped vibration on springs that push and pull: its frequency, and that nothing damps it.",
@@ -51,7 +67,12 @@ ASKS = {
     "joint": "A shear wave through a joint that slips: what passes, what is sent back, and the slip.",
     "mass-ratio": "A heavy block on one of a thousandth of its mass: the light one rings between stiff contacts.",
 }
-PROBLEMS = tuple(ASKS)
+PROBLEMS = tuple(ASKS)  # of blocks and columns; those of rigid boxes are in `validation.problems.boxes`
+
+
+def scene_name(name: str) -> str:
+    """Return the name of a problem's scene."""
+    return (boxes.PREFIX if name in boxes.ASKS else PREFIX) + name
 
 
 def problem(name: str) -> Problem:
@@ -62,8 +83,9 @@ def problem(name: str) -> Problem:
     KeyError
         There is none of this name.
     """
-    scene = load_scene(PREFIX + name)
-    return Problem(name, ASKS[name], scene, truth_of(scene))
+    asks = {**ASKS, **boxes.ASKS}[name]
+    scene = load_scene(scene_name(name))
+    return Problem(name, asks, scene, truth_of(scene))
 
 
 def problem_of(scene: Scene) -> Problem:
@@ -72,6 +94,8 @@ def problem_of(scene: Scene) -> Problem:
     Raises
     ------
     InputError
-        The scene has a sweep, or no exact motion is known for it.
+        The scene has a sweep, no exact motion is known for it, or nothing is known that could be measured on it.
     """
+    if scene.rigid is not None:
+        boxes.problem_posed(scene)
     return Problem(scene.name, f"The scene {scene.name}.", scene, truth_of(scene))

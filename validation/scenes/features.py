@@ -211,16 +211,16 @@ def refuse_column(scene: Scene, what: str) -> None:
 
 
 def refuse_bonded_column(scene: Scene, what: str) -> None:
-    """Refuse a scene with a column whose springs are bonded, where a block or a moving column has an answer.
+    """Refuse rigid boxes and columns whose springs are bonded, where a block or a moving column has an answer.
 
     Raises
     ------
     InputError
-        The scene has such a column.
+        The scene has such a column, or rigid boxes.
     """
-    if scene.column is not None and not OF_MOVING_COLUMN & {*of(scene)}:
+    if scene.rigid is not None or (scene.column is not None and not OF_MOVING_COLUMN & {*of(scene)}):
         raise InputError(
             f"{what} takes scenes of a block, or of a column whose contacts open or slip, only",
             source=scene.name,
-            value="one with a bonded column",
+            value="one with a bonded column" if scene.rigid is None else scene.kind_in_words,
         )

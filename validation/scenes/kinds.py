@@ -103,7 +103,8 @@ class SceneTables(Section):
             return {**data, "run": {"solvers": list(solvers), **run}}
         if "rigid" in data:
             rigid = data["rigid"]
-            boxes = rigid.get("box", ()) if isinstance(rigid, dict) else ()
+            boxes = rigid.get("box") if isinstance(rigid, dict) else None
+            boxes = boxes if isinstance(boxes, list | tuple) else ()  # anything else is refused by the table itself
             poses = [f"{part}_{number}" for number in range(1, len(boxes) + 1) for part in POSE]
             return {**data, "run": {"solvers": list(TAKE_RIGID), "columns": poses or list(POSE), **run}}
         return data

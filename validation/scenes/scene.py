@@ -13,7 +13,7 @@ import json
 import math
 import os
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Self, get_args
 
@@ -299,17 +299,7 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
 def first_defect(error: ValidationError, source: str) -> InputError:
     """Return the first defect of a pydantic report as the error of bad input."""
     first = error.errors(include_url=False)[0]
-    message = first["msg"].replace("a valid tuple", "a list")
-    rule, _, value = message.removeprefix("Value error, ").partition(", got ")
-    if first["type"] == "extra_forbidden":
-        rule = "unknown key"
-    elif first["type"] == "missing":
-        rule = "is required"
-        value = "nothing"
-    elif "Input should be" in message:
-        rule = f"must be {rule.removeprefix('Input should be ')}"
-    elif first["type"].endswith(("too_short", "too_long")):
-        rule = f"must{rule.partition('should')[2].partition(' after')[0]}"
+    rule, value = rule_and_value(dict(first))
     field = ".".join(str(part) for part in first["loc"])
     if not field:  # a rule on the whole scene begins with its field
         first_word, _, remainder = rule.partition(": ")
@@ -323,6 +313,22 @@ def first_defect(error: ValidationError, source: str) -> InputError:
         field=field or None,
         value=(value or clip(first["input"])) + (f" (and {more} more)" if more else ""),
     )
+
+
+def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
+    """Return the rule that an error of pydantic names, in our words, and the value where the message has it."""
+    message = error["msg"].replace("a valid tuple", "a list")
+    rule, _, value = message.removeprefix("Value error, ").partition(", got ")
+    if error["type"] == "extra_forbidden":
+        rule = "unknown key"
+    elif error["type"] == "missing":
+        rule = "is required"
+        value = "nothing"
+    elif "Input should be" in message:
+        rule = f"must be {rule.removeprefix('Input should be ')}"
+    elif error["type"].endswith(("too_short", "too_long")):
+        rule = f"must{rule.partition('should')[2].partition(' after')[0]}"
+    return rule, value
 
 
 def scene_names() -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from validation.errors import InputError
 from validation.scenes.keys import Section, keys_of
+from validation.scenes.kinds import OF_KIND
 
 # What other programs, and the symbols of the text, call a key; compared in lower case without separators.
 OTHER_NAMES = {
@@ -34,6 +35,22 @@ OTHER_NAMES = {
     "load.pressure": ("load", "stress", "q"),
     "load.gravity": ("weight",),
     "load.slope": ("angle", "inclination", "dip"),
+    "rigid": ("rigidbody", "rigidbodies", "box", "boxes", "bodies"),
+    "rigid.friction": ("mu", "phi", "frictionangle", "frictioncoefficient"),
+    "rigid.restitution": ("cor", "coefficientofrestitution", "bounce", "bounciness", "elasticity"),
+    "rigid.slope": ("angle", "inclination", "dip"),
+    "rigid.stiffness": ("k", "kn", "penalty", "contactstiffness", "normalstiffness"),
+    "rigid.base_amplitude": ("amplitude", "motion"),
+    "rigid.base_frequency": ("frequency",),
+    "rigid.box": ("boxes", "body", "bodies", "block", "blocks"),
+    "rigid.box.width": ("w", "side", "size", "length"),
+    "rigid.box.height": ("h",),
+    "rigid.box.density": ("rho", "mass", "unitweight"),
+    "rigid.box.x": ("position",),
+    "rigid.box.lift": ("y", "gap", "drop", "clearance"),
+    "rigid.box.tilt": ("angle", "theta", "rotation"),
+    "rigid.box.velocity": ("v", "speed"),
+    "rigid.box.spin": ("omega", "angularvelocity"),
     "damping.mass": ("a0",),
     "damping.stiffness": ("a1",),
     "fem.degree": ("order",),
@@ -64,7 +81,10 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     unknown = list(_unknown_keys(data, "", "", tables))
     if not unknown:
         return
-    absent = ("block", "contact", "load") if "column" in data else ("column", "input")
+    kind = next((kind for kind in ("rigid", "column") if kind in data), "block")
+    absent = [place for other, places in OF_KIND.items() if other != kind for place in places]
+    if kind == "rigid":
+        absent += set(tables) - {"rigid", "time", "run", "gate"}
     known_keys = []
     for place, table in tables.items():
         if place and place.partition(".")[0] not in absent:

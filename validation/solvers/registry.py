@@ -31,6 +31,7 @@ BUILT_IN = {
     "bar-events": "validation.solvers.events:BarEvents",
     "column-events": "validation.solvers.columns.events:ColumnEvents",
     "bars-events": "validation.solvers.columns.bars:BarsEvents",
+    "rigid-exact": "validation.solvers.rigid.boxes:RigidExact",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
 }
 WITHDRAWN = {"fem-60": "dda-60 or fem with a finer mesh", "bar-60": "dda-60 or continuum"}  # and what to use instead

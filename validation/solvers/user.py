@@ -36,6 +36,7 @@ VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
+PROGRAM_STEPS = "program_steps"  # of an answer: a number, how many steps the program made where a row takes several
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
 LENGTHS = {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"}
 STRESSES = {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"}
@@ -66,6 +67,8 @@ LEAST_CORRELATION = 0.8  # correlation from which two histories are one but for 
 class UserSolver(Solver):
     """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
 
+    # what it reads of a scene cannot be known either: two scenes that differ anywhere are two cases
+    sections = ("block", "contact", "load", "damping", "fem", "column", "input", "rigid", "time", "run")
     cached = False  # what it is made of cannot be known, so it always runs afresh
 
     def __init__(self, name: str, target: str) -> None:
@@ -187,6 +190,7 @@ def _run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
         return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {names}",))
     expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
     time = columns.pop("time", expected)
+    program_steps = columns.pop(PROGRAM_STEPS, np.array(float(steps)))
     columns = {name: values for name, values in columns.items() if name in (*UNITS, *scene.run.columns)}
     history = History(time, columns)
     for name, values in {"time": history.time, **columns}.items():
@@ -202,7 +206,8 @@ def _run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
             notes = (f"{SAME_AS}{DDA.name}",)
         if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
-    work = {"steps": steps}
+    counted = program_steps.size == 1 and np.isfinite(program_steps).all()
+    work = {"steps": int(program_steps.item()) if counted else steps}
     return Run(Outcome.COMPLETED, history, work, notes=(*notes, *tension_note(history)))
 
 

@@ -11,17 +11,27 @@ zeta = c / (2 sqrt(k m)) all of them are the law N = max(0, -(k x + c x')) at a 
 
 The first two step implicitly (x1 = x + h v1, force at the end of the step), the third with the force of the step's
 start. So the stiffness follows the mass: an engine's block of twice the mass stands on springs twice as stiff.
+
+Several points share a flat body. Where k and c are those of a point (Bullet) they add up. n points of MuJoCo are one
+of the impedance n d / (1 + (n - 1) d). Box2D's k follows the mass that a point feels, m / (1 + r^2 m / I).
+
+Yade has no dashpot but damps the sum f of all forces on a body by its share alpha, f (1 - alpha sign(f v)): an
+unloaded landing returns e = sqrt((1 - alpha) / (1 + alpha)) and a free vibration decays by (1 - alpha) / (1 + alpha)
+a cycle, both at any stiffness, mass and speed.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.runs.history import Array
 
+Mask = NDArray[np.bool_]
 PHASES = 200
 """Landings within a step that a rebound is taken over, any as likely as another."""
 LONGEST = 100_000
@@ -48,6 +58,34 @@ def effective_mass(*inverse_masses: float) -> float:
     0.25
     """
     return 1 / math.fsum(inverse_masses)
+
+
+def shared_impedance(impedance: float, points: int) -> float:
+    """Return the impedance that n contact points of MuJoCo have together."""
+    return points * impedance / (1 + (points - 1) * impedance)
+
+
+def local_damping_restitution(alpha: float) -> float:
+    """Return what Yade's damping leaves of the speed of an unloaded landing, e = sqrt((1 - alpha) / (1 + alpha))."""
+    return math.sqrt((1 - alpha) / (1 + alpha))
+
+
+def local_damping_ratio(alpha: float) -> float:
+    """Return the damping ratio with which a free vibration decays as under Yade's damping, artanh(alpha) / pi."""
+    return math.atanh(alpha) / math.pi
+
+
+def implicit_ratio(W: float) -> float:
+    """Return the damping ratio of implicit Euler on an undamped spring: z = 1 / (1 +- i W)."""
+    decay = math.log1p(W * W) / 2
+    return decay / math.hypot(decay, math.atan(W))
+
+
+def implicit_step(ratio: float) -> float:
+    """Return the W at which implicit Euler has a damping ratio, the way back from `implicit_ratio`."""
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda W: implicit_ratio(W) - ratio, 1e-12, 1e9, xtol=1e-15))
 
 
 @dataclass(frozen=True)
@@ -97,7 +135,11 @@ class SoftContact:
     stiffness: float  # k [N/m]
     damping: float  # c [N s/m]
     load_share: float = 1.0  # of a load that the spring carries at rest, 1 - d of MuJoCo [-]
-    implicit: bool = True  # force at the end of the step; else at its start (MuJoCo)
+    implicit: bool = True  # force at the end of the step; else at its start (MuJoCo, Yade)
+    stops_ahead: bool = False  # a body that would pass the surface in the step is braked as if it were there (Bullet)
+    starts_inside: bool = False  # the first force is that of a step which begins in the contact (Bullet's boxes)
+    local_damping: float = 0.0  # Yade's alpha [-]
+    slop: float = 0.0  # overlap below which nothing pushes (PyBullet) [m]
 
     @classmethod
     def of_ratio(cls, mass: float, frequency: float, ratio: float) -> SoftContact:
@@ -105,20 +147,39 @@ class SoftContact:
         return cls(mass, mass * frequency**2, 2 * ratio * mass * frequency)
 
     @classmethod
-    def of_box2d(cls, mass: float, hertz: float, damping_ratio: float) -> SoftContact:
-        """Return the contact of ``b2MakeSoft(hertz, damping_ratio, h)``, which is the same at each h."""
-        return cls.of_ratio(mass, 2 * math.pi * hertz, damping_ratio)
+    def of_box2d(
+        cls, mass: float, hertz: float, damping_ratio: float, points: int = 1, lever: float = 0.0
+    ) -> SoftContact:
+        """Return the contact of ``b2MakeSoft(hertz, damping_ratio, h)``, which is the same at each h.
+
+        A point at the arm r of a mass m feels m / (1 + lever), lever = r^2 m / I.
+        """
+        share = points / (1 + lever)
+        w = 2 * math.pi * hertz
+        return cls(mass, share * mass * w**2, 2 * damping_ratio * share * mass * w)
 
     @classmethod
     def of_bullet(cls, mass: float, erp: float, cfm: float, step: float) -> SoftContact:
         """Return the contact of an error reduction and a constraint force mixing [m/(N s)] at a step h [s]."""
-        return cls(mass, erp / (step * cfm), (1 - erp) / cfm)
+        return cls(mass, erp / (step * cfm), (1 - erp) / cfm, stops_ahead=True)
 
     @classmethod
-    def of_mujoco(cls, mass: float, timeconst: float, dampratio: float, impedance: float, share: float) -> SoftContact:
-        """Return the contact of ``solref = (timeconst [s], dampratio)`` at an impedance d, which is `share` of dmax."""
-        stiffness = mass * (share / (timeconst * dampratio)) ** 2
-        return cls(mass, stiffness, 2 * mass * share / timeconst, load_share=1 - impedance, implicit=False)
+    def of_mujoco(
+        cls, mass: float, timeconst: float, dampratio: float, impedance: float, share: float, points: int = 1
+    ) -> SoftContact:
+        """Return the contact of ``solref = (timeconst [s], dampratio)`` at an impedance d, which is `share` of dmax.
+
+        Where both are not above 0 they are MuJoCo's direct format, (-k/m [1/s2], -c/m [1/s]).
+        """
+        together = shared_impedance(impedance, points)
+        gain = together / impedance
+        if timeconst <= 0:
+            stiffness = -timeconst * mass * gain * share**2
+            damping = -dampratio * mass * gain * share
+        else:
+            stiffness = mass * gain * (share / (timeconst * dampratio)) ** 2
+            damping = 2 * mass * gain * share / timeconst
+        return cls(mass, stiffness, damping, load_share=1 - together, implicit=False)
 
     @property
     def frequency(self) -> float:
@@ -130,9 +191,15 @@ class SoftContact:
         """Damping ratio zeta [-]."""
         return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
 
+    def numerical_ratio(self, step: float) -> float:
+        """Return the damping ratio that the steps add to a free vibration of the spring: about W/2 where implicit."""
+        if self.local_damping:
+            return local_damping_ratio(self.local_damping)
+        return implicit_ratio(self.frequency * step) if self.implicit else 0.0
+
     def rest_penetration(self, weight: float) -> float:
         """Return how deep a weight [N] stands in the contact [m]."""
-        return self.load_share * weight / self.stiffness
+        return self.slop + self.load_share * weight / self.stiffness
 
     def step_matrix(self, step: float) -> Array:
         """Return the map (x, h v) -> (x1, h v1) of a closed step, shape (2, 2).
@@ -153,26 +220,92 @@ class SoftContact:
         """Return max |lambda| of a closed step."""
         return float(np.abs(np.linalg.eigvals(self.step_matrix(step))).max())
 
-    def rebounds(self, step: float) -> Array:
-        """Return the restitution of an unloaded landing by steps, one for each phase, shape (PHASES,).
+    def rebounds(self, step: float, load: float = 0.0) -> Array:
+        """Return the restitution of a landing by steps, one for each phase, shape (PHASES,); 0 where it does not leave.
 
         The force is clipped, N >= 0, and acts where the free step ends in the contact (implicit) or where the step
         begins in it (explicit).
+
+        Parameters
+        ----------
+        step
+            h [s].
+        load
+            g h / V, by what share of its landing speed a free step of fall changes the speed; 0 without weight.
         """
         W2 = (self.frequency * step) ** 2
         loss = 2 * self.ratio * self.frequency * step
-        x = (np.arange(PHASES) + 0.5) / PHASES  # in V h, before the first step that ends at or below the contact
-        v = np.full(PHASES, -1.0)
-        has_touched = np.zeros(PHASES, dtype=bool)
-        for _ in range(LONGEST):
-            end = x + v if self.implicit else x
-            is_closed = end < 0
-            has_touched |= is_closed
-            resisted = W2 * end + loss * v
-            force = np.maximum(-resisted / (1 + loss + W2) if self.implicit else -resisted, 0.0)
-            v = v + np.where(is_closed, force, 0.0)
-            x = x + v
-            is_over = has_touched & (((x >= 0) & (v >= 0)) | (np.abs(v) < REST))
-            if np.all(is_over):
-                break
-        return np.where(v < REST, 0.0, v)
+
+        def implicit(x: Array, v: Array) -> tuple[Array, Mask]:
+            free = v - load
+            end = x + free
+            resisted = W2 * end + loss * free
+            if self.stops_ahead:
+                resisted = np.where(x > 0, (W2 + loss) * end, resisted)
+            force = np.maximum(-resisted / (1 + loss + W2), 0.0)
+            return force, x < 0 if self.starts_inside else end < 0
+
+        def explicit(x: Array, v: Array) -> tuple[Array, Mask]:
+            return np.maximum((1 - self.load_share) * load - W2 * x - loss * v, 0.0), x < 0
+
+        return _landings(implicit if self.implicit else explicit, load, self.local_damping)
+
+
+def curve_rebounds(
+    curve: Impedance, timeconst: float, dampratio: float, points: int, step: float, speed: float, gravity: float
+) -> Array:
+    """Return the rebounds of MuJoCo's steps where the impedance follows the penetration, shape (PHASES,).
+
+    Parameters
+    ----------
+    curve
+        ``solimp``.
+    timeconst, dampratio
+        ``solref`` [s], [-].
+    points
+        Contact points that share the body.
+    step
+        h [s].
+    speed
+        At which it lands, V [m/s].
+    gravity
+        g [m/s2].
+    """
+    way = speed * step  # the unit of x
+    k = (step / (curve.greatest * timeconst * dampratio)) ** 2
+    b = 2 * step / (curve.greatest * timeconst)
+    load = gravity * step / speed
+
+    def forces(x: Array, v: Array) -> tuple[Array, Mask]:
+        d = np.array([curve(float(depth)) for depth in x * way])
+        together = points * d / (1 + (points - 1) * d)
+        return np.maximum(together * (load - b * v - k * d * x), 0.0), x < 0
+
+    return _landings(forces, load)
+
+
+def _landings(forces: Callable[[Array, Array], tuple[Array, Mask]], load: float, local_damping: float = 0.0) -> Array:
+    """Return the rebounds of all phases; `forces` are those of the contact, and whether it acts, before a step."""
+    x = (np.arange(PHASES) + 0.5) / PHASES  # in V h, before the first step that ends at or below the contact
+    v = np.full(PHASES, -1.0)
+    e = np.zeros(PHASES)
+    has_touched = np.zeros(PHASES, dtype=bool)
+    has_turned = np.zeros(PHASES, dtype=bool)
+    is_over = np.zeros(PHASES, dtype=bool)
+    for _ in range(LONGEST):
+        force, is_closed = forces(x, v)
+        sum_of_forces = np.where(is_closed, force, 0.0) - load
+        if local_damping:
+            sum_of_forces *= 1 - local_damping * np.sign(sum_of_forces * (v + sum_of_forces / 2))
+        has_touched |= is_closed
+        v = v + sum_of_forces
+        x = x + v
+        has_turned |= has_touched & (v > REST)
+        has_left = has_touched & (x >= 0) & (v >= 0)
+        has_sunk_back = has_turned & (v <= 0)  # the weight holds it
+        is_stuck = has_touched & (np.abs(v) < REST)
+        e = np.where(has_left & ~is_over, v, e)
+        is_over |= has_left | has_sunk_back | is_stuck
+        if np.all(is_over):
+            break
+    return np.where(e < REST, 0.0, e)

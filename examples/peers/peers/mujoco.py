@@ -1,4 +1,4 @@
-"""MuJoCo as a solver: masses on tendons that are springs, or a rigid box on a plane with MuJoCo's own contact.
+"""MuJoCo as a solver: masses on tendons that are springs, or rigid boxes on a plane with MuJoCo's own contact.
 
 A block of one strain has the mass matrix m diag(1, 1, 1/3, 1/3, 1/3, 1/3) in its centroid's u, v and in what its edges
 move beside it, (a/2) ux, (h/2) uy, (a/2) vx, (h/2) vy: six masses on slide joints. Its strain energy and its corner
@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
 from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
 from validation.runs.history import Array
@@ -26,7 +27,14 @@ FINE_SLIP, COARSE_SLIP, MANY_SLIP = 0.005, 0.2, 300_000  # of the leapfrog that 
 HEAVY = 1e12  # mass of a base that moves as it is told, over the block's
 STEADY = 1e-3  # settlement of a block that turns over its lift by the tilt up to which it and its base are rigid
 RIGID = 100.0  # stiffness of a block over that of its springs from which a rigid box may stand for it
-OF_CONTACT = {features.UNILATERAL, features.FRICTION, features.SLOPE, features.ROTATION, features.COLUMN}
+OF_CONTACT = {
+    features.UNILATERAL,
+    features.FRICTION,
+    features.SLOPE,
+    features.ROTATION,
+    features.COLUMN,
+    features.RIGID_BOXES,
+}
 GLUE = 100.0  # coefficient of friction of a corner that never slips, of a box
 TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
 
@@ -200,7 +208,10 @@ class MuJoCo:
     handles = features.LOADS | features.RULES | OF_CONTACT
     default = False
     model = "block of one strain by masses on slide joints, springs by tendons; a rigid box where it turns"
-    settings = "RK4, with friction the leapfrog, at fine steps; rigid box: elliptic cones, stiff contact"
+    settings = (
+        "RK4, with friction the leapfrog, at fine steps; a rigid box of a block: elliptic cones, stiff contact; "
+        "rigid boxes: semi-implicit Euler at 0.5 ms, elliptic cones, an approach turned in one step"
+    )
 
     @property
     def about(self) -> dict[str, str]:
@@ -221,6 +232,8 @@ class MuJoCo:
         NotImplementedError
             MuJoCo is not installed, or the scene has what it cannot express.
         """
+        if scene.rigid is not None:
+            return boxes(scene, default=self.default)
         if scene.column is not None:
             return column(scene, default=self.default)
         refuse("gg below 1 discounts the velocity of DDA's steps, which MuJoCo has not", where=scene.time.discount != 1)
@@ -249,7 +262,9 @@ class AsItComes(MuJoCo):
 
     default = True
     model = "where a corner can open, a rigid box on MuJoCo's own contact; else masses on slide joints"
-    settings = "semi-implicit Euler at the step of the scene; solref, solimp and cones as they come"
+    settings = (
+        "semi-implicit Euler at the step of the scene, rigid boxes at 2 ms; solref, solimp and cones as they come"
+    )
 
     def boxed(self, scene: Scene) -> bool:
         """Whether a rigid box on a plane is the scene's model."""

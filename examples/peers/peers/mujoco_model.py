@@ -66,10 +66,10 @@ class Network:
         return max(math.sqrt(total.max()), float((self.vector(self.damping) / m).max()))
 
 
-def model_text(options: str, world: str, tendons: str = "", gravity: str = "0 0 0") -> str:
+def model_text(options: str, world: str, tendons: str = "", gravity: str = "0 0 0", contact: str = "") -> str:
     """Return a model in MuJoCo's XML."""
     option = f'<option gravity="{gravity}" {options}><flag autoreset="disable"/></option>'
-    return f"<mujoco>{option}<worldbody>{world}</worldbody><tendon>{tendons}</tendon></mujoco>"
+    return f"<mujoco>{option}<worldbody>{world}</worldbody><tendon>{tendons}</tendon>{contact}</mujoco>"
 
 
 def _tendon(spring: Spring) -> str:
@@ -116,7 +116,7 @@ class March:
     def rows(self, steps: int, each: int, report: Callable[[], Array], drive: Drive | None = None) -> Array:
         """Make `each` sub-steps before every row and return the rows; rows after a breakdown are NaN."""
         found = np.full((steps, len(report())), np.nan)
-        with self._silent():
+        with self.silent():
             for step in range(steps):
                 self._advance(step * each, each, drive)
                 if self.data.warning.number.any() or not np.isfinite(self.data.qpos).all():
@@ -133,7 +133,7 @@ class March:
             self.mujoco.mj_step(self.model, self.data)
 
     @contextmanager
-    def _silent(self) -> Iterator[None]:
+    def silent(self) -> Iterator[None]:
         """Keep MuJoCo from writing a file of warnings where it is run; a breakdown is told by the rows."""
         before = self.mujoco.get_mju_user_warning()
         self.mujoco.set_mju_user_warning(lambda text: None)

@@ -51,8 +51,8 @@ class Histories:
         NotImplementedError
             There is none, or the histories are not here.
         """
-        if scene.column is not None:
-            raise NotImplementedError("a history is data: there is none of a column")
+        if scene.kind != "block":
+            raise NotImplementedError("a history is data: there are some of blocks only")
         file, beside, otherwise = ON_SLOPE if scene.load.gravity else PRESSED
         own = load_scene(directory() / beside).with_values(otherwise)
         for field, mine, theirs in differing(scene, own):

@@ -2,6 +2,7 @@
 
 A block: c = sqrt(E' / rho), h / c, c dt / h, p / E, the modes w of the DDA block with w dt, and the limits of the step.
 A column: the same of each layer, its blocks a wavelength, and what the base reflects.
+Rigid boxes: masses, slenderness, friction against slope and ground motion, landings, and contacts of given stiffness.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from validation.advice import contact
 from validation.advice.columns import column_alarms, limits
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
+from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.theory import landing, statics
@@ -69,8 +71,8 @@ def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> list[Range]:
 
 def numbers(scene: Scene) -> list[Number]:
     """Return the derived numbers of one case, all of them finite."""
-    parts = (_column,) if scene.column is not None else (_block, _modes, _opening, _slope)
-    derived = itertools.chain(*(part(scene) for part in parts), _steps(scene))
+    parts_of_kind = {"block": (_block, _modes, _opening, _slope), "column": (_column,), "rigid": (_rigid,)}
+    derived = itertools.chain(*(part(scene) for part in parts_of_kind[scene.kind]), _steps(scene))
     return [number for number in derived if math.isfinite(number.value)]
 
 
@@ -78,7 +80,7 @@ def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
     values = {number.name: number.value for number in derived}
     of_columns = (alarm.sentence for alarm in column_alarms(scene))
-    parts = (part(scene, values) for part in (_unstable, _coarse, _landing, _steep))
+    parts = (part(scene, values) for part in (_unstable, _coarse, _landing, _steep, _of_boxes))
     return [*itertools.chain(*parts), *of_columns]
 
 
@@ -214,6 +216,63 @@ def _contacts(scene: Scene) -> Iterator[Number]:
         yield Number("t rest", bounds.settling, "s", "time in which the stack comes to rest to a thousandth")
 
 
+# ---- rigid boxes --------------------------------------------------------------------------------------------------
+
+
+def _rigid(scene: Scene) -> Iterator[Number]:
+    section = scene.rigid
+    if section is None:
+        return
+    masses = [box.mass for box in section.box]
+    lowest = section.box[0]
+    slenderness = min(box.width / box.height for box in section.box)
+    yield Number("m", sum(masses), "kg", "mass of the box" if len(masses) == 1 else f"mass of the {len(masses)} boxes")
+    if len(masses) > 1:
+        ratio = max(above / below for below, above in itertools.pairwise(masses))
+        yield Number("m2/m1", ratio, "", "mass of a box over that of the box below it, the greatest")
+    yield Number("w/h", slenderness, "", "slenderness: the tan b beyond which a box topples, unless it slides")
+    yield Number("tan phi", section.friction_coefficient, "", "coefficient of friction")
+    if section.slope:
+        yield Number("tan b", math.tan(math.radians(abs(section.slope))), "", "of the slope: what rest needs at least")
+    yield from _turning(section)
+    yield from _falling(section)
+    if section.base_amplitude:
+        rate = 2 * math.pi * section.base_frequency
+        acceleration = abs(section.base_amplitude) * rate**2
+        yield Number("a ground", acceleration, "m/s2", "greatest acceleration of the ground, A (2 pi f)^2")
+        yield Number("v ground", abs(section.base_amplitude) * rate, "m/s", "its greatest velocity")
+    if section.stiffness is not None:
+        period = 2 * math.pi * math.sqrt(lowest.mass / section.stiffness)
+        yield Number("t contact", period / 2, "s", "half a period of box 1 on its contact: of an impact without weight")
+        yield Number("m g/k", -sum(masses) * section.pull[1] / section.stiffness, "m", "penetration at rest")
+
+
+def _turning(section: RigidSection) -> Iterator[Number]:
+    """Yield what turns a box over that is alone on level ground and does not slide (Housner)."""
+    box = section.box[0]
+    is_alone_on_level = len(section.box) == 1 and section.slope == 0 and section.gravity > 0
+    if not is_alone_on_level or section.friction_coefficient < box.width / box.height:
+        return
+    # About an edge, at half the diagonal R from the centre: I = 4 m R^2 / 3, and the centre must rise by R (1 - cos).
+    half_diagonal = math.hypot(box.width, box.height) / 2
+    rate = math.sqrt(3 * section.gravity / (4 * half_diagonal))
+    alpha = math.atan2(box.width, box.height)
+    yield Number("alpha", math.degrees(alpha), "deg", "rotation at which the box stands on its edge")
+    yield Number("p", rate, "rad/s", "sqrt(3 g / 4R), frequency parameter of rocking")
+    yield Number("w over", 2 * rate * math.sin(alpha / 2), "rad/s", "rate about its edge that just turns it over")
+
+
+def _falling(section: RigidSection) -> Iterator[Number]:
+    """Yield when and how fast a lifted first box lands that does not turn."""
+    box = section.box[0]
+    pull = -section.pull[1]
+    if box.lift == 0 or box.spin != 0 or pull <= 0:
+        return
+    speed = math.sqrt(box.velocity[1] ** 2 + 2 * pull * box.lift)
+    yield Number("v landing", speed, "m/s", "speed at which box 1 lands for the first time")
+    yield Number("t landing", (box.velocity[1] + speed) / pull, "s", "when it does")
+
+
 # ---- limits -------------------------------------------------------------------------------------------------------
 
 
@@ -244,7 +303,7 @@ def _landing(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
 
 def _steep(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
     slope = values.get("tan b", 0.0)
-    if slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
+    if scene.kind != "block" or slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
         return
     friction = math.inf
     if scene.contact.cohesion == 0:
@@ -254,3 +313,20 @@ def _steep(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
     # The friction of a block that slides is tan(phi) N, whose moment does not tip it where tan(phi) < w/h.
     if min(slope, friction) > values.get("w/h", math.inf):
         yield "tan b > w/h: the block topples"
+
+
+def _of_boxes(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
+    section = scene.rigid
+    if section is None:
+        return
+    friction = section.friction_coefficient
+    slope = values.get("tan b", 0.0)
+    if slope > friction:
+        yield "tan b > tan phi: the boxes slide"
+    if min(slope, friction) > values["w/h"]:
+        yield "tan b > w/h: a box topples"
+    if values.get("a ground", 0.0) > friction * -section.pull[1]:
+        yield "the ground's acceleration exceeds tan phi g: the lowest box slips on it"
+    # A program's rows must tell the contact from the flight.
+    if values.get("t contact", math.inf) < 2 * scene.time.step:
+        yield "time.step is more than half a contact: its rows miss the peak of the force"

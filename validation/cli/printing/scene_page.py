@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ from validation.scenes import features
 from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
+from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.theory.schemes import aliases
 from validation.theory.stepping import Stepping
@@ -45,7 +48,7 @@ def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
     derived = [numbers.numbers(case) for case in sampled_cases]
     yield from textwrap.wrap(f"{scene.name}: {scene.title or 'a scene'}", width or 1000, break_long_words=False)
     yield ""
-    yield from (column(cases[0]) if scene.column is not None else block(cases[0], width))
+    yield from drawing(cases[0], width)
     yield ""
     yield in_columns(list(_facts(cases[0], scene, len(cases))), width)
     yield ""
@@ -83,6 +86,28 @@ def _remarks(cases: Sequence[Scene], derived: Sequence[Sequence[numbers.Number]]
 
 def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
     """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
+    if first.rigid is None:
+        yield from _stepping(first)
+    else:
+        t = first.time
+        halved = f", halved {first.rigid.refine} times" if first.rigid.refine else ""
+        yield "rows", f"{t.steps}, one each {t.step:g} s; between them a program takes its own steps{halved}"
+    if others := list(_other_keys(first)):
+        yield "keys", ", ".join(others)
+    if scene_features := features.of(first):
+        yield "features", ", ".join(scene_features)
+    for field, values in scene.sweep.items():
+        if field != "mode":
+            more = f", ... ({len(values)})" if len(values) > SWEPT_VALUES else ""
+            yield "varied", f"{field} = {', '.join(map(_short, values[:SWEPT_VALUES]))}{more}"
+    case_count = f"; {count} cases" if count > 1 else ""
+    yield "solvers", f"{', '.join(scene.run.solvers)}{case_count}"
+    if scene.gate:
+        yield "gates", f"{len(scene.gate)} in the scene"
+
+
+def _stepping(first: Scene) -> Iterator[Line]:
+    """Yield the steps, the scheme and the damping of a scene that is stepped by it."""
     t = first.time
     stepping = Stepping.of(first)
     scheme = stepping.name
@@ -96,18 +121,6 @@ def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
         yield "", sentence
     if first.damping.present:
         yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
-    if others := list(_other_keys(first)):
-        yield "keys", ", ".join(others)
-    if scene_features := features.of(first):
-        yield "features", ", ".join(scene_features)
-    for field, values in scene.sweep.items():
-        if field != "mode":
-            more = f", ... ({len(values)})" if len(values) > SWEPT_VALUES else ""
-            yield "varied", f"{field} = {', '.join(map(_short, values[:SWEPT_VALUES]))}{more}"
-    case_count = f"; {count} cases" if count > 1 else ""
-    yield "solvers", f"{', '.join(scene.run.solvers)}{case_count}"
-    if scene.gate:
-        yield "gates", f"{len(scene.gate)} in the scene"
 
 
 def _other_keys(scene: Scene) -> Iterator[str]:
@@ -135,6 +148,13 @@ def _table(ranges: Sequence[numbers.Range]) -> list[Line]:
 # ---- drawings -----------------------------------------------------------------------------------------------------
 
 
+def drawing(scene: Scene, width: int | None) -> Iterator[str]:
+    """Yield the model of a scene, drawn in text."""
+    if scene.rigid is not None:
+        return boxes(scene.rigid)
+    return column(scene) if scene.column is not None else block(scene, width)
+
+
 def block(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
     across, rows = _extent(scene)
@@ -153,11 +173,16 @@ def block(scene: Scene, width: int | None) -> Iterator[str]:
 
 
 def _extent(scene: Scene) -> tuple[int, int]:
-    """Return columns and rows of the block's inside; a row is as high as two columns are wide."""
+    """Return columns and rows of the block's inside."""
     width, height = np.ptp(scene.block.outline, axis=0)
     slenderness = width / height
     across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
-    return across, min(max(3, round(across / slenderness / 2)), INSIDE // 2)
+    return across, _rows(across, slenderness)
+
+
+def _rows(across: int, slenderness: float) -> int:
+    """Return the rows of a body's inside; a row is as high as two columns are wide."""
+    return min(max(3, round(across / slenderness / 2)), INSIDE // 2)
 
 
 def _size(scene: Scene) -> str:
@@ -251,3 +276,56 @@ def column(scene: Scene) -> Iterator[str]:
         yield from _contacts_of_column(layered_column)
     base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
     yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"
+
+
+def boxes(section: RigidSection) -> Iterator[str]:
+    """Yield rigid boxes on each other from the top down, equal neighbours as one, and the ground."""
+    left = min(box.x - box.width / 2 for box in section.box)
+    right = max(box.x + box.width / 2 for box in section.box)
+    characters_per_metre = INSIDE / (right - left)
+    stack = [list(equal) for _, equal in itertools.groupby(enumerate(section.box, start=1), key=itemgetter(1))]
+    for equal in reversed(stack):
+        first, box = equal[0]
+        last = equal[-1][0]
+        across = max(NARROWEST, round(characters_per_metre * box.width))
+        shift = min(INSIDE - across, round(characters_per_metre * (box.x - box.width / 2 - left)))
+        beside = _box(box, last - first + 1)
+        rows = max(len(beside), _rows(across, box.width / box.height) if len(section.box) == 1 else 1)
+        margin = " " * (2 + shift)
+        yield f"{margin}+{'-' * across}+"
+        for row in range(rows):
+            label = f"{first}" if first == last else f"{first}-{last}"
+            inside = (label if row == rows // 2 else "").center(across)
+            words = beside[row] if row < len(beside) else ""
+            yield (f"{margin}|{inside}|".ljust(INSIDE + BESIDE) + words).rstrip()
+        yield f"{margin}+{'-' * across}+"
+    ground, *more = _ground(section)
+    yield f" {'=' * (INSIDE + 4)}  {ground}"
+    yield from (" " * (INSIDE + BESIDE) + line for line in more)
+
+
+def _box(box: BoxSection, count: int) -> list[str]:
+    """Return size and start of a box, or of each of some equal boxes, a line each."""
+    each = "each " if count > 1 else ""
+    lines = [f"{each}{box.width:.3g} m wide, {box.height:.3g} m high, rho = {box.density:g} kg/m3"]
+    start = [
+        described(name, value, key) for name, value, key in stated(box) if name not in ("width", "height", "density")
+    ]
+    return [*lines, ", ".join(start)] if start else lines
+
+
+def _ground(section: RigidSection) -> Iterator[str]:
+    """Yield what the boxes stand on and how its contacts are, then what moves them."""
+    contacts = ["frictionless" if section.friction == 0 else f"friction {section.friction:g} deg"]
+    contacts.append(f"restitution {section.restitution:g}")
+    contacts.append(
+        "rigid or as a program has them" if section.stiffness is None else f"{section.stiffness:g} N/m below box 1"
+    )
+    yield f"contacts: {', '.join(contacts)}"
+    slope = f"slope of {section.slope:g} deg, down to the right" if section.slope > 0 else "level ground"
+    if section.slope < 0:
+        slope = f"slope of {-section.slope:g} deg, down to the left"
+    yield f"{slope}, g = {section.gravity:g} m/s2"
+    if section.base_amplitude:
+        motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
+        yield f"ground moved by A (1 - cos 2 pi f t), {motion}"

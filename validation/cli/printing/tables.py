@@ -17,6 +17,7 @@ from validation.cli.printing.answer import STYLES, Line, how_it_ended
 from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import console, echo
 from validation.gates.gate import Verdict, value_text
+from validation.metrics.values import NOT_REPORTED
 from validation.runs.case_name import CaseName
 from validation.runs.records import BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
@@ -112,6 +113,12 @@ def print_lines(lines: Iterable[Line]) -> None:
 def print_differences(results: Results, study: str, writable: bool) -> None:
     """Print what the solvers of a scene without gates differ by, and what to write so that it is judged."""
     compared = results.manifest(study)["comparisons"]
+    values_of_all: set[object] = set()
+    for c in compared:
+        values_of_all.update(c["metrics"].get(metric, NOT_REPORTED) for metric in DIFFERENCES)
+    if values_of_all == {NOT_REPORTED}:
+        echo("next: no metric is of the columns of this scene; dda-validate report draws the histories")
+        return
     name = _namer(c["scene"] for c in compared)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     table.add_column("scene", overflow="fold")

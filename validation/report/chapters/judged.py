@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from validation.problems.bands import Standard
-from validation.problems.data import united
+from validation.problems.data import PACK, united
 from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
 from validation.problems.quantities import COUNTED, Quantity
@@ -69,6 +69,39 @@ def per_cent(share: float | None) -> str:
     return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
+def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
+    """Return a judgement as plain data."""
+    columns = [
+        {
+            "column": united(column.name),
+            "verdict": str(column.word),
+            "error": column.error if column.error is None or column.error < float("inf") else "inf",
+            "allowed": column.band,
+            "until_s": column.until,
+            "within_until_s": column.within,
+            "reason": column.reason,
+        }
+        for column in judged.judgement.columns
+    ]
+    why = judged.cause
+    return {
+        "pack": PACK,
+        "problem": judged.problem.name,
+        "program": program,
+        "verdict": str(judged.judgement.word),
+        "not_reported": [united(name) for name in judged.judgement.withheld],
+        "cause": None if why is None else _cause_data(why),
+        "columns": columns,
+        "warnings": list(judged.warnings),
+        "about": dict(judged.about),
+    }
+
+
+def _cause_data(cause: Cause) -> dict[str, Any]:
+    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
+
+
 def page(answer: JudgedAnswer, directory: Path) -> Blocks:
     """Return the blocks of the page; its figures are written to a directory."""
     judgement = answer.judgement
@@ -79,13 +112,16 @@ def page(answer: JudgedAnswer, directory: Path) -> Blocks:
         blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
         if answer.cause.would_tell:
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
+    further = []
+    if judgement.quantities:
+        further.append(_further_numbers(judgement.quantities, answer.problem.scene.rigid is not None))
     return [
         *blocks,
         Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
         _columns(judgement.columns, answer.standard),
         *figures(answer, directory),
-        *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
-        table(("Of the answer", TableColumn("", "fill")), tuple(answer.about)),
+        *further,
+        *([table(("Of the answer", TableColumn("", "fill")), tuple(answer.about))] if answer.about else []),
     ]
 
 
@@ -115,7 +151,10 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
 
 def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     rows = []
-    notes = [ALLOWED]
+    numbers = [column for column in columns_of_answer if column.name not in standard.bands and column.band is not None]
+    notes = [] if numbers else [ALLOWED]
+    notes += [f"{column.name}: {column.reason}." for column in numbers]
+    caption = "Errors of the numbers that are judged." if numbers else "Relative L2 error of each column."
     for column in columns_of_answer:
         name = united(column.name)
         error, band = (DASH if share is None else short(100 * share, 2) for share in (column.error, column.band))
@@ -125,7 +164,7 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     return table(
         ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]"),
         rows,
-        "Relative L2 error of each column.",
+        caption,
         tuple(notes),
     )
 
@@ -136,11 +175,10 @@ def datum(column: Column, standard: Standard) -> str:
     return band.datum if band else ""
 
 
-def _further_numbers(numbers: Sequence[Quantity]) -> Table:
+def _further_numbers(numbers: Sequence[Quantity], of_boxes: bool) -> Table:
+    caption = "The numbers that are judged." if of_boxes else "Further numbers, which are not judged."
     rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
-    return table(
-        (TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, "Further numbers, which are not judged."
-    )
+    return table((TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, caption)
 
 
 def _number_cell(number: Quantity, value: float | None) -> str:

@@ -94,7 +94,7 @@ def scene_section(
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, apart, without))
     scene = group.cases[0].scene
-    if features.linear(scene) and scene.column is None:
+    if features.linear(scene) and scene.kind == "block":
         table = damping_table(group)
         blocks += [table] if table.rows else []
     return blocks
@@ -209,10 +209,12 @@ def outcomes(group: CaseGroup) -> Blocks:
 
 
 def _columns(group: CaseGroup) -> list[str]:
-    """Return the columns that some solver reports, displacement and contact pressure first."""
+    """Return the columns that some solver reports, displacement and contact pressure, or the first box, first."""
     names: set[str] = set()
     for case in group.cases:
         names.update(*(history.columns for history in case.histories.values()))
+    if (rigid := group.cases[0].scene.rigid) is not None:
+        return [name for name in rigid.columns if name in names]
     return sorted(names, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
 
 
@@ -329,7 +331,7 @@ def _panel(
             static[column] = numbers[0]
     finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn)
+    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn, of_boxes=case.scene.rigid is not None)
 
 
 def drift_values(group: CaseGroup) -> list[tuple[int, float]]:

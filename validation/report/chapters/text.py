@@ -11,7 +11,8 @@ from typing import Any
 from validation.runs.case_name import CaseName
 from validation.runs.row import Value
 from validation.runs.text import shown
-from validation.scenes.keys import keys_of, stated_value
+from validation.scenes.keys import keys_of, stated, stated_value
+from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
 DASH = "–"
@@ -25,11 +26,12 @@ _MEANINGS = (
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
 _UNITS = str.maketrans("23", "²³")
 
-PLACES = ("block", "column", "contact", "load", "input", "damping", "time", "fem", "run")  # tables of data
+PLACES = ("block", "column", "rigid", "contact", "load", "input", "damping", "time", "fem", "run")  # tables of data
 ALWAYS = {  # data that are written at their defaults too
     "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
 }  # fmt: skip
 NEWMARK_DATA = {"time.alpha", "time.delta"}  # which no other scheme has
+OF_STEPPING = {*NEWMARK_DATA, "time.start", "fem.degree", "fem.foundation"}  # which rigid boxes have none of
 NO_DATA = {"block.base", "block.top", "run.solvers", "run.columns"}  # edges of a polygon, and what is run
 
 
@@ -152,16 +154,32 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
     if scene.column is not None and "column.layer" not in varied:
         blocks = sum(layer.blocks for layer in scene.column.layer)
         items.append(f"{blocks} blocks, layers: {len(scene.column.layer)}, {scene.column.height:g} m high")
+    if scene.rigid is not None and "rigid.box" not in varied:
+        items += _boxes(scene.rigid)
     for place, table in scene.tables().items():
         for name, field, _ in keys_of(type(table)) if place in PLACES else ():
             path = f"{place}.{name}"
             value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)
             is_newmarks = path in NEWMARK_DATA and scene.time.scheme != "newmark"
-            if path in varied | NO_DATA or is_default or is_newmarks:
+            if path in varied | NO_DATA or is_default or is_newmarks or (scene.rigid and path in OF_STEPPING):
                 continue
             symbol, unit = _symbol(scene, path)
             items.append(f"{symbol} = {_written(value)}{unit}" if symbol else f"{_written(value)}{unit}")
+    return items
+
+
+def _boxes(section: RigidSection) -> list[str]:
+    """Return the number of rigid boxes, and what all of them are."""
+    count = len(section.box)
+    items = [f"{count} boxes" if count > 1 else "a box"]
+    boxes = [{name: value for name, value, _ in stated(box)} for box in section.box]
+    for name, _, key in keys_of(type(section.box[0])):
+        values = [box.get(name) for box in boxes]
+        if values[0] is not None and len(set(values)) == 1:
+            items.append(f"{name} = {_written(values[0])} {key.unit.translate(_UNITS)}".replace(" deg", "°"))
+        elif any(values):
+            items.append(f"{name} by box")
     return items
 
 
@@ -176,5 +194,5 @@ def _written(value: Any) -> str:
 
 
 def load_size(scene: Scene) -> float:
-    """Return the size of the pressure on a block [Pa], beside which smaller ones are rounding; a column has none."""
-    return abs(scene.load.pressure) if scene.column is None else math.inf
+    """Return the size of the pressure on a block [Pa], beside which smaller ones are rounding; else there is none."""
+    return abs(scene.load.pressure) if scene.kind == "block" else math.inf

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
+from validation.scenes import rigid
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Role
 from validation.solvers.registry import by_role, get_solver, is_solver
@@ -22,6 +23,7 @@ from validation.solvers.registry import by_role, get_solver, is_solver
 TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
 RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
 MOST_DOTS = 400  # samples; more dots cannot be told apart
+ROUNDING = 1e-9  # m, rad, N: smaller positions, rotations and forces of rigid boxes are zero
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
 
@@ -35,9 +37,32 @@ COLUMNS = {
     **{name: (name.replace("_", " ").capitalize(), UNITS[name.partition("_")[0]]) for name in AT_HEIGHTS},
 }
 
+OF_BOXES = {"x": "x", "y": "y", "angle": "Rotation", "force": "Normal force"}  # the columns of each rigid box
 
 _OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
+# Of the field of engines: those of one family, which share a panel, differ for colour-blind readers too.
+_ENGINE_COLORS = {
+    "siconos": "#882255",
+    "lmgc90": "#44aa99",
+    "exudyn": "#8c6d1f",
+    "mujoco": "#009e73",
+    "drake": "#0072b2",
+    "dart": "#cc79a7",
+    "bullet": "#e69f00",
+    "newton-xpbd": "#5d3a9b",
+    "newton-semi-implicit": "#56b4e9",
+    "box2d": "#117733",
+    "pymunk": "#dd6677",
+}
 _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
+
+
+def axis_of(column: str, of_boxes: bool = False) -> tuple[str, str]:
+    """Return what a column is, in words, and its unit; ``force_1`` is a stress in a column and a force on a box."""
+    part, _, number = column.rpartition("_")
+    if of_boxes and part in OF_BOXES:
+        return f"{OF_BOXES[part]}, box {number}", rigid.UNITS[part]
+    return COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
 
 
 def style_of(name: str) -> LineStyle:
@@ -47,6 +72,9 @@ def style_of(name: str) -> LineStyle:
     declared = get_solver(name).line if is_solver(name) else None
     if declared is not None:
         return declared
+    engine = name.removesuffix("-default")
+    if engine in _ENGINE_COLORS:
+        return LineStyle(_ENGINE_COLORS[engine], () if engine == name else _OTHER_DASHES[0], 1.0, 2)
     code = zlib.crc32(name.encode())
     color = _OTHER_COLORS[code % len(_OTHER_COLORS)]
     return LineStyle(color, _OTHER_DASHES[code // len(_OTHER_COLORS) % len(_OTHER_DASHES)], 1.0, 2)
@@ -111,6 +139,7 @@ class HistoryPanel:
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
+    of_boxes: bool = False  # whether its columns are those of rigid boxes
 
     def sparse(self, columns: Sequence[str]) -> list[str]:
         """Return the solvers that are drawn as dots in one of some columns."""
@@ -137,6 +166,8 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
         columns.append(np.ones(1))
     values = np.concatenate(columns)
     values = values[np.isfinite(values)]
+    if any(panel.of_boxes for panel in panels) and np.abs(values).max() < ROUNDING:
+        return -ROUNDING, ROUNDING  # a box that does not move is at rest, and not a line of rounding errors
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 

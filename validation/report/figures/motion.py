@@ -18,10 +18,10 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from validation.report.figures.charts import ChartLine, draw_chart_line
 from validation.report.figures.curves import (
-    COLUMNS,
     HAIR,
     HistoryPanel,
     HistoryPanels,
+    axis_of,
     common_range,
     differences,
     engineering,
@@ -176,11 +176,15 @@ def _columns(count: int) -> int:
 def _scale(panels: HistoryPanels, column: str) -> tuple[float, str]:
     """Return the factor and the unit that a column is drawn in."""
     low, high = common_range(panels, column)
-    return engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
+    return engineering(max(abs(low), abs(high)), _axis(panels, column)[1])
+
+
+def _axis(panels: HistoryPanels, column: str) -> tuple[str, str]:
+    return axis_of(column, any(panel.of_boxes for panel in panels))
 
 
 def _label(panels: HistoryPanels, column: str) -> str:
-    name, _ = COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
+    name, _ = _axis(panels, column)
     _, unit = _scale(panels, column)
     return f"{name}\n[{unit}]" if unit else name
 
@@ -197,7 +201,7 @@ def _ends(band: HistoryPanels, panels: HistoryPanels, column: str) -> dict[str, 
 
 def _history_row(row: list[Axes], panels: HistoryPanels, column: str, limits: tuple[float, float]) -> None:
     low, high = limits
-    factor, _ = engineering(max(abs(low), abs(high)), COLUMNS.get(column, ("", ""))[1])
+    factor, _ = engineering(max(abs(low), abs(high)), _axis(panels, column)[1])
     pad = 0.05 * (high - low) or 1.0
     for axes, panel in zip(row, panels, strict=False):
         axes.set_ylim(factor * (low - pad), factor * (high + pad))

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+
+from validation.runs.results import Results
+from validation.runs.row import Row, Value
+from validation.runs.run import Outcome
+from validation.studies.field.table import MISSING, NOT_APPLICABLE, NOT_RUN, is_absent
 
 STUDY = "engines"
 
@@ -124,3 +130,111 @@ class EngineTable:
     problems: tuple[EngineProblem, ...]
     programs: tuple[EngineProgram, ...]
     cells: Mapping[tuple[str, str], EngineCell]  # by names of problem and program
+
+    def cell(self, problem: str, program: str) -> EngineCell:
+        """Return a cell.
+
+        Raises
+        ------
+        KeyError
+            There is no such problem or program.
+        """
+        return self.cells[problem, program]
+
+    def row(self, problem: str) -> tuple[EngineCell, ...]:
+        """Return the cells of a problem in the order of the programs."""
+        return tuple(self.cells[problem, program.name] for program in self.programs)
+
+
+def read(results: Results) -> EngineTable | None:
+    """Return the field of engines of a results directory, None where the study was not run.
+
+    Raises
+    ------
+    InputError
+        The results are damaged.
+    """
+    manifest = results.manifest(STUDY)
+    data = manifest.get("data", {})
+    if "programs" not in data:
+        return None
+    problems = tuple(EngineProblem(**line) for line in data["problems"])
+    programs = tuple(EngineProgram(**line) for line in data["programs"])
+    rows = results.rows()
+    row_by_case: dict[tuple[str, str], Row] = {}
+    for case in manifest.get("cases", []):
+        if case["key"] in rows:
+            row_by_case[case["scene"], case["solver"]] = rows[case["key"]]
+    metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+    cells = {}
+    for program in programs:
+        ended = [row for (_, solver), row in row_by_case.items() if solver == program.name]
+        endings = [(row.outcome is Outcome.NOT_APPLICABLE, " ".join(row.notes)) for row in ended]
+        absent = not program.installed or is_absent(endings)
+        for problem in problems:
+            metrics = metrics_by_cell.get((problem.scene, f"judged {program.name}"), {})
+            if absent:
+                reason = f"not installed: {program.recipe}"
+                cell = EngineCell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=reason)
+            elif metrics:
+                cell = _judged(problem.name, program.name, metrics)
+            else:
+                own_rows = [row_by_case.get((name, program.name)) for name in data["cases"][problem.name]]
+                cell = _unanswered(problem.name, program.name, [row for row in own_rows if row is not None])
+            cells[problem.name, program.name] = cell
+    return EngineTable(problems, programs, cells)
+
+
+def _judged(problem: str, program: str, metrics: Mapping[str, Value]) -> EngineCell:
+    quantities = []
+    for one in _numbered(metrics, "number"):
+        band = (_number(one["low"]) or 0.0, _number(one["high"]) or 0.0)
+        name = str(one["name"])
+        unit = str(one["unit"])
+        label = str(one["case"] or "")
+        exact = _number(one["exact"]) or 0.0
+        reason = str(one["reason"] or "")
+        quantities.append(Quantity(name, unit, label, _number(one["value"]), exact, band, str(one["word"]), reason))
+    points = []
+    for one in _numbered(metrics, "point"):
+        counts = [int(_number(one[name]) or 0) for name in ("refine", "steps")]
+        step = _number(one["step"]) or math.nan
+        points.append(
+            WorkPoint(counts[0], step, counts[1], _number(one["seconds"]), _number(one["error"]), str(one["outcome"]))
+        )
+    texts_of_cell = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "finding", "reason")}
+    return EngineCell(
+        problem,
+        program,
+        **texts_of_cell,
+        error=_number(metrics.get("error over band")),
+        seconds=_number(metrics.get("seconds")),
+        quantities=tuple(quantities),
+        points=tuple(points),
+    )
+
+
+def _numbered(metrics: Mapping[str, Value], kind: str) -> list[dict[str, Value]]:
+    """Return the metrics ``kind 0: name``, ``kind 1: name``, ... as one mapping for each number."""
+    groups: dict[int, dict[str, Value]] = {}
+    for key, value in metrics.items():
+        head, _, name = key.partition(": ")
+        word, _, number = head.partition(" ")
+        if word == kind and number.isdigit():
+            groups.setdefault(int(number), {})[name] = value
+    return [groups[number] for number in sorted(groups)]
+
+
+def _unanswered(problem: str, program: str, rows: Sequence[Row]) -> EngineCell:
+    """Return the cell of a problem of which no case was answered."""
+    if not rows:
+        return EngineCell(problem, program, NOT_RUN, NOT_RUN, reason="was not run")
+    row = rows[0]
+    note = row.notes[-1] if row.notes else row.outcome.sentence
+    absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
+    word = NOT_RUN if absent else NOT_APPLICABLE
+    return EngineCell(problem, program, word, word, reason=note)
+
+
+def _number(value: Value) -> float | None:
+    return float(value) if isinstance(value, int | float) else None

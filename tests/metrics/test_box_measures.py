@@ -1,0 +1,157 @@
+"""What is measured on positions of boxes: a toy engine with known faults gives what its faults are worth."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.metrics import boxes as measures
+from validation.problems.boxes import BoxQuantity, box_problems, boxes_of, measured
+from validation.runs.history import History
+from validation.scenes.scene import Scene
+
+
+def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag: float = 0.0) -> History:
+    """Step one box that stays flat by symplectic Euler: velocities, impulses at the velocities, positions."""
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    e = rigid.restitution if bounce is None else bounce
+    step = scene.time.step / parts
+    along, across = rigid.pull
+    x, y, _ = rigid.starts[0]
+    u, v = box.velocity
+    rows = []
+    for n in range(scene.time.steps * parts):
+        u += along * step
+        v += across * step - drag * v * step
+        impulse = 0.0
+        if y + v * step < box.reach and v < 0:
+            impulse = -v
+            v = -e * v if -v > 2 * abs(across) * step else 0.0
+        grip = rigid.friction_coefficient * impulse
+        u -= max(-grip, min(grip, u))
+        x += u * step
+        y += v * step
+        if (n + 1) % parts == 0:
+            rows.append((x, y))
+    time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    columns = np.array(rows).T
+    return History(time, {"x_1": columns[0], "y_1": columns[1], "angle_1": np.zeros(len(time))})
+
+
+def numbers(name: str, history: History, **values: Any) -> dict[str, tuple[float | None, str]]:
+    """Return the numbers of an answer to a problem's scene, and their words, by name."""
+    problem = box_problems()[name]
+    scene = problem.scene().with_values(values)
+    return {one.quantity.name: (one.value, one.word) for one in measured(problem.quantities(scene), history)}
+
+
+def scene_of(name: str, **values: Any) -> Scene:
+    return box_problems()[name].scene().with_values(values)
+
+
+@pytest.mark.parametrize("friction", [19.0, 22.0])
+def test_a_box_on_a_slope_stands_or_slides(friction: float) -> None:
+    values = {"rigid.friction": friction, "time.steps": 50}
+    history = flat_engine(scene_of("standing", **values), parts=20)
+    assert {word for _, word in numbers("standing", history, **values).values()} == {"PASS"}
+
+
+def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails() -> None:
+    history = flat_engine(scene_of("standing"))
+    for speed, word in ((0.16, "PASS"), (0.17, "FAIL")):
+        creeping = History(history.time, history.columns | {"x_1": 1e-3 * speed * history.time})
+        assert numbers("standing", creeping)["creep"] == (pytest.approx(speed, rel=1e-6), word)
+        sinking = History(history.time, history.columns | {"y_1": 0.5 - 1e-3 * speed * history.time})
+        assert numbers("standing", sinking)["creep"][1] == word
+
+
+@pytest.mark.parametrize(("bounce", "word"), [(0.5, "PASS"), (0.492, "PASS"), (0.488, "FAIL"), (0.512, "FAIL")])
+def test_the_restitution_is_measured_from_positions(bounce: float, word: str) -> None:
+    history = flat_engine(scene_of("restitution"), bounce=bounce)
+    value, got = numbers("restitution", history)["restitution"]
+    assert value == pytest.approx(bounce, rel=1e-9)
+    assert got == word
+
+
+@pytest.mark.parametrize(("parts", "step_share"), [(1, 1.0), (4, 0.25)])
+def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts: int, step_share: float) -> None:
+    """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
+    scene = scene_of("bouncing", **{"time.steps": 25})
+    history = flat_engine(scene, parts)
+    rigid = boxes_of(scene)
+    flying = measures.in_flight(history, rigid)
+    assert flying[2:-2].all() and not flying[:2].any()
+    energy = measures.energies(history, rigid)[flying]
+    assert np.ptp(energy) < 1e-9 * energy[0]
+    dt = scene.time.step * step_share
+    excess = (energy[0] - measures.first_energy(rigid)) / rigid.gravity
+    assert excess == pytest.approx(rigid.gravity * dt**2 / 8, rel=1e-6)
+
+
+def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
+    """The impact of the exact motion may come anywhere between two rows; the energy of a flight never knows of it."""
+    from validation.solvers.registry import solve
+
+    for lift in np.linspace(0.9, 1.1, 23):
+        box = {"width": 1.0, "height": 0.5, "density": 2500.0, "lift": float(lift)}
+        scene = scene_of("bouncing", **{"rigid.box": [box], "time.steps": 200})
+        history = solve(scene, "rigid-exact").history
+        assert history is not None
+        rigid = boxes_of(scene)
+        energy = measures.energies(history, rigid)[measures.in_flight(history, rigid)]
+        np.testing.assert_allclose(energy, measures.first_energy(rigid), rtol=1e-9)
+
+
+@pytest.mark.parametrize(("bounce", "gain", "word"), [(1.0, 0.0, "PASS"), (1.02, 0.0404, "FAIL")])
+def test_a_gain_of_energy_is_seen(bounce: float, gain: float, word: str) -> None:
+    values = {"time.steps": 80}  # one impact
+    history = flat_engine(scene_of("bouncing", **values), parts=64, bounce=bounce)
+    found = numbers("bouncing", history, **values)["largest gain of energy"]
+    assert found == (pytest.approx(gain, abs=3e-3), word)
+
+
+def test_a_loss_of_energy_is_seen_and_is_no_gain() -> None:
+    values = {"time.steps": 600}
+    history = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.97)
+    found = numbers("bouncing", history, **values)
+    assert found["largest gain of energy"][1] == "PASS"
+    value, word = found["energy in the end over that at the start"]
+    assert word == "FAIL" and value is not None and 0.2 < value < 0.9
+    at_rest = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.3)
+    value, word = numbers("bouncing", at_rest, **values)["energy in the end over that at the start"]
+    assert word == "FAIL" and value == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_program_whose_air_slows_the_fall_still_flies() -> None:
+    values = {"time.steps": 100}
+    history = flat_engine(scene_of("bouncing", **values), parts=16, drag=0.04)
+    assert numbers("bouncing", history, **values)["energy in the end over that at the start"][1] == "FAIL"
+
+
+def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
+    history = flat_engine(scene_of("impact"))
+    standing = History(history.time, history.columns | {"y_1": np.full(len(history.time), 0.6)})
+    found = numbers("impact", standing)
+    assert found["time of contact"] == (None, "FAIL")
+    assert found["peak force as reported"] == (None, "not reported")
+
+
+def quantity(exact: float, low: float, high: float) -> BoxQuantity:
+    return BoxQuantity("n", "1", exact, low, high, 1.0, "", "why", lambda history: None)
+
+
+def test_an_error_beside_its_band_is_one_at_the_edge_on_either_side() -> None:
+    one = quantity(2.0, 1.0, 5.0)
+    assert (one.beside_band(5.0), one.beside_band(1.0), one.beside_band(2.0)) == (1.0, 1.0, 0.0)
+    assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
+    assert math.isinf(quantity(1.0, 1.0, 1.0).beside_band(0.0))
+
+
+def test_the_peak_between_rows() -> None:
+    x = np.linspace(0, 1, 12)
+    assert measures.peak(3 - 5 * (x - 0.4321) ** 2) == pytest.approx(3, rel=1e-12)
+    assert measures.peak(x) == 1.0

@@ -1,0 +1,175 @@
+"""The exact motions of rigid boxes: they pass their own problems, agree with other formulas, and refuse the rest."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.problems.boxes import BoxCase, box_problems, measured
+from validation.runs.history import History
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.registry import get_solver
+
+BOX = {"width": 0.8, "height": 0.5, "density": 700.0}
+OVERTURNING = 6  # cases of the grid of toppling, beyond the end of the motion about a corner
+CASES = [(name, case) for name, problem in box_problems().items() for case in problem.cases]
+
+
+def scene_of(*boxes: dict[str, Any], step: float = 0.01, steps: int = 100, **rigid: Any) -> Scene:
+    """Return a scene of boxes with all columns."""
+    data = {"name": "boxes", "rigid": {"box": list(boxes), **rigid}, "time": {"step": step, "steps": steps}}
+    scene = parse_scene(data, "boxes")
+    assert scene.rigid is not None
+    return scene.with_values({"run.columns": list(scene.rigid.columns)})
+
+
+def motion(scene: Scene) -> History:
+    """Return the exact motion of a scene."""
+    solver = get_solver("rigid-exact")
+    assert solver.refusal(scene) is None
+    history = solver.solve(scene).history
+    assert history is not None
+    return history
+
+
+def refusal(scene: Scene) -> str:
+    """Return why a scene is refused."""
+    return get_solver("rigid-exact").refusal(scene) or ""
+
+
+@pytest.mark.parametrize(("name", "case"), CASES, ids=[f"{name} {case.label}" for name, case in CASES])
+def test_the_exact_motion_passes_its_problem(name: str, case: BoxCase) -> None:
+    problem = box_problems()[name]
+    scene = problem.scene(case)
+    quantities = (case.quantities or problem.quantities)(scene)
+    assert quantities
+    if case.quantities is not None:
+        assert "until the box comes back" in refusal(scene) or "overturns" in refusal(scene)
+        return
+    for one in measured(quantities, motion(scene)):
+        assert one.word == "PASS", one
+        assert one.beside is not None and one.beside < 0.05
+
+
+def test_how_many_cases_of_the_grid_are_beyond_the_exact_motion() -> None:
+    assert sum(case.quantities is not None for _, case in CASES) == OVERTURNING
+
+
+def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> None:
+    pushed = BOX | {"velocity": [-1.0, 0.0]}
+    for friction, back in ((25.0, 0.0), (10.0, 1.0)):
+        history = motion(scene_of(pushed, slope=20.0, friction=friction, steps=300))
+        grip = math.tan(math.radians(friction)) * 9.81 * math.cos(math.radians(20))
+        along = 9.81 * math.sin(math.radians(20))
+        stop = 1 / (along + grip)
+        moved = -stop / 2 + back * (along - grip) * (3 - stop) ** 2 / 2
+        assert history.columns["x_1"][-1] == pytest.approx(moved, rel=1e-9)
+
+
+@pytest.mark.parametrize(("e", "gravity"), [(0.6, 9.81), (0.9, 1.62), (0.0, 9.81)])
+def test_bounces_follow_the_geometric_series(e: float, gravity: float) -> None:
+    history = motion(scene_of(BOX | {"lift": 0.4}, restitution=e, gravity=gravity, step=1e-3, steps=6000))
+    y = history.columns["y_1"] - 0.25
+    first = math.sqrt(2 * 0.4 / gravity)
+    rest = first * (1 + 2 * e / (1 - e))
+    assert np.all(y[history.time > rest + 1e-6] == 0)
+    assert np.all(history.columns["force_1"][history.time > rest + 1e-6] == pytest.approx(700 * 0.4 * gravity))
+    assert np.all(history.columns["force_1"][history.time < rest - 1e-3] == 0)
+    if e:
+        bounce = (history.time > first) & (history.time < first * (1 + 2 * e))
+        assert max(y[bounce]) == pytest.approx(0.4 * e**2, rel=1e-4)
+
+
+def test_contact_and_flight_on_a_spring_repeat() -> None:
+    scene = scene_of(BOX | {"lift": 0.1}, stiffness=1e5, restitution=1.0, step=1e-3, steps=3000)
+    history = motion(scene)
+    mass = 280.0
+    y = 0.35
+    v = 0.0
+    expected = []
+    for n in range(3000 * 50):  # velocity Verlet
+        a = -9.81 + max(0.0, 1e5 * (0.25 - y)) / mass
+        y += v * 2e-5 + a * 2e-10
+        v += (a - 9.81 + max(0.0, 1e5 * (0.25 - y)) / mass) * 1e-5
+        if n % 50 == 49:
+            expected.append(y)
+    np.testing.assert_allclose(history.columns["y_1"], expected, atol=1e-5)
+    np.testing.assert_allclose(history.columns["force_1"], 1e5 * np.maximum(0, 0.25 - history.columns["y_1"]))
+
+
+def test_the_force_below_a_box_about_its_corner_is_its_weight_and_what_accelerates_it() -> None:
+    scene = box_problems()["toppling"].scene()
+    assert scene.rigid is not None
+    scene = scene.with_values({"time.step": 1e-3, "time.steps": 1200, "run.columns": list(scene.rigid.columns)})
+    history = motion(scene)
+    box = scene.rigid.box[0]
+    upwards = np.diff(history.columns["y_1"], 2) / 1e-6
+    np.testing.assert_allclose(history.columns["force_1"][1:-1] / box.mass, 9.81 + upwards, rtol=1e-4)
+    # the corner stays where it is
+    corner = [history.columns["x_1"], history.columns["y_1"]]
+    angle = history.columns["angle_1"]
+    corner[0] = corner[0] - 0.5 * np.cos(angle) + 1.5 * np.sin(angle)
+    corner[1] = corner[1] - 0.5 * np.sin(angle) - 1.5 * np.cos(angle)
+    np.testing.assert_allclose(corner[0], -0.5, atol=1e-7)
+    np.testing.assert_allclose(corner[1], 0.0, atol=1e-7)
+
+
+def test_a_box_about_its_right_corner_is_the_mirror_image() -> None:
+    scene = box_problems()["toppling"].scene()
+    left = motion(scene)
+    spun = scene.rigid.box[0].model_dump()
+    spun |= {"spin": -spun["spin"], "velocity": [-spun["velocity"][0], spun["velocity"][1]]}
+    right = motion(scene.with_values({"rigid.box": [spun]}))
+    for part, sign in (("x_1", -1), ("y_1", 1), ("angle_1", -1)):
+        np.testing.assert_allclose(right.columns[part], sign * left.columns[part], atol=1e-9)
+
+
+def test_no_corner_of_a_tumbling_box_is_below_the_ground() -> None:
+    scene = box_problems()["tumbling"].scene().with_values({"time.step": 1e-3, "time.steps": 10000})
+    history = motion(scene)
+    x = history.columns["angle_1"]
+    half = [np.abs(part) for part in (0.5 * np.sin(x), 0.25 * np.cos(x))]
+    assert float(np.min(history.columns["y_1"] - half[0] - half[1])) > -1e-9
+
+
+SHIFTED = BOX | {"x": 0.45}
+
+
+@pytest.mark.parametrize(
+    ("boxes", "rigid", "why"),
+    [
+        ([BOX, BOX | {"lift": 0.1}], {}, "several boxes that move at t = 0 or do not touch"),
+        ([BOX, BOX], {"slope": 20.0, "friction": 10.0}, "several boxes that slide"),
+        ([BOX, SHIFTED], {}, "overturn, and those from number 2 up"),
+        ([BOX, BOX, BOX], {"slope": 29.0, "friction": 40.0}, "overturn, and those from number 1 up"),
+        ([BOX, BOX], {"stiffness": 1e6}, "on contact of given stiffness"),
+        ([BOX], {"stiffness": 1e6, "restitution": 0.5}, "with restitution = 1"),
+        ([BOX | {"tilt": 5.0}], {"stiffness": 1e6}, "a box that turns on contact"),
+        ([BOX | {"tilt": 5.0, "lift": 1.0}], {}, "friction = 0 and restitution = 1"),
+        ([BOX | {"tilt": 5.0, "lift": 1.0}], {"friction": 20.0, "restitution": 1.0}, "friction = 0"),
+        ([BOX | {"lift": 1.0, "velocity": [1.0, 0.0]}], {"friction": 20.0}, "lands with friction"),
+        ([BOX | {"velocity": [1.0, 0.0]}], {"friction": 60.0}, "friction overturns"),
+        ([BOX | {"lift": 0.1}], {"base_amplitude": 0.1, "friction": 20.0}, "at rest on it at t = 0"),
+        ([BOX], {"base_amplitude": 0.1, "friction": 60.0, "base_frequency": 3.0}, "friction overturns"),
+        ([BOX], {"base_amplitude": 0.1, "slope": 1.0}, "on level, rigid ground"),
+    ],
+)
+def test_other_motions_are_refused_by_name(boxes: list[dict[str, Any]], rigid: dict[str, Any], why: str) -> None:
+    assert why in refusal(scene_of(*boxes, **rigid))
+
+
+def test_a_corner_that_slips_is_refused() -> None:
+    scene = box_problems()["toppling"].scene()
+    assert "friction must be above 13.3" in refusal(scene.with_values({"rigid.friction": 13.0}))
+    assert not refusal(scene.with_values({"rigid.friction": 14.0}))
+
+
+def test_boxes_that_are_not_above_each_other_stand_as_long_as_their_weight_is_carried() -> None:
+    scene = scene_of(BOX, BOX | {"x": 0.35, "density": 300.0}, friction=20.0)
+    columns = motion(scene).columns
+    assert columns["x_2"][-1] == 0.35
+    assert columns["force_1"][-1] == pytest.approx(9.81 * 0.4 * 1000)
+    assert columns["force_2"][-1] == pytest.approx(9.81 * 0.4 * 300)

@@ -1,0 +1,751 @@
+"""The problems of rigid boxes: what is measured on an answer, its exact value, and the band around it.
+
+An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what
+one per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it
+changes nothing for who uses the answer.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from validation.errors import InputError
+from validation.metrics import boxes as measures
+from validation.runs.history import Array, History
+from validation.scenes.rigid import FORCE, RigidSection
+from validation.scenes.scene import Scene, load_scene
+from validation.theory.boxes import (
+    ShakenBox,
+    SpringImpact,
+    critical_spin,
+    friction_margin,
+    greatest_rotation,
+    sliding_acceleration,
+)
+from validation.theory.rocking import Rectangle
+
+PREFIX = "rigid-"  # of the scenes of problems
+UNKNOWN = 0.01  # relative error of a datum that nobody knows better
+MINUTE = 60.0  # s
+SETTLED = 0.5  # s after a landing: what moves away then has rebounded
+ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is inside
+EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
+
+
+@dataclass(frozen=True)
+class BoxQuantity:
+    """A number of an answer.
+
+    Attributes
+    ----------
+    name, unit
+        What it is.
+    exact
+        The exact value.
+    low, high
+        Edges of the band, both inside.
+    scale
+        What an error is told as a share of, in the number's unit; `of` says it in words.
+    reason
+        Why the band ends there.
+    measure
+        Function of the answer; None where it cannot be measured on it.
+    optional
+        Whether an answer may do without it, since it is of a column beside the positions.
+    """
+
+    name: str
+    unit: str
+    exact: float
+    low: float
+    high: float
+    scale: float
+    of: str
+    reason: str
+    measure: Callable[[History], float | None]
+    optional: bool = False
+
+    def passes(self, value: float) -> bool:
+        """Whether a value is in the band."""
+        margin = ROUNDING * max(abs(self.low), abs(self.high))
+        return self.low - margin <= value <= self.high + margin
+
+    def beside_band(self, value: float) -> float:
+        """Return the error over the part of the band on its side: 1 is just allowed."""
+        room = self.high - self.exact if value > self.exact else self.exact - self.low
+        error = abs(value - self.exact)
+        if error == 0:
+            return 0.0
+        return error / room if room > 0 else math.inf
+
+
+@dataclass(frozen=True)
+class MeasuredQuantity:
+    """A number of an answer beside its exact value; None where it could not be measured."""
+
+    quantity: BoxQuantity
+    value: float | None
+    is_reported: bool = True  # whether the columns are there that it is measured on
+
+    @property
+    def optional_and_absent(self) -> bool:
+        """Whether an answer does without a number that it may do without."""
+        return self.quantity.optional and self.value is None
+
+    @property
+    def word(self) -> str:
+        """PASS, FAIL or "not reported"."""
+        if self.optional_and_absent or not self.is_reported:
+            return "not reported"
+        if self.value is None:
+            return "FAIL"
+        return "PASS" if self.quantity.passes(self.value) else "FAIL"
+
+    @property
+    def beside(self) -> float | None:
+        """Error over band; infinite where a number that the positions hold cannot be measured."""
+        if self.optional_and_absent or not self.is_reported:
+            return None
+        if self.value is None:
+            return math.inf
+        return self.quantity.beside_band(self.value)
+
+
+@dataclass(frozen=True)
+class BoxCase:
+    """A case of a problem.
+
+    Attributes
+    ----------
+    label
+        The values that it differs by from the problem's own scene, in words; empty for that one.
+    values
+        The same as keys of a scene.
+    quantities
+        What is measured on its answers, where it is another question than that of the problem's own scene.
+    """
+
+    label: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    quantities: Callable[[Scene], tuple[BoxQuantity, ...]] | None = None
+
+
+@dataclass(frozen=True)
+class BoxProblem:
+    """A problem of rigid boxes.
+
+    Attributes
+    ----------
+    name
+        Of the problem; its scene is `PREFIX` + name.
+    quantities
+        Function of a scene that returns what is measured on its answers.
+    variants
+        The cases beside the problem's own scene.
+    curve
+        What the case of a curve of error over cost differs by from the scene; None where the problem has no curve.
+    forces
+        Whether forces are asked for where a program reports them.
+    changeable
+        Keys of `[rigid]` that may be others than in the problem's scene, so that the same numbers answer the question.
+    """
+
+    name: str
+    quantities: Callable[[Scene], tuple[BoxQuantity, ...]]
+    variants: tuple[BoxCase, ...] = ()
+    curve: Mapping[str, Any] | None = None
+    forces: bool = False
+    changeable: tuple[str, ...] = ()
+
+    @property
+    def cases(self) -> tuple[BoxCase, ...]:
+        """All cases, the problem's own scene first."""
+        return (BoxCase(""), *self.variants)
+
+    def scene(self, case: BoxCase | None = None) -> Scene:
+        """Return the scene of a case; the problem's own by default."""
+        own_scene = _scene(self.name)
+        if case is None or not case.label:
+            return self._with_forces(own_scene)
+        changed = own_scene.with_values(dict(case.values))
+        return self._with_forces(changed).model_copy(update={"name": f"{PREFIX}{self.name}[{case.label}]"})
+
+    def curve_scene(self, refine: int) -> Scene:
+        """Return the scene of a point of the curve of error over cost."""
+        if self.curve is None:
+            raise ValueError(f"{self.name}: must have a curve, got none")
+        scene = _scene(self.name).with_values({**self.curve, "rigid.refine": refine})
+        return scene.model_copy(update={"name": f"{PREFIX}{self.name}[curve, step halved {refine} times]"})
+
+    def _with_forces(self, scene: Scene) -> Scene:
+        if not self.forces:
+            return scene
+        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
+
+
+@functools.cache
+def _scene(name: str) -> Scene:
+    return load_scene(PREFIX + name)
+
+
+def boxes_of(scene: Scene) -> RigidSection:
+    """Return the rigid boxes of a scene.
+
+    Raises
+    ------
+    InputError
+        It has none.
+    """
+    if scene.rigid is None:
+        raise InputError("must be there", source=scene.name, field="rigid", value=scene.kind_in_words)
+    return scene.rigid
+
+
+def measured(quantities: Sequence[BoxQuantity], history: History) -> tuple[MeasuredQuantity, ...]:
+    """Return the numbers of an answer."""
+    values = []
+    for quantity in quantities:
+        try:
+            value = quantity.measure(history)
+        except KeyError:  # of a column that the answer withholds
+            values.append(MeasuredQuantity(quantity, None, is_reported=False))
+            continue
+        if value is not None and not math.isfinite(value):
+            value = None
+        values.append(MeasuredQuantity(quantity, value))
+    return tuple(values)
+
+
+def around(name: str, unit: str, exact: float, changed: Sequence[float], reason: str, **others: Any) -> BoxQuantity:
+    """Return a number whose band reaches as far to both sides as changed data move it, told as a share of itself."""
+    half = max(abs(value - exact) for value in changed)
+    band = {"low": exact - half, "high": exact + half, "scale": abs(exact), "of": "the exact value"}
+    return BoxQuantity(name, unit, exact, reason=reason, **{**band, **others})
+
+
+# ---- standing -------------------------------------------------------------------------------------------------------
+
+
+def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return the creep of a box that stands on a slope, or how far one slides that does not."""
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    if rigid.friction > rigid.slope:
+        allowed = 1e3 * UNKNOWN * box.width / MINUTE
+        return (
+            BoxQuantity(
+                "creep",
+                "mm/s",
+                exact=0.0,
+                low=0.0,
+                high=allowed,
+                scale=allowed / UNKNOWN,
+                of="the width in a minute",
+                reason="it stands exactly; the place of a block is known to one per cent of its width, and a creep "
+                "that moves it further in a minute changes the answer",
+                measure=lambda history: 1e3 * measures.creep(history),
+            ),
+        )
+    duration = scene.time.duration
+    distances = []
+    for factor in (1.0, *EITHER_WAY):
+        friction = math.degrees(math.atan(factor * rigid.friction_coefficient))
+        distances.append(sliding_acceleration(rigid.slope, friction, rigid.gravity) * duration**2 / 2)
+    return (
+        around(
+            "distance slid",
+            "m",
+            distances[0],
+            distances[1:],
+            "one per cent of tan(phi), which is not known better, moves it as far",
+            measure=lambda history: float(measures.column(history, "x")[-1] - box.x),
+        ),
+    )
+
+
+FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
+STANDING_CASES = tuple(
+    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 40}) for friction in FRICTIONS
+)
+
+
+def standing_threshold(scene: Scene) -> BoxQuantity:
+    """Return the least friction with which a box stands, half-way between two of the grid."""
+    slope = boxes_of(scene).slope
+    margin = friction_margin(slope, UNKNOWN)
+    return BoxQuantity(
+        "stands from a friction of",
+        "deg",
+        exact=slope,
+        low=slope - margin,
+        high=slope + margin,
+        scale=slope,
+        of="the slope",
+        reason="it stands where the angle of friction is the slope's or more, and tan(phi) is not known better than to "
+        "one per cent",
+        measure=lambda history: None,
+    )
+
+
+# ---- bounces --------------------------------------------------------------------------------------------------------
+
+
+def restitution(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return the rebound over the speed of a landing without weight."""
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    speed = -box.velocity[1]
+    landing = box.lift / speed
+    return (
+        BoxQuantity(
+            "restitution",
+            "1",
+            exact=rigid.restitution,
+            low=rigid.restitution - UNKNOWN,
+            high=rigid.restitution + UNKNOWN,
+            scale=1.0,
+            of="the landing speed",
+            reason="one per cent of the speed of landing: no rebound is known better",
+            measure=lambda history: measures.speed_between(history, "y", landing + SETTLED) / speed,
+        ),
+    )
+
+
+RESTITUTIONS = (0.0, 0.5, 1.0)
+SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs leave restitution away below a threshold, most often from 0.2 to 1 m/s
+LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of the curves' first runs
+
+
+def _restitution_cases() -> tuple[BoxCase, ...]:
+    cases = []
+    own_box = {"width": 1.0, "height": 1.0, "density": 2500.0}
+    for e in RESTITUTIONS:
+        for speed in SPEEDS:
+            if (e, speed) == (0.5, 1.0):  # the problem's own scene
+                continue
+            box = own_box | {"lift": LANDING * speed, "velocity": [0.0, -speed]}
+            cases.append(BoxCase(f"e = {e:g}, {speed:g} m/s", {"rigid.restitution": e, "rigid.box": [box]}))
+    return tuple(cases)
+
+
+def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
+    rigid = boxes_of(scene)
+    first = measures.first_energy(rigid)
+    reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
+    of = "the energy at the start"
+    return (
+        BoxQuantity(
+            "energy in the end over that at the start",
+            "1",
+            exact=1.0,
+            low=1.0 - UNKNOWN,
+            high=1.0 + UNKNOWN,
+            scale=1.0,
+            of=of,
+            reason=reason,
+            measure=lambda history: measures.last_energy(history, rigid) / first,
+        ),
+        BoxQuantity(
+            "largest gain of energy",
+            "1",
+            exact=0.0,
+            low=0.0,
+            high=UNKNOWN,
+            scale=1.0,
+            of=of,
+            reason=reason,
+            measure=lambda history: measures.largest_gain(history, rigid),
+        ),
+    )
+
+
+def bouncing(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return the energy of a box that bounces without loss."""
+    return _energy(scene)
+
+
+def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return energy and momentum along the ground of a box that tumbles without friction or loss.
+
+    Its motion is chaotic; these are not.
+    """
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    landing_speed = math.sqrt(2 * rigid.gravity * box.lift)
+    return (
+        *_energy(scene),
+        BoxQuantity(
+            "change of the speed along the ground",
+            "m/s",
+            exact=0.0,
+            low=0.0,
+            high=UNKNOWN * landing_speed,
+            scale=landing_speed,
+            of="the landing speed",
+            reason="without friction nothing acts along the ground; one per cent of the speed of landing is what a "
+            "coefficient of friction of 0.01 takes in one impact",
+            measure=lambda history: abs(
+                measures.speed_between(history, "x", scene.time.duration - measures.LATE) - box.velocity[0]
+            ),
+        ),
+    )
+
+
+# ---- piles ----------------------------------------------------------------------------------------------------------
+
+
+def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return how far the uppermost of some boxes at rest moves, and the force below the lowest."""
+    rigid = boxes_of(scene)
+    top = len(rigid.box)
+    start = rigid.starts[-1]
+    height = start[1] + rigid.box[-1].reach
+    width = min(box.width for box in rigid.box)
+    weight = sum(box.mass for box in rigid.box) * rigid.gravity
+    drift = 1e3 * UNKNOWN * width
+    sinking = 1e3 * UNKNOWN * height
+
+    def force(history: History) -> float | None:
+        values = history.columns.get(f"{FORCE}_1")
+        if values is None or not np.isfinite(values).all():
+            return None
+        late = -max(1, len(values) // 10)
+        return float(np.mean(values[late:]))
+
+    return (
+        BoxQuantity(
+            "drift of the top",
+            "mm",
+            exact=0.0,
+            low=0.0,
+            high=drift,
+            scale=drift / UNKNOWN,
+            of="the width",
+            reason="it stands exactly; the place of a block is known to one per cent of its width",
+            measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, "x", top) - start[0]))),
+        ),
+        BoxQuantity(
+            "sinking of the top",
+            "mm",
+            exact=0.0,
+            low=-sinking,
+            high=sinking,
+            scale=sinking / UNKNOWN,
+            of="the height",
+            reason="rigid boxes do not sink; the height of what is piled up is known to one per cent",
+            measure=lambda history: 1e3 * float(start[1] - measures.column(history, "y", top)[-1]),
+        ),
+        BoxQuantity(
+            "force below the lowest box",
+            "N",
+            exact=weight,
+            low=(1 - UNKNOWN) * weight,
+            high=(1 + UNKNOWN) * weight,
+            scale=weight,
+            of="the weight",
+            reason="the weight above it, which one per cent of the density changes by as much; mean of the last tenth",
+            measure=force,
+            optional=True,
+        ),
+    )
+
+
+LIGHT = {"width": 1.0, "height": 1.0, "density": 10.0}
+RATIOS = (1, 10, 1000)  # of the mass of the upper box to that of the lower one; 100 is the problem's own
+HEAVY_TOP_CASES = tuple(
+    BoxCase(f"mass ratio {ratio}", {"rigid.box": [LIGHT, LIGHT | {"density": LIGHT["density"] * ratio}]})
+    for ratio in RATIOS
+)
+
+
+# ---- toppling -------------------------------------------------------------------------------------------------------
+
+
+def rectangle_of(scene: Scene) -> Rectangle:
+    """Return the first box of a scene."""
+    rigid = boxes_of(scene)
+    return Rectangle(rigid.box[0].width, rigid.box[0].height, rigid.gravity)
+
+
+def started_about_corner(scene: Scene, spin: float) -> dict[str, Any]:
+    """Return the first box of a scene, which lies flat, with a spin about its lower left corner, as keys of a box."""
+    box = boxes_of(scene).box[0]
+    sign = math.copysign(1.0, spin)  # to the right it turns about the right one
+    velocity = [-spin * box.height / 2, sign * spin * box.width / 2]
+    return {"width": box.width, "height": box.height, "density": box.density, "velocity": velocity, "spin": spin}
+
+
+def _rotation(scene: Scene) -> Callable[[History], float]:
+    start = boxes_of(scene).starts[0][2]
+    return lambda history: measures.peak(np.abs(measures.column(history, "angle") - start))
+
+
+def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
+    box = rectangle_of(scene)
+    spin = abs(boxes_of(scene).box[0].spin)
+    widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
+    if spin >= min(critical_spin(other) for other in widths):
+        return overturning(scene)
+    rotation = _rotation(scene)
+    return (
+        around(
+            "greatest rotation",
+            "deg",
+            math.degrees(greatest_rotation(box, spin)),
+            [math.degrees(greatest_rotation(other, spin)) for other in widths],
+            "one per cent of the width changes it by as much",
+            measure=lambda history: math.degrees(rotation(history)),
+        ),
+    )
+
+
+def overturning(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return whether a box overturns."""
+    box = rectangle_of(scene)
+    rotation = _rotation(scene)
+    exact = float(abs(boxes_of(scene).box[0].spin) > critical_spin(box))
+    return (
+        BoxQuantity(
+            "overturns",
+            "1",
+            exact=exact,
+            low=exact,
+            high=exact,
+            scale=1.0,
+            of="",
+            reason="1 where the centre passes above the corner, by the energy at the start",
+            measure=lambda history: float(rotation(history) > box.alpha),
+        ),
+    )
+
+
+def toppling_threshold(scene: Scene) -> BoxQuantity:
+    """Return the least spin that overturns over the exact one, half-way between two of the grid."""
+    box = rectangle_of(scene)
+    widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
+    return around(
+        "overturns from a spin of",
+        "1",
+        1.0,
+        [critical_spin(other) / critical_spin(box) for other in widths],
+        "one per cent of the width changes the spin that just overturns it by as much",
+        of="the exact one",
+        measure=lambda history: None,
+    )
+
+
+SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
+DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
+
+
+def _toppling_cases() -> tuple[BoxCase, ...]:
+    scene = _scene("toppling")
+    critical = critical_spin(rectangle_of(scene))
+    cases = []
+    for factor in SPINS:
+        box = started_about_corner(scene, factor * critical)
+        cases.append(BoxCase(f"spin {factor:g} of critical", {"rigid.box": [box], "time.steps": DECIDED}, overturning))
+    return tuple(cases)
+
+
+# ---- shaken ---------------------------------------------------------------------------------------------------------
+
+
+def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
+    """Return the first box of a scene on its moving ground, tan(phi) multiplied by a factor."""
+    rigid = boxes_of(scene)
+    friction = factor * rigid.friction_coefficient
+    return ShakenBox(rigid.base_amplitude, rigid.base_frequency, friction, rigid.gravity)
+
+
+def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return how far a box slips on shaken ground."""
+    rigid = boxes_of(scene)
+    time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    exact = shaken_box(scene).slip(time)
+    changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
+    ground = shaken_box(scene).ground(time)
+    why = "one per cent of tan(phi), which is not known better, changes it by as much"
+    width = {"scale": 1e3 * float(np.max(np.abs(exact))), "of": "the largest slip"}
+
+    def slip(history: History) -> Array:
+        moved: Array = measures.column(history, "x") - rigid.box[0].x - ground
+        return moved
+
+    return (
+        around(
+            "slip in the end",
+            "mm",
+            1e3 * float(exact[-1]),
+            [1e3 * float(other[-1]) for other in changed],
+            why,
+            measure=lambda history: 1e3 * float(slip(history)[-1]),
+            **width,
+        ),
+        around(
+            "largest slip",
+            "mm",
+            1e3 * float(np.max(np.abs(exact))),
+            [1e3 * float(np.max(np.abs(other))) for other in changed],
+            why,
+            measure=lambda history: 1e3 * float(np.max(np.abs(slip(history)))),
+            **width,
+        ),
+    )
+
+
+# ---- impact on a spring ---------------------------------------------------------------------------------------------
+
+
+def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> SpringImpact:
+    """Return the landing of the first box of a scene on its spring, stiffness and mass multiplied by factors.
+
+    Raises
+    ------
+    InputError
+        The scene gives no stiffness.
+    """
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    if rigid.stiffness is None:
+        raise InputError("must be given in this problem", source=scene.name, field="rigid.stiffness", value="nothing")
+    speed = math.sqrt(box.velocity[1] ** 2 + 2 * rigid.gravity * box.lift)
+    return SpringImpact(mass * box.mass, stiffness * rigid.stiffness, rigid.gravity, speed)
+
+
+def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
+    """Return force, duration and rebound of a landing on a spring."""
+    rigid = boxes_of(scene)
+    box = rigid.box[0]
+    exact = impact_of(scene)
+    factors = [(factor, 1.0) for factor in EITHER_WAY] + [(1.0, factor) for factor in EITHER_WAY]
+    changed = [impact_of(scene, *pair) for pair in factors]
+    why = "one per cent of stiffness or density, which are not known better, changes it by as much"
+
+    def gap(history: History) -> Array:
+        lifted: Array = measures.column(history, "y") - box.reach
+        return lifted
+
+    def reported(history: History) -> float | None:
+        values = history.columns.get(f"{FORCE}_1")
+        return None if values is None else measures.peak(values)
+
+    def rebound(history: History) -> float | None:
+        flying = measures.in_flight(history, rigid)
+        flying &= history.time > lands + exact.duration
+        if not flying.any():
+            return None
+        energy = float(np.median(measures.energies(history, rigid)[flying])) + rigid.gravity * (
+            measures.lowest_centre(box) - box.reach
+        )
+        return math.sqrt(max(0.0, 2 * energy))
+
+    lands = (exact.speed + box.velocity[1]) / rigid.gravity
+    force = [1e-3 * other.peak_force for other in changed]
+    return (
+        around(
+            "peak force by the sinking",
+            "kN",
+            1e-3 * exact.peak_force,
+            force,
+            why,
+            measure=lambda history: 1e-3 * exact.stiffness * max(0.0, measures.peak(-gap(history))),
+        ),
+        around(
+            "peak force as reported",
+            "kN",
+            1e-3 * exact.peak_force,
+            force,
+            why,
+            measure=lambda history: None if reported(history) is None else 1e-3 * float(reported(history) or 0.0),
+            optional=True,
+        ),
+        around(
+            "time of contact",
+            "ms",
+            1e3 * exact.duration,
+            [1e3 * other.duration for other in changed],
+            why,
+            measure=lambda history: _times(1e3, measures.contact_time(history, gap(history))),
+        ),
+        around(
+            "speed of the rebound",
+            "m/s",
+            exact.speed,
+            [factor * exact.speed for factor in EITHER_WAY],
+            "without loss it is the speed of landing, which is not known to better than one per cent",
+            measure=rebound,
+        ),
+    )
+
+
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
+
+
+# ---- all of them ----------------------------------------------------------------------------------------------------
+
+
+ASKS = {
+    "standing": "A box on a slope that friction holds: does it stand for a minute, and from which friction on?",
+    "restitution": "A box thrown flat at the ground: what is asked of its rebound, and what comes back?",
+    "bouncing": "A box that bounces without loss for a minute: does its energy stay?",
+    "tumbling": "A tilted box that tumbles without friction or loss: do energy and momentum stay?",
+    "pile": "Ten equal boxes on each other at rest: do they stay, and what is the force below?",
+    "heavy-top": "A heavy box on a light one: do both stay, up to which mass ratio?",
+    "toppling": "A slender box started about its corner: how far it turns, and from which spin on it overturns.",
+    "shaken": "A box on ground that shakes more than friction can pass on: how far it slips.",
+    "impact": "A box that falls on a spring of given stiffness: peak force, time of contact, rebound.",
+}
+
+
+@functools.cache
+def box_problems() -> Mapping[str, BoxProblem]:
+    """Return the problems of rigid boxes by name."""
+    problems = (
+        BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}, changeable=("friction", "slope")),
+        BoxProblem("restitution", restitution, _restitution_cases(), {}, changeable=("restitution",)),
+        BoxProblem("bouncing", bouncing, curve={"time.steps": 120}),
+        BoxProblem("tumbling", tumbling),
+        BoxProblem("pile", pile, forces=True),
+        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, forces=True),
+        BoxProblem("toppling", toppling, _toppling_cases(), {}),
+        BoxProblem("shaken", shaken, curve={"time.steps": 60}),
+        BoxProblem("impact", impact, curve={}, forces=True),
+    )
+    return {one.name: one for one in problems}
+
+
+def problem_posed(scene: Scene) -> BoxProblem:
+    """Return the problem that a scene of rigid boxes poses: one of the suite's, some of its data perhaps changed.
+
+    Raises
+    ------
+    InputError
+        It is none of them; what is measured on any other scene of boxes, and against what, nobody has said.
+    """
+    name = scene.name.removeprefix(PREFIX).partition("[")[0]
+    names = ", ".join(ASKS)
+    if name not in ASKS or not scene.name.startswith(PREFIX):
+        rule = f"must be one of {names}: rigid boxes are judged by the numbers of a problem"
+        raise InputError(rule, source=scene.name, field="rigid", advice="name the problem, and use --set")
+    problem = box_problems()[name]
+    own_scene = problem.scene()
+    rigid = boxes_of(scene)
+    for field_name in RigidSection.model_fields:
+        is_changed = getattr(rigid, field_name) != getattr(boxes_of(own_scene), field_name)
+        if is_changed and field_name not in (*problem.changeable, "refine"):
+            free = " and ".join(f"rigid.{key}" for key in problem.changeable) or "nothing"
+            rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
+            raise InputError(rule, source=scene.name, field=f"rigid.{field_name}")
+    same_time = (scene.time.step, scene.time.steps) == (own_scene.time.step, own_scene.time.steps)
+    if not same_time:
+        raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
+    return problem

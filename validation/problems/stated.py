@@ -1,0 +1,187 @@
+"""What a JSON file states, checked against a model of plain data: every defect with the place of its value."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from validation.errors import InputError
+from validation.problems.data import Data
+from validation.problems.defects import Defects, Place
+from validation.runs.regular import regular
+from validation.scenes.scene import rule_and_value
+from validation.scenes.unknown import clip
+
+LARGEST_FILE = 1_000_000  # bytes
+DECODER = json.JSONDecoder()
+BLANKS = " \t\r\n"
+Stated = TypeVar("Stated", bound=Data)
+Address = tuple[str | int, ...]  # keys and indices that lead to a value
+RULES = {  # in the place of what pydantic says of a pattern or of each of several types
+    "settings_name": "must be small letters, digits, points, plus or minus signs",
+    "step_s": "must be a positive number [s], an object of such numbers by problem, or null",
+    "link": "must be an address that begins with http:// or https://, or null",
+}
+
+
+class Document:
+    """A JSON text, and where in it each key and each value stands.
+
+    Raises
+    ------
+    InputError
+        It is no JSON, or no object.
+    """
+
+    def __init__(self, path: Path, text: str) -> None:
+        self.path = path
+        self._text = text
+        self._keys: dict[Address, int] = {}
+        self._values: dict[Address, int] = {}
+        self.repeated: list[tuple[str, Place]] = []  # keys that stand twice, of which one value would be lost
+        try:
+            content = json.loads(text)
+            self._walk(0, ())
+        except json.JSONDecodeError as error:
+            before = text[: error.pos].rstrip(BLANKS)
+            last_comma = before.endswith(",") and text[error.pos : error.pos + 1] in ("}", "]")
+            comment = text[error.pos : error.pos + 1] in ("/", "#")
+            advice = "a comma after the last entry?" if last_comma else None
+            if comment:
+                advice = "JSON has no comments"
+            place = Place(path, error.lineno, error.colno)
+            raise InputError(f"must be JSON: {error.msg}", source=place, advice=advice) from None
+        except (RecursionError, ValueError):  # too many levels, or an integer of too many digits
+            raise InputError("must be JSON of few levels and short numbers", source=Place(path)) from None
+        if not isinstance(content, dict):
+            raise InputError("must be an object", source=Place(path, 1, 1), value=type(content).__name__)
+        self.content: dict[str, Any] = content
+
+    def place(self, address: Address, of_key: bool = False) -> Place:
+        """Return where a value stands, or its key; of what is absent, where that stands in which it is missed."""
+        positions = self._keys if of_key and address in self._keys else self._values
+        while address not in positions:
+            address = address[:-1]
+        before = self._text[: positions[address]]
+        return Place(self.path, before.count("\n") + 1, len(before) - before.rfind("\n"))
+
+    def known(self, address: Address) -> Address:
+        """Return the part of an address that stands in the text."""
+        while address not in self._values:
+            address = address[:-1]
+        return address
+
+    def _walk(self, start: int, address: Address) -> int:
+        """Note where a value and its parts stand, in a text that is JSON, and return where it ends."""
+        start = self._skip(start)
+        self._values[address] = start
+        opening = self._text[start]
+        if opening not in "{[":
+            return DECODER.raw_decode(self._text, start)[1]
+        at = self._skip(start + 1)
+        index = 0
+        while self._text[at] not in "}]":
+            part: str | int = index
+            if opening == "{":
+                key_start = at
+                part, at = DECODER.raw_decode(self._text, at)
+                is_repeated = (*address, part) in self._keys
+                self._keys[*address, part] = key_start
+                if is_repeated:
+                    self.repeated.append((str(part), self.place((*address, part), of_key=True)))
+                at = self._skip(at) + 1  # the colon
+            at = self._skip(self._walk(at, (*address, part)))
+            if self._text[at] == ",":
+                at = self._skip(at + 1)
+            index += 1
+        return at + 1
+
+    def _skip(self, at: int) -> int:
+        while self._text[at] in BLANKS:
+            at += 1
+        return at
+
+
+def read_text(path: Path, largest: int) -> str:
+    """Return the text of a file of at most so many bytes.
+
+    Raises
+    ------
+    InputError
+        It is no regular file, is too large, or is not in UTF-8.
+    OSError
+        It is not there, or is out of reach.
+    """
+    regular(path, largest)
+    content = path.read_bytes()
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = content[: error.start]
+        utf16 = content[:2] in (b"\xff\xfe", b"\xfe\xff")
+        raise InputError(
+            "must be text in UTF-8",
+            source=Place(path, before.count(b"\n") + 1, error.start - before.rfind(b"\n")),
+            value=f"the byte 0x{content[error.start]:02x}",
+            advice="it is UTF-16; save it as UTF-8" if utf16 else None,
+        ) from None
+
+
+def read_document(path: Path, advice: str) -> Document:
+    """Return a JSON file that holds an object.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is no such file.
+    """
+    try:
+        return Document(path, read_text(path, LARGEST_FILE))
+    except FileNotFoundError:
+        raise InputError("is required", source=Place(path), value="no such file", advice=advice) from None
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", source=Place(path)) from None
+
+
+def checked(document: Document, model: type[Stated], template: Mapping[str, Any], defects: Defects) -> Stated | None:
+    """Return what a document states as plain data; None, and the defects, where it does not conform."""
+    before = len(defects)
+    for key, place in document.repeated:
+        defects.add(place, "must appear once", field=key)
+    stated = None
+    try:
+        stated = model.model_validate(document.content)
+    except ValidationError as error:
+        for one in error.errors(include_url=False):
+            _add(document, model, dict(one), defects)
+    for field, blank in template.items():
+        if blank and document.content.get(field) == blank and not defects.has(document.path, field):
+            defects.add(document.place((field,)), "must be filled in", field=field, value=clip(blank))
+    return stated if len(defects) == before else None
+
+
+def _add(document: Document, model: type[Data], error: dict[str, Any], defects: Defects) -> None:
+    """Add one defect of a report of pydantic."""
+    address = document.known(tuple(error["loc"]))
+    rule, value = rule_and_value(error)
+    advice = None
+    if error["type"] == "extra_forbidden":
+        near = difflib.get_close_matches(str(error["loc"][-1]), model.model_fields, n=1)
+        advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(model.model_fields)}"
+    elif error["type"] == "missing":
+        address = tuple(error["loc"])
+    elif address and address[0] in RULES:
+        rule = RULES[str(address[0])]
+        value = ""
+    elif error["type"] == "string_pattern_mismatch":
+        rule = "must not be blank"
+    place = document.place(address, of_key=error["type"] == "extra_forbidden")
+    field = ".".join(map(str, address))
+    if defects.has(document.path, field):
+        return
+    defects.add(place, rule, field=field or None, value=value or clip(error["input"]), advice=advice)

@@ -1,0 +1,265 @@
+"""Closed forms of rigid boxes on a plane: sliding, bouncing, turning about a corner, a shaken ground, a spring below.
+
+A box of mass m, width w, height h and unit depth has R = sqrt(w^2 + h^2) / 2 and I_o = 4 m R^2 / 3 about a corner, and
+its centre stands above the corner after a rotation alpha = atan(w / h).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.runs.history import Array
+from validation.theory.rocking import Rectangle
+
+BISECTIONS = 200  # more than the digits of a double precision number need
+
+
+# ---- on a slope -----------------------------------------------------------------------------------------------------
+
+
+def sliding_acceleration(slope: float, friction: float, gravity: float) -> float:
+    """Acceleration down a slope of a box at rest, g (sin s - tan(phi) cos s), angles in deg [m/s2]; 0 where it stands.
+
+    Where tan(phi) >= tan(s) friction takes all of the weight's component along the slope.
+    """
+    excess = math.tan(math.radians(slope)) - math.tan(math.radians(friction))
+    return gravity * math.cos(math.radians(slope)) * max(excess, 0.0)
+
+
+def friction_margin(angle: float, share: float) -> float:
+    """Change of an angle of friction that changes tan(phi) by a share, share sin(phi) cos(phi) [deg]."""
+    phi = math.radians(angle)
+    return math.degrees(share * math.sin(phi) * math.cos(phi))
+
+
+# ---- about a corner -------------------------------------------------------------------------------------------------
+
+
+def critical_spin(box: Rectangle) -> float:
+    """Rate about a corner that just carries the centre above it [rad/s].
+
+    I_o w^2 / 2 = m g (R - h / 2).
+    """
+    radius = math.hypot(box.width, box.height) / 2
+    # R - h/2 without the difference of two nearly equal lengths of a slender box
+    rise = (box.width / 2) ** 2 / (radius + box.height / 2)
+    return math.sqrt(1.5 * box.gravity * rise) / radius
+
+
+def greatest_rotation(box: Rectangle, spin: float) -> float:
+    """Rotation at which a box that was started about a corner turns back [rad].
+
+    w^2 / 2 + P^2 cos(alpha) = P^2 cos(alpha - theta), P^2 = 3 g / (4 R).
+
+    Raises
+    ------
+    ValueError
+        It does not turn back.
+    """
+    ratio = spin / critical_spin(box)
+    if abs(ratio) >= 1:
+        raise ValueError(f"spin: must be below that which overturns it, got {abs(ratio):g} of it")
+    # 1 - cos(alpha - theta) = (1 - ratio^2) (1 - cos(alpha)), by half angles
+    half = math.asin(math.sqrt(1 - ratio**2) * math.sin(box.alpha / 2))
+    return box.alpha - 2 * half
+
+
+def return_time(box: Rectangle, spin: float) -> float:
+    """Time until a box that was started about a corner lies flat again [s]: it comes down as it rose."""
+    return 2 * box.quarter_period(greatest_rotation(box, spin))
+
+
+# ---- on a ground that moves -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class SlipPiece:
+    """A time in which a box sticks to the ground that moves, or slips in one direction.
+
+    Attributes
+    ----------
+    start
+        First instant [s].
+    displacement, velocity
+        Of the box at that instant [m], [m/s].
+    direction
+        Of its velocity against the ground, -1 or 1; 0 where it sticks.
+    """
+
+    start: float
+    displacement: float
+    velocity: float
+    direction: int
+
+
+@dataclass(frozen=True)
+class ShakenBox:
+    """A box on ground that moves by A (1 - cos(2 pi f t)) along itself, from rest on it.
+
+    While it slips its acceleration is -direction tan(phi) g. It sticks where both move alike and the ground's
+    acceleration is at most tan(phi) g.
+    """
+
+    amplitude: float  # A [m]
+    frequency: float  # f [Hz]
+    friction: float  # tan(phi)
+    gravity: float  # m/s2
+
+    @property
+    def rate(self) -> float:
+        """2 pi f [rad/s]."""
+        return 2 * math.pi * self.frequency
+
+    @property
+    def grip(self) -> float:
+        """Greatest acceleration that friction gives the box [m/s2]."""
+        return self.friction * self.gravity
+
+    @property
+    def peak(self) -> float:
+        """Greatest acceleration of the ground [m/s2]."""
+        return abs(self.amplitude) * self.rate**2
+
+    def ground(self, time: Array) -> Array:
+        """Displacement of the ground [m]."""
+        return np.asarray(self.amplitude * (1 - np.cos(self.rate * time)))
+
+    def ground_velocity(self, time: float) -> float:
+        """Velocity of the ground [m/s]."""
+        return self.amplitude * self.rate * math.sin(self.rate * time)
+
+    def ground_acceleration(self, time: float) -> float:
+        """Acceleration of the ground [m/s2]."""
+        return self.amplitude * self.rate**2 * math.cos(self.rate * time)
+
+    def pieces(self, duration: float) -> tuple[SlipPiece, ...]:
+        """Return the pieces of the motion from t = 0 on, those that begin before an instant [s]."""
+        if self.peak <= self.grip:
+            return (SlipPiece(0.0, 0.0, 0.0, 0),)
+        pieces = [self._next(0.0, 0.0)]
+        while True:
+            piece = pieces[-1]
+            end = self._slips_at(piece.start) if piece.direction == 0 else self._alike_at(piece)
+            if end >= duration:
+                return tuple(pieces)
+            if piece.direction == 0:
+                moved = float(self.ground(np.array(end)) - self.ground(np.array(piece.start)))
+                # where it begins to slip the ground outruns it
+                direction = -1 if self.ground_acceleration(end) > 0 else 1
+                velocity = self.ground_velocity(end)
+                pieces.append(SlipPiece(end, piece.displacement + moved, velocity, direction))
+            else:
+                lasted = end - piece.start
+                gained = piece.velocity * lasted - piece.direction * self.grip * lasted**2 / 2
+                pieces.append(self._next(end, piece.displacement + gained))
+
+    def _next(self, time: float, displacement: float) -> SlipPiece:
+        """Return the piece that begins where box and ground move alike."""
+        acceleration = self.ground_acceleration(time)
+        velocity = self.ground_velocity(time)
+        if abs(acceleration) <= self.grip:
+            return SlipPiece(time, displacement, velocity, 0)
+        return SlipPiece(time, displacement, velocity, -1 if acceleration > 0 else 1)
+
+    def _slips_at(self, start: float) -> float:
+        """Return the first instant from a start on at which the ground's acceleration is more than friction gives."""
+        # |cos(phase)| reaches grip / peak, from below, before each multiple of pi
+        before = math.acos(self.grip / self.peak)
+        phase = self.rate * start
+        cycle = math.ceil((phase + before) / math.pi - 1e-12)
+        return max(start, (cycle * math.pi - before) / self.rate)
+
+    def _alike_at(self, piece: SlipPiece) -> float:
+        """Return when the box that slips moves as the ground does again [s]."""
+
+        def relative(time: float) -> float:
+            velocity = piece.velocity - piece.direction * self.grip * (time - piece.start)
+            return piece.direction * (velocity - self.ground_velocity(time))
+
+        # The relative velocity turns where the ground accelerates as the box does; between, it is monotonic. It grows
+        # first, and is not above zero again at the end of the second such stretch at the earliest.
+        low = piece.start
+        for turn in self._turns(piece):
+            if relative(turn) <= 0:
+                break
+            low = turn
+        high = turn
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            if relative(middle) > 0:
+                low = middle
+            else:
+                high = middle
+        return high
+
+    def _turns(self, piece: SlipPiece) -> list[float]:
+        """Return the instants after a start at which the ground accelerates as the slipping box does [s]."""
+        cosine = -piece.direction * self.grip / (self.amplitude * self.rate**2)
+        angle = math.acos(cosine)
+        first = math.floor(self.rate * piece.start / (2 * math.pi))
+        # the box's velocity changes by grip * t while the ground's returns: they are alike within these cycles
+        last = first + 3 + math.ceil(self.peak / self.grip)
+        turns = []
+        for cycle in range(first, last):
+            turns += [(2 * math.pi * cycle + sign * angle) / self.rate for sign in (1, -1)]
+        return sorted(turn for turn in turns if turn > piece.start * (1 + 1e-12) + 1e-12 / self.rate)
+
+    def displacement(self, time: Array) -> Array:
+        """Return the displacement of the box at instants [m]."""
+        pieces = self.pieces(float(time[-1]))
+        index = np.searchsorted([piece.start for piece in pieces], time, side="right") - 1
+        moved = np.empty_like(time)
+        for number, piece in enumerate(pieces):
+            inside = index == number
+            since = time[inside] - piece.start
+            if piece.direction == 0:
+                ridden = self.ground(time[inside]) - self.ground(np.array(piece.start))
+                moved[inside] = piece.displacement + ridden
+            else:
+                slowed = piece.direction * self.grip * since**2 / 2
+                moved[inside] = piece.displacement + piece.velocity * since - slowed
+        return moved
+
+    def slip(self, time: Array) -> Array:
+        """Return the displacement of the box against the ground at instants [m]."""
+        return self.displacement(time) - self.ground(time)
+
+
+# ---- on a spring ----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class SpringImpact:
+    """A rigid mass that lands on a spring without loss, under its weight.
+
+    With w = sqrt(k / m) the sinking of the contact is (g / w^2) (1 - cos(w t)) + (v / w) sin(w t).
+    """
+
+    mass: float  # kg
+    stiffness: float  # k [N/m]
+    gravity: float  # m/s2
+    speed: float  # v of the landing [m/s]
+
+    @property
+    def rate(self) -> float:
+        """W, the circular frequency on the spring [rad/s]."""
+        return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def peak_force(self) -> float:
+        """Greatest force m g + sqrt((m g)^2 + k m v^2) [N]."""
+        weight = self.mass * self.gravity
+        return weight + math.sqrt(weight**2 + self.stiffness * self.mass * self.speed**2)
+
+    @property
+    def duration(self) -> float:
+        """Time of contact (2 / w) (pi - atan(v w / g)) [s]: pi / w without weight, a whole period without speed."""
+        return 2 / self.rate * (math.pi - math.atan2(self.speed * self.rate, self.gravity))
+
+    def sinking(self, time: Array) -> Array:
+        """Return how far the spring is pressed at instants since the landing [m]."""
+        phase = self.rate * time
+        return np.asarray(self.gravity / self.rate**2 * (1 - np.cos(phase)) + self.speed / self.rate * np.sin(phase))
