@@ -25,8 +25,8 @@ from peers.mujoco_model import Columns, March, model_text, refuse
 from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
-STEP = 0.0005  # s
-TIME_CONSTANT = 0.02  # s: that of MuJoCo's contact as it comes
+STEP = 0.00025  # s
+TIME_CONSTANT = 0.01  # s: half of that of MuJoCo's contact as it comes
 # Impedance: how much of what else pushes a contact counters; MuJoCo takes 0.9999 at most.
 REBOUND_IMPEDANCE = 0.9999
 REST_IMPEDANCE = 0.8
