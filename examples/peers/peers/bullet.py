@@ -45,7 +45,6 @@ class World:
         self.own_step = USUAL_STEP if default else min(STEP, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
         along, up = rigid.pull
-        self.pull = along
         self.bullet.setGravity(along, 0, up, physicsClientId=self.server)
         self.bullet.setTimeStep(step, physicsClientId=self.server)
         if not default:
@@ -169,10 +168,7 @@ class World:
         if self.ground_link != BASE:
             position = self.bullet.getJointState(self.ground, 0, physicsClientId=self.server)[0]
             velocity = base_velocity(self.scene, start, step, position)
-            # Gravity along a slope accelerates the link of the ground by as much, before it is moved.
-            self.bullet.resetJointState(
-                self.ground, 0, position, velocity - self.pull * step, physicsClientId=self.server
-            )
+            self.bullet.resetJointState(self.ground, 0, position, velocity, physicsClientId=self.server)
         self.bullet.stepSimulation(physicsClientId=self.server)
         if self.default:
             for number, (_, _, angle) in enumerate(self._free_poses()):
