@@ -180,6 +180,22 @@ def test_returns_the_asked_share_of_the_velocity_above_every_threshold(program: 
     assert velocity == pytest.approx(2.0 * restitution, abs=within)
 
 
+@pytest.mark.parametrize("program", of(*(name for name in WITH_RESTITUTION if name != DAMPED)))
+def test_turns_after_a_landing_on_a_corner_by_its_moment_of_inertia(program: Program) -> None:
+    """One impulse J = (1 + e) v / (1/m + r^2/I) at the lever r of the corner, without friction or gravity."""
+    box = {"width": 1.0, "height": 0.6, "tilt": 20.0, "lift": 0.2, "velocity": (0.0, -2.0)}
+    posed = scene(box, gravity=0.0, restitution=0.5, rows=12)
+    answer = program.solver().solve(posed)
+    one = posed.rigid.box[0]
+    tilt = math.radians(20.0)
+    lever = one.height / 2 * math.sin(tilt) - one.width / 2 * math.cos(tilt)
+    impulse = 1.5 * 2.0 / (1 / one.mass + lever**2 / one.inertia)
+    velocity = (answer["y_1"][-1] - answer["y_1"][-3]) * 30
+    spin = (answer["angle_1"][-1] - answer["angle_1"][-3]) * 30
+    assert velocity == pytest.approx(impulse / one.mass - 2.0, abs=0.02 * 2.0)  # the lever turns by a step at most
+    assert spin == pytest.approx(lever * impulse / one.inertia, rel=0.02)
+
+
 @pytest.mark.parametrize("program", of("pymunk", "box2d", "bullet", "mujoco"))
 def test_returns_it_at_a_crawl_with_the_chosen_settings(program: Program) -> None:
     posed = scene({"tilt": 45.0, "lift": 0.02, "velocity": (0.0, -0.1)}, gravity=0.0, restitution=0.5)

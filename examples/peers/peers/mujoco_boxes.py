@@ -94,7 +94,7 @@ class World:
             geom = f'<geom name="{GROUND}" type="box" size="{size}" mass="{mass!r}" {surface}/>'
             self.ground_start = (left + right) / 2
             position = f"{self.ground_start!r} 0 {-THICKNESS / 2!r}"
-            yield f'<body pos="{position}" gravcomp="1">{joint}{geom}</body>'
+            yield f'<body pos="{position}">{joint}{geom}</body>'
         else:
             yield f'<geom name="{GROUND}" type="plane" size="1 1 1" {surface}/>'
         slides = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
