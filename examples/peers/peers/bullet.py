@@ -56,11 +56,9 @@ class World:
             )
         self.ground, self.ground_link = self._ground()
         self.boxes = []
-        self.links = []
         for box, start in zip(rigid.box, rigid.starts, strict=True):
-            body, link = self._free(box, start) if default else self._planar(box, start)
+            body = self._free(box, start) if default else self._planar(box, start)
             self.boxes.append(body)
-            self.links.append(link)
         self.starts = rigid.starts
         self.turns = [start[2] for start in rigid.starts]
 
@@ -104,8 +102,7 @@ class World:
         rigid = boxes_of(self.scene)
         left, right = ground_ends(self.scene)
         shape = self._shape((right - left) / 2, THICKNESS, THICKNESS / 2)
-        self.ground_start = (left + right) / 2
-        position = [self.ground_start, 0.0, -THICKNESS / 2]
+        position = [(left + right) / 2, 0.0, -THICKNESS / 2]
         if rigid.base_amplitude:
             mass = HEAVY * sum(box.mass for box in rigid.box)
             body = self._linked(position, [(self.bullet.JOINT_PRISMATIC, [1, 0, 0])], [mass], shape)
@@ -119,7 +116,7 @@ class World:
             self._change(body, link, contactStiffness=rigid.stiffness / CORNERS, contactDamping=0.0)
         return body, link
 
-    def _free(self, box: BoxSection, start: Pose) -> tuple[int, int]:
+    def _free(self, box: BoxSection, start: Pose) -> int:
         """Return a box that is free in space."""
         x, y, angle = start
         body: int = self.bullet.createMultiBody(
@@ -132,9 +129,9 @@ class World:
         along, up = box.velocity
         self.bullet.resetBaseVelocity(body, [along, 0, up], [0, -box.spin, 0], physicsClientId=self.server)
         self._set(body, BASE)
-        return body, BASE
+        return body
 
-    def _planar(self, box: BoxSection, start: Pose) -> tuple[int, int]:
+    def _planar(self, box: BoxSection, start: Pose) -> int:
         """Return a box on joints that leave it the plane."""
         x, y, angle = start
         joints = [
@@ -150,7 +147,7 @@ class World:
             self.bullet.resetJointState(body, joint, value, velocity, physicsClientId=self.server)
         self._change(body, BASE, linearDamping=0.0, angularDamping=0.0)
         self._set(body, len(joints) - 1)
-        return body, len(joints) - 1
+        return body
 
     def _set(self, body: int, link: int) -> None:
         """Set friction and restitution; a pair has the product of its two coefficients."""
