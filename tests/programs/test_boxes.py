@@ -237,7 +237,7 @@ def test_boxes_of_a_pile_begin_in_touch_and_carry_each_other(program: Program) -
 def test_box2d_reports_no_force() -> None:
     if not PROGRAMS["box2d"].installed:
         pytest.skip("NOT RUN: pyb2d3 is not installed")
-    assert set(box2d.Box2D().solve(scene(rows=1))) == {"x_1", "y_1", "angle_1"}
+    assert not any(name.startswith("force") for name in box2d.Box2D().solve(scene(rows=1)))
 
 
 @pytest.mark.parametrize("program", of("bullet", "mujoco"))

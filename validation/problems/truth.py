@@ -18,6 +18,7 @@ from validation.solvers.registry import by_role, get_solver
 from validation.solvers.rigid.rocking import friction_needed, quarter_period, rocking
 
 ROCKING = "rigid rocking"
+BOXES = "rigid-exact"
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,17 @@ def truth_of(scene: Scene) -> Truth:
             field="sweep",
             advice="use --set key=value",
         )
+    if scene.rigid is not None:
+        why = get_solver(BOXES).refusal(scene)
+        if why is not None:
+            raise InputError(f"no exact motion is known: {why}", source=scene.name)
+        return Truth(BOXES, scene.time.duration)
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
     for name in by_role(_role(scene)):
         solver = get_solver(name)
-        if (features.COLUMN in solver.handles) != (scene.column is not None):
+        if features.RIGID_BOXES in solver.handles or (features.COLUMN in solver.handles) != (scene.column is not None):
             continue  # what it says of the other kind of scene tells nobody anything
         reason = solver.refusal(scene)
         if reason is None:

@@ -31,7 +31,6 @@ THETA = 0.5  # its default, the midpoint rule
 GRAVITY = 9.81  # m/s2, fixed in the wrapper
 DEPTH = 1.0  # m
 POINTS = 4  # of the contact of two rectangles
-PLANE = (2, 4, 6)  # degrees of freedom that leave the plane: velocity along y, rotations about x and z
 FOREVER = 1e6  # s
 TRIANGLES = (1, 3, 4, 1, 4, 2, 5, 6, 8, 5, 8, 7, 1, 2, 6, 1, 6, 5, 2, 4, 8, 2, 8, 6, 4, 3, 7, 4, 7, 8, 3, 1, 5, 3, 5, 7)
 LAW = "iqsc0"  # name of a law that set_see_tables expects
@@ -56,7 +55,7 @@ class LMGC90:
             "program": "LMGC90 (compas_lmgc90)",
             "version": version,
             "recipe": RECIPE,
-            "model": "polyhedra kept in a plane; IQS_CLB, RST_CLB with restitution, ELASTIC_REPELL_CLB with a stiffness",
+            "model": "polyhedra kept in a plane; IQS_CLB, with restitution RST_CLB, with stiffness ELASTIC_REPELL_CLB",
             "settings": self.settings,
         }
 
@@ -75,7 +74,7 @@ class LMGC90:
             from compas_lmgc90 import _lmgc90
         except ImportError as error:
             raise NotImplementedError(f"LMGC90 is not installed: {RECIPE}") from error
-        model = Model(_lmgc90.LMGC90Solver(), rigid, scene.time.step / substeps(scene, self.own_step), alert)
+        model = Model(_lmgc90.LMGC90Solver, rigid, scene.time.step / substeps(scene, self.own_step), alert)
         try:
             return record(scene, self.own_step, model.advance, model.poses, model.forces)
         finally:
@@ -123,8 +122,8 @@ class Model:
 
     Parameters
     ----------
-    solver
-        LMGC90.
+    program
+        Class of LMGC90 in the wrapper.
     rigid
         The boxes.
     step
@@ -133,11 +132,26 @@ class Model:
         Distance within which contact is sought [m].
     """
 
-    def __init__(self, solver: Any, rigid: RigidSection, step: float, alert: float) -> None:
-        self.solver = solver
+    def __init__(self, program: Any, rigid: RigidSection, step: float, alert: float) -> None:
+        self.solver = program()
         self.rigid = rigid
         self.step = step
-        solver.initialize(step, THETA, False)
+        # Rotations are those about the principal axes of a box, whose order LMGC90 tells once it has the boxes.
+        self.axes = [np.eye(3)] * len(rigid.box)
+        self.axes = self.build(alert)
+        if any(box.spin for box in rigid.box):
+            self.solver.finalize()  # there is one simulation in a process
+            self.solver = program()
+            self.axes = self.build(alert)
+        self.angles = np.zeros(len(rigid.box))
+        self.touched = [False] * len(rigid.box)  # whether a box was ever borne
+        self.result = self.solver.compute_one_step()  # in which boxes get their momentum
+
+    def build(self, alert: float) -> list[Array]:
+        """Give LMGC90 the scene; return the principal axes of the boxes, a row an axis."""
+        solver = self.solver
+        rigid = self.rigid
+        solver.initialize(self.step, THETA, False)
         solver.add_one_tact_behav(LAW, *contact_law(rigid))
         densities = sorted({box.density for box in rigid.box})
         self.materials = {density: f"s{number:04d}" for number, density in enumerate(densities, start=1)}
@@ -150,10 +164,7 @@ class Model:
             self.add_box(number, box, start)
         solver.close_before_computing()
         frames = solver.get_initial_state().body_frames[1:]
-        self.initial_frames = [np.array(frame).reshape(3, 3) for frame in frames]
-        self.angles = np.zeros(len(rigid.box))
-        self.touched = [False] * len(rigid.box)  # whether a box was ever borne
-        self.result = solver.compute_one_step()  # in which boxes get their momentum
+        return [np.array(frame).reshape(3, 3) for frame in frames]
 
     def add_ground(self) -> None:
         """Add a slab whose velocity is driven, wide enough for all boxes."""
@@ -178,15 +189,20 @@ class Model:
         z = start[1] - back * box.velocity[1]
         vertices, faces = cuboid(box.width, DEPTH, box.height, -back * box.spin)
         material = self.materials[box.density]
-        self.solver.set_one_polyr(material, [x, 0.0, z], faces, vertices, len(PLANE), 3)
-        for freedom in PLANE:
+        axes = self.axes[number - 2]
+        across = int(np.argmax(np.abs(axes[:, 1])))  # the principal axis along y
+        rotation = 4 + across
+        leaving = [2, *(freedom for freedom in (4, 5, 6) if freedom != rotation)]
+        self.solver.set_one_polyr(material, [x, 0.0, z], faces, vertices, len(leaving), 3)
+        for freedom in leaving:
             self.solver.set_drvdof(number, freedom, [0.0] * 6, True, False)
         pull = self.rigid.pull
-        momentum_rates = (box.mass * box.velocity[0], box.mass * box.velocity[1], -box.inertia * box.spin)
+        # A rotation about y is one from z to x, that is clockwise.
+        angular = -box.inertia * box.spin * axes[across, 1]
+        momenta = (box.mass * box.velocity[0], box.mass * box.velocity[1], angular)
         weight = box.mass * GRAVITY
-        # Forces along x and z and the moment about y, which turns from z to x, that is clockwise.
         forces = (box.mass * pull[0], box.mass * pull[1] + weight, 0.0)
-        for freedom, momentum, force in zip((1, 3, 5), momentum_rates, forces, strict=True):
+        for freedom, momentum, force in zip((1, 3, rotation), momenta, forces, strict=True):
             balanced = momentum / self.step + (weight if freedom == 3 else 0.0)
             # Of a step it is (1 - theta) times the force at its start and theta times that at its end.
             first = (balanced - THETA * force) / (1 - THETA)
@@ -212,12 +228,16 @@ class Model:
         for number, box in enumerate(self.rigid.box):
             x, _, z = self.result.bodies[number + 1]
             frame = np.array(self.result.body_frames[number + 1]).reshape(3, 3)
-            rotation = frame.T @ self.initial_frames[number]
+            rotation = frame.T @ self.axes[number]
             angle = math.atan2(rotation[2, 0], rotation[0, 0]) - THETA * self.step * box.spin
             # The nearest to the last one of the angles that differ by full turns.
             angle += 2 * math.pi * round((self.angles[number] - angle) / (2 * math.pi))
             self.angles[number] = angle
-            offset = x - box.x
+            # What slides is the corner that the box turns about.
+            side = -1.0 if angle > 0 else 1.0
+            corner = (side * box.width / 2, -box.height / 2)
+            pivot = x + corner[0] * math.cos(angle) - corner[1] * math.sin(angle)
+            offset = pivot - box.x - corner[0]
             if self.touched[number]:
                 self.refuse_far(number, abs(offset - offset_below), abs(angle))
             offset_below = offset

@@ -31,7 +31,9 @@ TIME_CONSTANT = 0.02  # s: that of MuJoCo's contact as it comes
 REBOUND_IMPEDANCE = 0.9999
 REST_IMPEDANCE = 0.8
 LANDING = 0.5  # of an approach is stopped in a step, where nothing rebounds
-REST_CORRECTION = 100.0  # 1/s: depth decays so where nothing rebounds, and boxes at rest stand deep by as much less
+# Depth decays so where nothing rebounds [1/s]: alone a box is thrown up by it, on each other boxes stand less deep.
+REST_CORRECTION = 10.0
+PILE_CORRECTION = 100.0
 COMPLIANT = 0.0001  # the least
 CORNERS = 4  # contact points of a box that lies flat
 HALF_DEPTH = 0.5  # m of boxes
@@ -111,7 +113,7 @@ class World:
         else:
             impedance = REST_IMPEDANCE
             rate = LANDING / step
-            stiffness = REST_CORRECTION * rate
+            stiffness = rate * (PILE_CORRECTION if len(rigid.box) > 1 else REST_CORRECTION)
         stop = math.sqrt(step * TIME_CONSTANT)
         law = f'solref="{-stiffness!r} {-rate!r}" solreffriction="0 {-1 / stop!r}"'
         law += f' solimp="{impedance} {impedance} 0.001 0.5 2"'

@@ -6,10 +6,13 @@ A request names one of three models and holds its matrices; the answer has a row
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
+LEMKE = 404  # SICONOS_FRICTION_2D_LEMKE
+ROUNDING = 1e-12  # of the size of a box
 ABSENT = 3  # exit status where there is no Siconos
 
 try:
@@ -123,10 +126,117 @@ def rigid(sk: Any, given: Request) -> dict[str, Any]:
     return {"q": [np.array(q).tolist() for at in rows(stepping, given, before) if at]}
 
 
+def boxes(sk: Any, given: Request) -> dict[str, Any]:
+    """Move rigid boxes (x, y, angle) whose corners Siconos keeps out of faces, with friction and Newton's restitution.
+
+    A contact is a corner of one body and a face of another, or of the ground; its relation is linear in a step, as in
+    `rigid`. A ground that moves rests in its own frame: from t to t + h the boxes bear -m (V(t + h) - V(t)) / h.
+    """
+    step = given["step"]
+    model = sk.NonSmoothDynamicalSystem(0.0, 2 * step * given["parts"] * given["steps"])
+    systems = []
+    pushes = []
+    for box in given["boxes"]:
+        inertia = np.array(box["inertia"])
+        system = sk.LagrangianLinearTIDS(np.array(box["q0"]), np.array(box["v0"]), np.diag(inertia))
+        force = sk.SiconosVector(3)
+        for freedom in (0, 1):
+            force.setValue(freedom, float(inertia[freedom] * given["pull"][freedom]))
+        system.setFExtPtr(force)
+        model.insertDynamicalSystem(system)
+        systems.append(system)
+        pushes.append(force)
+    law = sk.NewtonImpactFrictionNSL(given["restitution"], 0.0, given["friction"], 2)
+    contacts = []
+    for contact in given["contacts"]:
+        bodies = [contact["body"]] + ([] if contact["other"] is None else [contact["other"]])
+        relation = sk.SimpleMatrix(2, 3 * len(bodies))
+        offset = sk.SiconosVector(2)
+        interaction = sk.Interaction(law, sk.LagrangianLinearTIR(relation, offset))
+        contacts.append((contact, bodies, relation, offset, interaction))
+        model.link(interaction, *[systems[body] for body in bodies])
+    problem = sk.FrictionContact(2, LEMKE) if given["pivots"] else sk.FrictionContact(2)
+    if given["iterations"]:
+        problem.numericsSolverOptions().iparam[0] = given["iterations"]
+    starts = [box["q0"] for box in given["boxes"]]
+    update(given, contacts, starts, [box["v0"] for box in given["boxes"]])
+    discretisation = sk.TimeDiscretisation(0.0, step)
+    stepping = sk.TimeStepping(model, discretisation, sk.MoreauJeanOSI(), problem)
+    positions = [system.q() for system in systems]  # of the stepping: what they were before is not moved
+    rates = [system.velocity() for system in systems]
+
+    def before(number: int) -> None:
+        if given["amplitude"]:
+            rate = given["rate"]
+            change = math.sin(rate * step * (number + 1)) - math.sin(rate * step * number)
+            acceleration = given["amplitude"] * rate * change / step
+            for box, force in zip(given["boxes"], pushes, strict=True):
+                force.setValue(0, box["inertia"][0] * (given["pull"][0] - acceleration))
+        update(given, contacts, positions, rates)
+
+    poses: list[Any] = []
+    forces: list[Any] = []
+    for at in rows(stepping, given, before):
+        if at:
+            poses.append([np.array(q).tolist() for q in positions])
+            below = [0.0] * len(systems)
+            for contact, _, _, _, interaction in contacts:
+                below[contact["carried"]] += float(interaction.lambda_(1)[0]) / step
+            forces.append(below)
+    return {"poses": poses, "forces": forces}
+
+
+def update(given: Request, contacts: list[Any], positions: list[Any], rates: list[Any]) -> None:
+    """Set the relations of a step: its rows for velocities, and an offset that makes them give the gap at its start.
+
+    A gap within rounding is taken as closed: a corner that rounding lifts would stay open for a step.
+    """
+    ahead = given["step"] / 2 if given["middle"] else 0.0
+    for contact, bodies, relation, offset, _ in contacts:
+        q = [tuple(map(float, positions[body])) for body in bodies]
+        gap = gap_of(contact, q)
+        turned = [(x, y, angle + ahead * float(rates[body][2])) for (x, y, angle), body in zip(q, bodies, strict=True)]
+        lines = velocities(contact, turned)
+        for row, line in enumerate(lines):
+            for column, value in enumerate(line):
+                relation.setValue(row, column, value)
+        if abs(gap) < ROUNDING * given["size"]:
+            gap = -ROUNDING * given["size"]
+        flat = [value for one in q for value in one]
+        offset.setValue(0, gap - sum(factor * value for factor, value in zip(lines[0], flat, strict=True)))
+
+
+def gap_of(contact: Request, q: list[Any]) -> float:
+    """Return how far a corner is from a face [m]."""
+    x, y = arm(contact["corner"], q[0][2])
+    if len(q) == 1:
+        return q[0][1] + y
+    normal = arm((0.0, contact["outward"]), q[1][2])
+    return normal[0] * (q[0][0] + x - q[1][0]) + normal[1] * (q[0][1] + y - q[1][1]) - contact["level"]
+
+
+def velocities(contact: Request, q: list[Any]) -> list[list[float]]:
+    """Return the rows of normal and tangential velocity of a corner from a face, of 3 or 6 factors."""
+    face_angle = q[1][2] if len(q) == 2 else 0.0
+    lever = arm(contact["corner"], q[0][2])
+    normal = arm((0.0, contact["outward"]), face_angle)
+    lines = []
+    for x, y in (normal, (normal[1], -normal[0])):
+        line = [x, y, lever[0] * y - lever[1] * x]
+        if len(q) == 2:
+            other = (q[0][0] + lever[0] - q[1][0], q[0][1] + lever[1] - q[1][1])
+            line += [-x, -y, other[1] * x - other[0] * y]
+        lines.append(line)
+    return lines
+
+
 def arm(corner: np.ndarray, angle: float) -> tuple[float, float]:
     """Return where a corner is from the centroid [m]."""
-    c, s = np.cos(angle), np.sin(angle)
-    return float(c * corner[0] - s * corner[1]), float(s * corner[0] + c * corner[1])
+    c, s = math.cos(angle), math.sin(angle)
+    return c * corner[0] - s * corner[1], s * corner[0] + c * corner[1]
+
+
+KINDS = {"linear": linear, "complementarity": complementarity, "rigid": rigid, "boxes": boxes}
 
 
 def main(request: str, answer: str) -> int:
@@ -137,7 +247,7 @@ def main(request: str, answer: str) -> int:
         return ABSENT
     with open(request) as file:
         given = json.load(file)
-    found = {"linear": linear, "complementarity": complementarity, "rigid": rigid}[given["kind"]](sk, given)
+    found = KINDS[given["kind"]](sk, given)
     with open(answer, "w") as file:
         json.dump(found, file)
     return 0

@@ -14,6 +14,7 @@ HABIT = "dda"
 FINE = "dda-fine"
 ELEMENTS = "fem"
 APT = "pip install examples/peers, and apt install"
+LMGC90 = "pip install 'examples/peers[lmgc90]' && pip install --no-deps compas_lmgc90==0.1.11"
 NEWTON = "pip install 'examples/peers[newton]'"
 
 
@@ -63,7 +64,7 @@ KNOWN = (
     Known("yade", "Yade", f"{APT} yade", springs=True),
     Known("calculix", "CalculiX", f"{APT} calculix-ccx", springs=True),
     Known("ntdda", "ntdda", "pip install examples/peers; its histories come with it", springs=True, default=False),
-    Known("lmgc90", "LMGC90", "pip install 'examples/peers[lmgc90]'", boxes=True),
+    Known("lmgc90", "LMGC90", LMGC90, boxes=True, halvings=4),
     Known("exudyn", "Exudyn", "pip install 'examples/peers[exudyn]'", boxes=True),
     Known("drake", "Drake", "pip install 'examples/peers[drake]'", boxes=True, family="robotics"),
     Known("dart", "DART", "pip install 'examples/peers[dart]'", boxes=True, family="robotics"),

@@ -1,0 +1,131 @@
+"""LMGC90's adapter: that it states boxes rightly, by what the Moreau-Jean scheme must give, and its limits."""
+
+import importlib.util
+import math
+import sys
+
+import numpy as np
+import pytest
+from peers.lmgc90 import LMGC90, AsItComes
+from programs.rigid_scenes import rigid_scene
+
+absent = importlib.util.find_spec("compas_lmgc90") is None
+installed = pytest.mark.skipif(absent, reason="NOT RUN: LMGC90 is not installed")
+both = pytest.mark.parametrize("solver", [LMGC90(), AsItComes()], ids=["chosen", "default"])
+SLOPE = math.radians(20.0)
+TOLERANCE = 2e-4  # of its Gauss-Seidel iteration, 1.666e-4, which the wrapper sets
+
+
+@pytest.mark.parametrize(
+    ("solver", "scene", "field"),
+    [
+        (LMGC90, rigid_scene({"tilt": 5.0}), r"rigid\.box\.tilt"),
+        (AsItComes, rigid_scene({"lift": 0.1}), r"rigid\.box\.lift"),
+    ],
+)
+def test_refuses_what_contact_sought_in_the_first_step_cannot_express(solver, scene, field):
+    with pytest.raises(NotImplementedError, match=field):
+        solver().solve(scene)
+
+
+def test_a_program_that_is_absent_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "compas_lmgc90", None)
+    with pytest.raises(NotImplementedError, match="is not installed: pip install"):
+        LMGC90().solve(rigid_scene())
+
+
+@installed
+def test_its_defaults_are_those_of_the_solver_of_compas():
+    import inspect
+
+    from compas_lmgc90.solver import Solver
+
+    assert inspect.signature(Solver).parameters["dt"].default == AsItComes.own_step
+    assert inspect.signature(Solver).parameters["theta"].default == 0.5
+    assert inspect.signature(Solver.contact_law).parameters["alert"].default == 1e-3
+
+
+@installed
+@both
+@pytest.mark.parametrize("gravity", [9.81, 1.6])
+def test_a_box_flies_and_spins_as_the_midpoint_rule_does(solver, gravity, tmp_path, monkeypatch):
+    """The step x + h (v + v') / 2 is exact of a constant force; a rotation by h w is 2 atan(h w / 2) in a step."""
+    monkeypatch.chdir(tmp_path)
+    box = {"velocity": (3.0, 20.0), "spin": 2.0, "width": 2.0, "height": 0.5}
+    scene = rigid_scene(box, slope=20.0, gravity=gravity)
+    t = scene.time.step * np.arange(1, scene.time.steps + 1)
+    columns = solver.solve(scene)
+    np.testing.assert_allclose(columns["x_1"], 3 * t + gravity * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(columns["y_1"], 0.25 + 20 * t - gravity * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
+    h = solver.own_step
+    rotation = t / h * 2 * math.atan(h * 2.0 / 2)
+    # The step before the first turns it by half as much, from the rate 0.
+    np.testing.assert_allclose(columns["angle_1"], rotation, atol=(2.0 * h) ** 3)
+    assert not list(tmp_path.iterdir())
+
+
+@installed
+@both
+@pytest.mark.parametrize(("friction", "density"), [(0.0, 1000.0), (15.0, 1000.0), (15.0, 10.0)])
+def test_a_box_slides_as_the_midpoint_rule_does_whatever_its_mass(solver, friction, density):
+    scene = rigid_scene({"density": density}, slope=20.0, friction=friction, steps=50)
+    held = math.tan(math.radians(friction)) * 9.81 * math.cos(SLOPE)
+    t = scene.time.step * np.arange(1, scene.time.steps + 1)
+    columns = solver.solve(scene)
+    expected = (9.81 * math.sin(SLOPE) - held) * t**2 / 2
+    np.testing.assert_allclose(columns["x_1"], expected, atol=TOLERANCE * held * t[-1] ** 2 / 2 + 1e-9)
+    assert columns["force_1"][-1] == pytest.approx(density * 9.81 * math.cos(SLOPE), rel=TOLERANCE)
+
+
+@installed
+@pytest.mark.parametrize("restitution", [0.3, 0.5, 1.0])
+@pytest.mark.parametrize("density", [10.0, 5000.0])
+def test_a_box_comes_back_at_e_times_the_speed_it_came_with(restitution, density):
+    """The law acts where the gap half a step ahead is not positive; the box starts where that is just so.
+
+    It leaves h e v / 2 above the ground and the contact is open a step later: the impact is one of one step.
+    """
+    h = LMGC90.own_step
+    box = {"velocity": (0.0, -2.0), "lift": 2.0 * h / 2 * (1 - 1e-6), "density": density}
+    scene = rigid_scene(box, gravity=0.0, restitution=restitution, step=h, steps=3)
+    rebound = np.diff(LMGC90().solve(scene)["y_1"]) / h
+    np.testing.assert_allclose(rebound, 2.0 * restitution, rtol=2 * TOLERANCE)
+
+
+@installed
+@both
+def test_a_ground_that_moves_takes_a_box_along(solver):
+    """Its driven velocity A w sin(w t) is summed by the trapezoidal rule, A (w h/2) / tan(w h/2) (1 - cos(w t))."""
+    scene = rigid_scene(friction=45.0, base_amplitude=0.1, base_frequency=1.0)
+    t = scene.time.step * np.arange(1, scene.time.steps + 1)
+    half = math.pi * solver.own_step
+    expected = 0.1 * half / math.tan(half) * (1 - np.cos(2 * math.pi * t))
+    np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, atol=TOLERANCE * 0.1)
+
+
+@installed
+def test_forces_of_a_pile_are_the_weights_above():
+    boxes = ({}, {"density": 500.0, "width": 0.5, "x": 0.1}, {"density": 2000.0, "height": 0.3})
+    columns = LMGC90().solve(rigid_scene(*boxes, friction=30.0, steps=20))
+    forces = [columns[f"force_{number}"][-1] for number in (1, 2, 3)]
+    assert forces == pytest.approx([9.81 * 1850.0, 9.81 * 850.0, 9.81 * 600.0], rel=10 * TOLERANCE)
+
+
+@installed
+def test_a_stiffness_of_the_scene_bears_the_weight():
+    """It vibrates about the static sinking m g / k, five times in the last second."""
+    columns = LMGC90().solve(rigid_scene(stiffness=1e6, steps=300))
+    assert 0.5 - columns["y_1"][-100:].mean() == pytest.approx(9.81e-3, rel=2e-2)
+
+
+@installed
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        (rigid_scene(slope=20.0, friction=15.0, steps=300), "slides by more than"),
+        (rigid_scene({"spin": -4.0, "velocity": (2.0, 2.0)}, friction=60.0, steps=300), "turns over"),
+    ],
+)
+def test_refuses_what_the_points_of_a_contact_do_not_follow(scene, message):
+    with pytest.raises(NotImplementedError, match=message):
+        LMGC90().solve(scene)
