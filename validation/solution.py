@@ -86,10 +86,10 @@ class Solution(Run):
 
 
 def _unit(column: str, scene: Scene) -> str:
-    if scene.rigid is not None:
-        return f" {rigid.UNITS[column.partition('_')[0]]}"
     kind = column.removeprefix("horizontal_").partition("_")[0]
     unit = {"displacement": "m", "velocity": "m/s", "rotation": "rad", "contact": "Pa", "stress": "Pa"}.get(kind)
+    if scene.rigid is not None:
+        unit = rigid.UNITS.get(kind)
     return f" {unit}" if unit else ""
 
 

@@ -191,6 +191,7 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
+@pytest.mark.long
 def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() -> None:
     tried: list[float] = []
 

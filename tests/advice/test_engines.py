@@ -102,8 +102,7 @@ def test_the_page_has_the_table_of_the_programs() -> None:
     rows = ["| program | number | | is | as it comes |", "|---|---|---|---|---|"]
     for program in PROGRAMS.values():
         for one in program.parameters:
-            numbers = one.default if isinstance(one.default, tuple) else (one.default,)
-            default = "" if one.default is None else " ".join(f"{number:g}" for number in numbers)
+            default = " ".join(f"{number:g}" for number in one.default)
             rows.append(f"| {program.title} | `{one.meaning}` | {one.unit} | {one.formula} | {default} |")
     rows += ["", "Checked with, and after:", ""]
     rows += [f"- {one.title} {one.version}: {one.source}." for one in PROGRAMS.values()]

@@ -65,6 +65,7 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_pa
         if name.endswith(".svg"):
             ElementTree.fromstring(text)
     index = unescape(re.sub(r"\s+", " ", files["index.html"]))
+    assert "Not answered by any of them: opening, rebound," in index
     assert "FAIL</span> <small>4 % of 1.5 %</small>" in index and "PASS</span> <small>1 % of 5.7 %</small>" in index
     assert "rotation_rad: cause: a <cause> & more." in index
     chart = unescape(files["program_bob-s-code-co.html"])
@@ -82,6 +83,9 @@ def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path
     assert (row["verdict"], row["step_s"], row["cause"]["ids"]) == ("FAIL", 0.002, ["factor"])
     assert (row["columns"][0]["error"], row["columns"][0]["allowed"]) == (0.04, pytest.approx(0.015, abs=6e-4))
     assert json.loads(typed("judge", layout, "--json").stdout) == verdicts
+    rounding = answered(tmp_path / "rounding", 1 + 1e-13, ("locked",))
+    (row,) = json.loads(typed("judge", rounding, "--json").stdout)["answers"]
+    assert [column["error"] for column in row["columns"]] == [1e-11, 1e-11]
 
 
 def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(

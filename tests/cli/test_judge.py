@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from conftest import typed
+from conftest import refused, typed
 from oracles.processes import answer_here
 from oracles.submissions import STATED, submitted
 
-from validation.problems import cause
+from validation.problems import boxes, cause
 from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
@@ -248,7 +248,20 @@ def test_the_callers_own_scene(tmp_path: Path, scene_file: Path, undrawn: None) 
 
 def test_the_help_names_every_problem() -> None:
     words = re.findall(r"[\w-]+", typed("judge", "--help").stdout)
-    assert set(PROBLEMS) <= set(words)
+    assert {*PROBLEMS, *boxes.ASKS} <= set(words)
+
+
+def test_rigid_boxes_are_judged_by_numbers(undrawn: None) -> None:
+    done = typed("judge", "impact", "--solver", "dda")
+    assert done.returncode == 1, done.stderr
+    assert re.search(r"speed of the rebound +FAIL", done.stdout) and re.search(r"time of contact +PASS", done.stdout)
+    assert "cause" not in done.stdout
+    done = typed("judge", "standing", "--solver", "rigid-exact", "--set", "rigid.friction=19")
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"distance slid +PASS", done.stdout)
+    assert "rigid.gravity: must be that of the problem" in refused(
+        "judge", "impact", "--solver", "dda", "--set", "rigid.gravity=3"
+    )
 
 
 def test_a_column_on_contacts_is_judged(tmp_path: Path, undrawn: None) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import refused, typed
 
+from validation import solve
 from validation.report.chapters.text import parameter_items
 from validation.report.figures.curves import HistoryPanel, axis_of, common_range
 from validation.runs.history import History
@@ -150,6 +152,14 @@ def test_a_scene_of_boxes_is_run_reported_and_drawn(rigid_file: Path, tmp_path: 
 )
 def test_columns_of_boxes_have_words_and_units(column: str, words: str, unit: str) -> None:
     assert axis_of(column, of_boxes=True) == (words, unit)
+
+
+def test_a_solution_says_its_peak_in_the_unit_of_the_column() -> None:
+    at_rest = scene([{}], columns=["force_1"], friction=30.0)
+    weight = solve(at_rest, "rigid-exact")
+    assert f"peak force_1 {1800 * WEIGHT:.4g} N" in repr(weight)
+    beside = replace(weight, history=History(np.array([0.01]), {"energy_1": np.array([2.0])}))
+    assert "peak energy_1 2," in repr(beside)
 
 
 def test_the_force_in_a_column_stays_a_stress() -> None:

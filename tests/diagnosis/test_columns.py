@@ -199,6 +199,7 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch)
 # ---- reading ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_units_are_read_and_named() -> None:
     foreign = history(DROPPED, {}, DIGITS)
     answer = compare(DROPPED, replace(foreign, displacement=1e3 * foreign.displacement))

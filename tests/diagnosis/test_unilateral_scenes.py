@@ -45,6 +45,7 @@ def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]
     assert (answer.departure is None) == (set(causes) <= {"own-weight"})
 
 
+@pytest.mark.long
 def test_a_dead_band_between_two_closings_is_named() -> None:
     """Wider than what the springs carry at rest; from 0.93 to 1.07 mm the rows are the same."""
     stiff = {"contact.stiffness": 3e10, "block.young": 3e9, "block.density": 2900.0, "load.pressure": 6e6}

@@ -213,7 +213,7 @@ def weighted(motion: BlockMotion) -> tuple[BlockHistory, np.ndarray]:
     return motion.at(t), (half[:, None] * w).ravel()
 
 
-@pytest.mark.parametrize("zeta", [0.02, 0.2, 1.7])
+@pytest.mark.parametrize("zeta", thinned([0.2, 0.02, 1.7], 3))
 def test_dashpots_balance_momentum_and_energy(zeta: float) -> None:
     problem = dashpot(replace(PAPER, stiffness=1e10, gravity=9.81), zeta)
     motion = solve(problem, 0.03)
@@ -231,7 +231,7 @@ def test_dashpots_balance_momentum_and_energy(zeta: float) -> None:
     assert np.all(history.normal_force >= 0)
 
 
-@pytest.mark.parametrize(("e", "shear"), [(0.0, 0.0), (0.3, 4e8), (0.6, 0.0), (1.0, 4e8)])
+@pytest.mark.parametrize(("e", "shear"), thinned([(0.3, 4e8), (0.0, 0.0), (0.6, 0.0), (1.0, 4e8)], 4))
 def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
     """With springs aside too, which the strain of a block with Poisson's ratio stretches while it rests."""
     motion = solve(replace(RIGID, restitution=e, gravity=9.81, shear_stiffness=shear, poisson=0.25), 0.02)

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -45,16 +42,6 @@ def test_solvers_are_named_where_they_are_declared_drawn_or_told() -> None:
         if not module.startswith(KNOWING) and quoted.search(text):
             named = strings(ast.parse(text)) & set(BUILT_IN)
             assert named <= NAMED.get(module, set()), module
-
-
-@pytest.mark.long
-def test_the_contracts_of_imports_are_kept() -> None:
-    command = Path(sys.executable).with_name("lint-imports")
-    if not command.exists():
-        pytest.skip("import-linter is not installed")
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run([command, "--no-cache"], capture_output=True, text=True, cwd=ROOT, env=environment)
-    assert done.returncode == 0, done.stdout
 
 
 def test_modules_whose_tests_share_a_fixture_stay_on_one_worker() -> None:

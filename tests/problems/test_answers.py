@@ -237,6 +237,12 @@ def test_a_mistake_is_named_with_line_and_character(mistake: str, tmp_path: Path
     assert all("\n" not in line for line in lines)
 
 
+@pytest.mark.parametrize(("field", "value"), [("pack", 3.0), ("step_s", []), ("link", 7), ("program", "")])
+def test_a_field_with_one_mistake_has_one_line(field: str, value: object, tmp_path: Path) -> None:
+    (line,) = defects_of(answered(tmp_path, names=("locked",), **{field: value}))
+    assert f": {field}: must " in line
+
+
 def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     place = answered(tmp_path / "coarse", settings_name="coarse")
     other = answered(tmp_path / "fine", settings_name="fine", who=...)
@@ -328,6 +334,11 @@ def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
     (judged,) = judged_sets(read_sets(place), lambda *given: None)
     words = {name: str(one.word) for name, one in judged.judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
+    # Forces are not asked: what is measured on them alone is not among the numbers.
+    assert [number.quantity.name for number in judged.judged["pile"].numbers] == [
+        "drift of the top",
+        "sinking of the top",
+    ]
     assert judged.judged["standing-friction-19-deg"].deciding.quantity.name == "distance slid"
 
 

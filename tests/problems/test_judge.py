@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
+from validation.problems import boxes
 from validation.problems.bands import LARGEST, band, changes, standard
 from validation.problems.judge import Word, judge
 from validation.problems.problem import Problem, problem, problem_of
@@ -246,3 +247,68 @@ def test_data_that_a_scene_has() -> None:
     assert own.shear_stiffness is not None
     assert harder["contact.stiffness"] == pytest.approx(1.01 * own.stiffness)
     assert harder["contact.shear_stiffness"] == pytest.approx(1.01 * own.shear_stiffness)
+
+
+# ---- rigid boxes ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", boxes.ASKS)
+def test_rigid_boxes_are_judged_by_their_numbers(name: str) -> None:
+    one = problem(name)
+    reference = standard(one)
+    assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
+    judgement = judge(one, reference.exact)
+    assert judgement.verdict == "PASS"
+    assert judgement.columns and len(judgement.columns) == len(judgement.quantities)
+    assert all(column.band is not None and column.band <= 0.026 for column in judgement.columns)
+
+
+def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
+    one = problem("standing")
+    exact = standard(one).exact
+    creeping = History(exact.time, dict(exact.columns) | {"x_1": exact.time * 0.03 / 60})
+    judgement = judge(one, creeping)
+    assert judgement.word is Word.FAIL
+    assert judgement.deciding is not None
+    assert judgement.deciding.error == pytest.approx(0.03)
+    assert judgement.deciding.band == pytest.approx(0.01)
+    assert judgement.quantities[0].value == pytest.approx(0.5)
+
+
+def test_a_number_of_a_withheld_column_is_not_reported() -> None:
+    one = problem("tumbling")
+    exact = standard(one).exact
+    fewer = History(exact.time, {name: exact.columns[name] for name in ("x_1", "y_1")})
+    judgement = judge(one, fewer)
+    assert judgement.word is Word.PARTIAL
+    assert "energy in the end over that at the start" in judgement.withheld
+    assert "change of the speed along the ground" not in judgement.withheld
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "field"),
+    [
+        ("restitution", {"rigid.gravity": 9.81}, "rigid.gravity"),
+        ("bouncing", {"time.steps": 100}, "time"),
+        ("standing", {"rigid.restitution": 0.5}, "rigid.restitution"),
+    ],
+)
+def test_boxes_whose_numbers_would_mean_something_else_are_refused(
+    name: str, values: dict[str, object], field: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        problem_of(load_scene(f"rigid-{name}").with_values(values))
+    assert caught.value.field == field
+
+
+def test_the_question_of_boxes_may_be_asked_with_another_friction() -> None:
+    steeper = problem_of(load_scene("rigid-standing").with_values({"rigid.friction": 19.0}))
+    judgement = judge(steeper, standard(steeper).exact)
+    assert [column.name for column in judgement.columns] == ["distance slid"]
+    assert judgement.word is Word.PASS
+
+
+def test_boxes_that_are_no_problem_are_not_judged() -> None:
+    scene = load_scene("rigid-pile").model_copy(update={"name": "mine"})
+    with pytest.raises(InputError, match="must be one of standing, restitution"):
+        problem_of(scene)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +21,7 @@ def test_the_version_of_the_pack_is_that_of_its_problems() -> None:
     digests = {name: digest(question(name)) for name in names()}
     assert packs.packs().get(PACK) == digests, (
         "problems are others: give the pack another version (PACK; minor where problems are added only), "
-        "and packs.json these digests of it"
+        f"and packs.json these digests of it: {json.dumps(digests)}"
     )
 
 

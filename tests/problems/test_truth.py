@@ -10,6 +10,7 @@ import pytest
 from oracles.joints import slipping_spring_joint
 
 from validation.errors import InputError
+from validation.problems import boxes
 from validation.problems.bands import standard
 from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
 from validation.problems.truth import exact, truth_of
@@ -20,12 +21,13 @@ from validation.solvers.rigid.rocking import friction_needed
 ROCKING = load_scene("field-rocking")
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", [*PROBLEMS, *boxes.ASKS])
 def test_every_problem_has_its_exact_motion(name: str) -> None:
     one = problem(name)
     kinds = {"column": "layers", "rocking": "rigid rocking"}
     kinds |= dict.fromkeys(("stack", "mass-ratio"), "column-events")
     kinds |= dict.fromkeys(("spall", "cradle", "joint"), "bars-events")
+    kinds |= dict.fromkeys(boxes.ASKS, "rigid-exact")
     assert one.truth.name == kinds.get(name, "block-events")
     assert one.truth.name == "layers" or one.truth.name in (*one.scene.run.solvers, "rigid rocking")
     if name != "rocking":

@@ -60,6 +60,12 @@ def test_the_best_is_the_one_of_least_time_and_those_that_take_nearly_as_little(
     assert best_of_family(ENGINES, "standing", "robotics") == []
 
 
+def test_who_fails_the_problem_is_not_the_best_at_it() -> None:
+    (best,) = best_of_family(ENGINES, "standing", "games")
+    assert best[0].name == "box2d"
+    assert best_of_family(changed("standing", "box2d", verdict=FAIL), "standing", "games") == []
+
+
 # ---- the figure ---------------------------------------------------------------------------------------------------
 
 
@@ -170,7 +176,7 @@ def test_prices_are_those_of_the_best_of_each_family() -> None:
         (
             "standing",
             "Siconos: 0.04\u00a0s, 400\u00a0steps",
-            "no run within the band",
+            "none",
             "Box2D: 0.002\u00a0s, 100\u00a0steps",
         ),
     )
@@ -192,6 +198,12 @@ def test_bands_are_told_once_with_their_reason() -> None:
         "Allowed",
         "Why",
     ]
+
+
+def test_a_number_of_the_problem_and_of_other_cases_names_them_all() -> None:
+    (one,) = ENGINES.cells["standing", "siconos"].quantities
+    both = changed("standing", "siconos", quantities=(replace(one, case=""), one))
+    assert engines.bands(both, PROBLEMS[0]).rows[0][1] == "friction 22 deg; as titled"
 
 
 def test_what_has_no_verdict_says_why() -> None:

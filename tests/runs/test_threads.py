@@ -156,6 +156,7 @@ print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_N
 """
 
 
+@pytest.mark.long
 def test_a_command_has_one_thread_as_typed() -> None:
     assert run_python(TYPED) == "{1} 1"
 

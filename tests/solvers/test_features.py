@@ -80,7 +80,7 @@ TAKES: dict[str, set[str]] = {
     features.FRICTIONAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
     features.RIGID_BLOCKS: {"dda", "column-events"},
     features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
-    features.RIGID_BOXES: {"dda"},
+    features.RIGID_BOXES: {"dda", "rigid-exact"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step

@@ -35,8 +35,8 @@ pytestmark = pytest.mark.xdist_group("literature")
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Finished:
-    return finish(STUDY.cases(), STUDY, Results(tmp_path_factory.mktemp("literature")))
+def sound(finished_cases: Path) -> Finished:
+    return finish(STUDY.cases(), STUDY, Results(finished_cases))
 
 
 @pytest.fixture(scope="module")

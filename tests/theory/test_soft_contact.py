@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from validation.theory.soft_contact import Impedance, SoftContact, effective_mass
+from validation.theory.soft_contact import (
+    PHASES,
+    Impedance,
+    SoftContact,
+    curve_rebounds,
+    effective_mass,
+    implicit_ratio,
+    implicit_step,
+    local_damping_ratio,
+    local_damping_restitution,
+)
 
 GRAVITY = 9.81
 SUBSTEP = 1 / 240
@@ -109,3 +119,51 @@ def test_bullet_is_the_same_step_in_other_words() -> None:
     v1 = v + h * force / 4.0
     assert contact.step_matrix(h) @ [x, h * v] == pytest.approx([x + h * v1, h * v1], abs=1e-15)
     assert math.isclose(contact.stiffness * h / (contact.stiffness * h + contact.damping), erp)
+
+
+@pytest.mark.parametrize("is_ball", [True, False])
+def test_a_landing_by_steps_of_bullet(is_ball: bool) -> None:
+    """Its constraint row: an impulse towards the velocity that closes a gap, or that corrects an overlap by erp."""
+    m, k, c, h, g, V = 3.0, 4e4, 150.0, 1 / 300, 9.81, 0.8
+    cfm = 1 / (h * k + c) / h
+    erp = h * k / (h * k + c)
+    measured = []
+    for phase in (np.arange(PHASES) + 0.5) / PHASES:
+        x, v, impulse, has_touched = phase * V * h, -V, 0.0, False
+        while not (has_touched and x >= 0 and v >= 0):
+            free = v - g * h
+            wanted = -x / h if x > 0 else -erp * x / h
+            acts = is_ball or x < 0
+            impulse = max((wanted - free) / (1 / m + cfm), 0.0) if acts else 0.0
+            has_touched |= impulse > 0
+            v = free + impulse / m
+            x += h * v
+        measured.append(v / V)
+    contact = SoftContact(m, k, c, stops_ahead=is_ball, starts_inside=not is_ball)
+    assert contact.rebounds(h, g * h / V) == pytest.approx(np.array(measured), rel=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.2, 0.6])
+def test_damping_of_all_forces(alpha: float) -> None:
+    contact = SoftContact(2.0, 2e4, 0.0, implicit=False, local_damping=alpha)
+    assert contact.rebounds(1e-5).mean() == pytest.approx(local_damping_restitution(alpha), rel=1e-3)
+    # over a cycle the amplitude falls by e^2, which is that of a viscous damping up to its square
+    assert math.exp(-2 * math.pi * local_damping_ratio(alpha)) == pytest.approx(local_damping_restitution(alpha) ** 2)
+
+
+@pytest.mark.parametrize("W", [1e-3, 0.3, 4.0])
+def test_implicit_steps_damp_a_spring_by_their_roots(W: float) -> None:
+    contact = SoftContact(1.0, W**2, 0.0)
+    root = np.log(np.linalg.eigvals(contact.step_matrix(1.0))[0])
+    assert contact.numerical_ratio(1.0) == pytest.approx(-root.real / abs(root), rel=1e-6)
+    assert implicit_step(implicit_ratio(W)) == pytest.approx(W, rel=1e-9)
+
+
+@pytest.mark.parametrize("points", [1, 4])
+def test_a_curve_of_one_impedance_is_that_impedance(points: int) -> None:
+    curve = Impedance(0.9, 0.9)
+    contact = SoftContact.of_mujoco(5.0, 0.03, 0.7, 0.9, 1.0, points)
+    expected = contact.rebounds(0.002, 9.81 * 0.002 / 2.5)
+    assert curve_rebounds(curve, 0.03, 0.7, points, 0.002, 2.5, 9.81) == pytest.approx(expected, rel=1e-9)
+    direct = SoftContact.of_mujoco(5.0, -1 / (0.03 * 0.7) ** 2, -2 / 0.03, 0.9, 1.0, points)
+    assert (direct.stiffness, direct.damping) == pytest.approx((contact.stiffness, contact.damping))

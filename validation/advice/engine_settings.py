@@ -207,11 +207,13 @@ def advise_landing(
     described = PROGRAMS[program]
     if points is None:
         points = described.points if landing.box is not None else 1
+    is_step_stated = step is not None
+    step = step or landing.step or described.step
     if step is None:
-        step = landing.step or described.step
-        is_chosen = False
-    else:
-        is_chosen = True
+        frequency = 1.0
+        if targets.penetration is not None:
+            frequency = math.sqrt(max(landing.acceleration, 0.0) / targets.penetration) or 1.0
+        step = FINE_STEP / frequency
     if speed is not None:
         landing = Landing(landing.mass, landing.load, speed, landing.step, landing.box, landing.stiffness)
     if targets.restitution is not None and landing.speed <= 0:
@@ -222,7 +224,7 @@ def advise_landing(
         raise InputError(
             "must be positive for a penetration at rest", field="load", value=f"{landing.load:g} N", advice=advice
         )
-    question = _Question(described, landing, targets, step, is_chosen, points)
+    question = _Question(described, landing, targets, step, is_step_stated, points)
     return _ADVICE[program](question)
 
 
@@ -249,7 +251,7 @@ class _Question:
     program: Program
     landing: Landing
     targets: Targets
-    step: float | None
+    step: float
     is_step_stated: bool
     points: int
 
@@ -301,7 +303,7 @@ def defaults(program: Program, landing: Landing, points: int) -> dict[str, float
     if program.name == "opensees":
         return {"penetration": None, "restitution": None, "hidden": 0.0}
     if program.name == "yade":
-        as_it_comes = SoftContact(1.0, 1.0, 0.0, implicit=False, local_damping=program.default("local_damping"))
+        as_it_comes = SoftContact(1.0, 1.0, 0.0, implicit=False, local_damping=program.default("local_damping")[0])
         e = float(as_it_comes.rebounds(FINE_STEP).mean())
         return {"penetration": None, "restitution": e, "hidden": as_it_comes.numerical_ratio(FINE_STEP)}
     gravity = max(landing.acceleration, 0.0)
@@ -317,12 +319,10 @@ def defaults(program: Program, landing: Landing, points: int) -> dict[str, float
 
 def _mujoco_as_it_comes(program: Program, landing: Landing, points: int) -> float | None:
     """Return the mean rebound of MuJoCo's default contact at its own step; None where nothing lands."""
-    if landing.speed <= 0:
+    if landing.speed <= 0 or program.step is None:
         return None
-    solimp = program.defaults["solimp"]
-    assert isinstance(solimp, tuple)
-    assert program.step is not None
-    solref = (program.default("timeconst"), program.default("dampratio"))
+    solimp = program.default("solimp")
+    solref = (program.default("timeconst")[0], program.default("dampratio")[0])
     gravity = max(landing.acceleration, 0.0)
     return float(curve_rebounds(Impedance(*solimp), *solref, points, program.step, landing.speed, gravity).mean())
 
@@ -387,7 +387,6 @@ def _shorter(step: float, frequency: float, is_enough: Callable[[float], bool]) 
 def _box2d(question: _Question) -> EngineAdvice:
     """Hertz by the penetration; the rebound is that of the shapes, as the relaxation takes what the spring returns."""
     targets, step = question.targets, question.step
-    assert step is not None
     if targets.hidden is not None:
         raise InputError(
             "cannot be chosen in Box2D, whose contacts do not vibrate: each sub-step relaxes them",
@@ -411,7 +410,7 @@ def _box2d(question: _Question) -> EngineAdvice:
                 value=f"{targets.penetration:g} m",
                 advice=advice,
             )
-        ratio = question.program.default("damping_ratio")
+        ratio = question.program.default("damping_ratio")[0]
         settings |= {"hertz": hertz, "damping_ratio": ratio}
         contact = SoftContact.of_box2d(question.landing.mass, BOX2D_STATIC * hertz, ratio, question.points, lever)
         settling = 2 * contact.ratio / contact.frequency
@@ -426,9 +425,10 @@ def _box2d(question: _Question) -> EngineAdvice:
         speed = question.landing.speed
         settings |= {"restitution": e, "restitution_threshold": min(1.0, speed / 2)}
         if question.points == 1:
-            # the speed is taken where the step begins, up to a step before the landing
-            late = question.acceleration * SUBSTEPS * step / speed
-            rebounds = {"mean": e * (1 - late / 2), "low": max(e * (1 - late), 0.0), "high": e}
+            # The speed is that at the start of a step: before the landing where the contact is seen ahead (20 mm), or
+            # after it. A fall in sub-steps is faster or slower than the exact one by up to a sub-step besides.
+            late = question.acceleration * (SUBSTEPS + 1) * step / speed
+            rebounds = {"mean": e, "low": max(e * (1 - late), 0.0), "high": e * (1 + late)}
         else:
             notes.append(
                 "the rebound of a flat box is not known: Box2D solves its corners one after the other; a circle has "
@@ -441,7 +441,6 @@ def _box2d(question: _Question) -> EngineAdvice:
 def _pybullet(question: _Question) -> EngineAdvice:
     """Stiffness by the penetration, damping by the restitution of the implicit steps."""
     targets, landing, step = question.targets, question.landing, question.step
-    assert step is not None
     if targets.penetration is None:
         raise InputError(
             "must be given for pybullet, whose contact is rigid as it comes: 0.01 mm deep at rest and without rebound",
@@ -453,6 +452,7 @@ def _pybullet(question: _Question) -> EngineAdvice:
             f"must be above {PYBULLET_SLOP:g} m, by which PyBullet lets bodies overlap before a contact pushes",
             field="--penetration",
             value=f"{targets.penetration:g} m",
+            advice="state a larger one, or leave the contact rigid as it comes: it stands that deep",
         )
     k = landing.load / (targets.penetration - PYBULLET_SLOP)
     w = math.sqrt(k / landing.mass)
@@ -476,19 +476,19 @@ def _pybullet(question: _Question) -> EngineAdvice:
     def ratio_at(h: float) -> float | None:
         return ratio_for(targets.restitution or 0.0, contact_of, h, question.relative_load(h))
 
-    zeta: float | None = CRITICAL
+    zeta = CRITICAL
     if targets.restitution is not None:
-        zeta = ratio_at(step)
-        if zeta is None:
+        reached = ratio_at(step)
+        if reached is None:
             shorter = _shorter(step, w, lambda h: ratio_at(h) is not None)
             most = float(contact_of(0.0).rebounds(step, question.relative_load(step)).mean())
             raise InputError(
-                f"cannot be had in PyBullet at the step {step:.4g} s, whose implicit steps leave {most:.4g} at most",
+                f"cannot be had in PyBullet at the step {step:.4g} s, whose steps leave {most:.4g} in the mean",
                 field="--restitution",
                 value=f"{targets.restitution:g}",
                 advice=f"{shorter}, or a softer contact by a larger --penetration",
             )
-    assert zeta is not None
+        zeta = reached
     contact = contact_of(zeta)
     settings: Settings = {
         "contact_stiffness": k / question.points,
@@ -522,11 +522,11 @@ def _spread(contact: SoftContact, question: _Question, step: float) -> dict[str,
 def _mujoco(question: _Question) -> EngineAdvice:
     """The reference by penetration and restitution at a constant impedance, which rises where refsafe would act."""
     targets, step = question.targets, question.step
-    assert step is not None
     stated = targets.penetration
     if stated is None:
         if question.acceleration <= 0:
-            raise InputError("must be given, nothing stands in the contact", field="--penetration")
+            advice = "without a weight the penetration at rest states no stiffness: take a scene with gravity"
+            raise InputError("must be positive", field="load", value=f"{question.landing.load:g} N", advice=advice)
         stated = _mujoco_own_penetration(question)
 
     contact = _mujoco_contact(question, stated, step)
@@ -546,7 +546,7 @@ def _mujoco(question: _Question) -> EngineAdvice:
 
 def _mujoco_own_penetration(question: _Question) -> float:
     """Return how deep the default solref stands at the constant impedance 0.95."""
-    timeconst = question.program.default("timeconst")
+    timeconst = question.program.default("timeconst")[0]
     return (1 - IMPEDANCE) / question.points * question.acceleration * timeconst**2
 
 
@@ -610,8 +610,7 @@ def _mujoco_answer(question: _Question, solution: tuple[float, SoftContact], ste
     else:
         timeconst = 2 * contact.mass * gain / contact.damping
         solref = (timeconst, math.sqrt(gain * contact.mass / contact.stiffness) / timeconst)
-    defaults_of = question.program.defaults["solimp"]
-    assert isinstance(defaults_of, tuple)
+    defaults_of = question.program.default("solimp")
     settings: Settings = {"solref": solref, "solimp": (d, d, *defaults_of[2:])}
     notes = ["of both geoms, or of a contact pair: MuJoCo mixes the two by solmix"]
     if contact.damping == 0:
@@ -648,6 +647,7 @@ def _yade(question: _Question) -> EngineAdvice:
             "must be above 0 in Yade, whose damping of all forces would stop every body",
             field="--restitution",
             value=f"{targets.restitution:g}",
+            advice="state a small one, 0.01, or take pybullet or mujoco, whose dashpots stop a body nearly for good",
         )
     settings: Settings = {"local_damping": alpha}
     slower = math.sqrt(1 - alpha)
@@ -669,7 +669,6 @@ def _yade(question: _Question) -> EngineAdvice:
     k = landing.load / targets.penetration
     w = math.sqrt(k / landing.mass)
     step = question.step if question.is_step_stated else FINE_STEP / w
-    assert step is not None
     if w * step >= 2:
         raise InputError(
             f"cannot be taken in Yade, whose steps are explicit: w dt = {w * step:.4g} is not below 2",
@@ -705,7 +704,7 @@ def _opensees(question: _Question) -> EngineAdvice:
     k = landing.load / targets.penetration
     contact = SoftContact(landing.mass, k, 0.0)
     w = contact.frequency
-    step = question.step if question.step is not None else FINE_STEP / w
+    step = question.step
     rebounds = None
     if targets.restitution is not None:
         statistics = rebound.rebound_statistics(rebound.spring_steps(stages.newmark(0.25, 0.5), w * step))

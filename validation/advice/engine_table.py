@@ -23,7 +23,7 @@ class Parameter:
     unit: str
     meaning: str
     formula: str  # of the spring and the dashpot on an effective mass m
-    default: float | tuple[float, ...] | None = None  # of the program; None where it has none
+    default: tuple[float, ...] = ()  # of the program; empty where it has none
 
 
 @dataclass(frozen=True)
@@ -38,16 +38,16 @@ class Program:
     parameters: tuple[Parameter, ...]
     source: str
 
-    def default(self, name: str) -> float:
-        """Return the default of a parameter that is one number."""
-        value = self.defaults[name]
-        assert isinstance(value, float)
-        return value
+    def default(self, name: str) -> tuple[float, ...]:
+        """Return the default of a parameter, of one number or of several."""
+        return next(one.default for one in self.parameters if one.name == name)
 
     @property
     def defaults(self) -> Settings:
         """The parameters that have a default."""
-        return {one.name: one.default for one in self.parameters if one.default is not None}
+        return {
+            one.name: one.default if len(one.default) > 1 else one.default[0] for one in self.parameters if one.default
+        }
 
 
 PROGRAMS = {
@@ -60,8 +60,8 @@ PROGRAMS = {
             1 / 240,
             2,
             (
-                Parameter("hertz", "Hz", "contactHertz", "w = 2 pi hertz; twice that on a static body", 30.0),
-                Parameter("damping_ratio", "", "contactDampingRatio", "zeta", 10.0),
+                Parameter("hertz", "Hz", "contactHertz", "w = 2 pi hertz; twice that on a static body", (30.0,)),
+                Parameter("damping_ratio", "", "contactDampingRatio", "zeta", (10.0,)),
             ),
             "b2MakeSoft, b2World_Step, b2SolveOverflowContacts and b2ApplyOverflowRestitution of Box2D's source",
         ),
@@ -96,8 +96,8 @@ PROGRAMS = {
             0.002,
             4,
             (
-                Parameter("timeconst", "s", "solref[0]", "w = 1 / (timeconst dampratio) at d = dmax", 0.02),
-                Parameter("dampratio", "", "solref[1]", "zeta at d = dmax", 1.0),
+                Parameter("timeconst", "s", "solref[0]", "w = 1 / (timeconst dampratio) at d = dmax", (0.02,)),
+                Parameter("dampratio", "", "solref[1]", "zeta at d = dmax", (1.0,)),
                 Parameter("dmax", "", "solimp, dmin = dmax = d", "share 1 - d of the load"),
                 Parameter(
                     "solimp", "", "solimp", "d(x) by dmin, dmax, width, midpoint, power", (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -113,7 +113,7 @@ PROGRAMS = {
             1,
             (
                 Parameter("normal_stiffness", "N/m", "kn", "k"),
-                Parameter("local_damping", "", "NewtonIntegrator.damping", "e = sqrt((1 - alpha) / (1 + alpha))", 0.2),
+                Parameter("local_damping", "", "NewtonIntegrator.damping", "e^2 = (1 - alpha) / (1 + alpha)", (0.2,)),
             ),
             "Yade's documentation, Formulation: numerical damping, critical timestep; Ip2_FrictMat_FrictMat_FrictPhys",
         ),

@@ -58,11 +58,13 @@ def judge(
     """Judge answers to problems against their exact motions, and write page and badge.
 
     Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
-    spall, cradle, joint. They and folders to fill in, of one problem or of all, come with dda-validate export-pack. A
-    column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the columns that it
-    reports pass, others that the problem asks for are withheld. What is wrong with the files is listed with file, line
-    and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver ended in a named
-    failure.
+    spall, cradle, joint; of rigid boxes, whose numbers are judged: standing, restitution, bouncing, tumbling, pile,
+    heavy-top, toppling, shaken, impact, and in folders of answers their cases. They and folders to fill in, of one
+    problem or of all, come with dda-validate export-pack. A column passes where its error is below what one per cent of
+    the problem's data changes. PARTIAL: the columns that it reports pass, others that the problem asks for are
+    withheld. Stale: it answers an earlier pack, in which the problem was another. What is wrong with the files is
+    listed with file, line and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the
+    solver ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
@@ -147,7 +149,7 @@ def _print_set(judged: JudgedSet) -> None:
     name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
     echo(f"{name}: {headline(judged)}\n")
     shown = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
-    width = max(len(cell.problem) for cell in shown)
+    width = max(len(text) for text in ["problem", *(cell.problem for cell in shown)])
     echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
     for cell in shown:
         said = "; ".join(text for text in (cell.column, cell.reason) if text)
@@ -193,12 +195,13 @@ def _step(progress: Any) -> Callable[[str], None]:
 
 def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[JudgedAnswer, str]:
     from validation.engine.measure import completed
-    from validation.problems.problem import PREFIX, PROBLEMS, problem, problem_of
+    from validation.problems.boxes import ASKS as BOX_PROBLEMS
+    from validation.problems.problem import PROBLEMS, problem, problem_of, scene_name
     from validation.solvers.registry import get_solver
     from validation.solvers.user import SAME_AS, UserSolver
 
-    of_pack = target in PROBLEMS
-    source = PREFIX + target if of_pack else target
+    of_pack = target in PROBLEMS or target in BOX_PROBLEMS
+    source = scene_name(target) if of_pack else target
     case = one_case(source, assignments)
     posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
     adapter = get_solver(solver)
@@ -267,11 +270,12 @@ def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
         echo(reached(judged))
         if judged.cause.would_tell:
             echo(f"what would tell: {judged.cause.would_tell}")
-    echo(f"\n  {'column':<25} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
+    width = max([25, *(len(united(column.name)) for column in judged.judgement.columns)])
+    echo(f"\n  {'column':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
     for column in judged.judgement.columns:
         why = datum(column, judged.standard) or column.reason
         error = per_cent(column.error)
         allowed = per_cent(column.band)
-        echo(f"  {united(column.name):<25} {column.word:<12} {error:>11} {allowed:>8}  {why}")
+        echo(f"  {united(column.name):<{width}} {column.word:<12} {error:>11} {allowed:>8}  {why}")
     for path in written:
         echo(f"wrote {path}")

@@ -55,7 +55,8 @@ def judged_answer(
     reference = standard(problem)
     judgement = judge(problem, history, reference)
     identified_cause = None
-    if judgement.word is Word.FAIL:
+    # of rigid boxes no other motion is at hand that could explain theirs
+    if judgement.word is Word.FAIL and problem.scene.rigid is None:
         from validation.problems.cause import cause
 
         step("the cause")

@@ -270,12 +270,14 @@ class Site:
     def index(self) -> str:
         """Return the first page: problems against programs with versions and settings."""
         ordered = [judged for group in self._programs.values() for judged in group]
+        rows = _table(ordered)
         return self._page(
             "answers_index.html.j2",
             "index.html",
             programs=self._programs,
             sets=ordered,
-            rows=_table(ordered),
+            rows=rows,
+            unanswered=[name for name in names() if name not in {row["name"] for row in rows}],
             verdicts_file=VERDICTS,
         )
 
@@ -325,6 +327,8 @@ def _table(sets: Sequence[JudgedSet]) -> list[dict[str, Any]]:
     rows = []
     for name in dict.fromkeys(itertools.chain.from_iterable(columns)):
         row = [column.get(name, AnswerCell(name, NOT_ANSWERED)) for column in columns]
+        if all(cell.word == NOT_ANSWERED for cell in row):
+            continue
         asks = question(name).asks if name in names() else f"no problem of pack {PACK} any more"
         rows.append({"name": name, "asks": asks, "cells": list(zip(sets, row, strict=True))})
     return rows

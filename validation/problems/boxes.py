@@ -91,19 +91,29 @@ class MeasuredQuantity:
 
     quantity: BoxQuantity
     value: float | None
+    is_reported: bool = True  # whether the columns are there that it is measured on
+
+    @property
+    def optional_and_absent(self) -> bool:
+        """Whether an answer does without a number that it may do without."""
+        return self.quantity.optional and self.value is None
 
     @property
     def word(self) -> str:
         """PASS, FAIL or "not reported"."""
+        if self.optional_and_absent or not self.is_reported:
+            return "not reported"
         if self.value is None:
-            return "not reported" if self.quantity.optional else "FAIL"
+            return "FAIL"
         return "PASS" if self.quantity.passes(self.value) else "FAIL"
 
     @property
     def beside(self) -> float | None:
         """Error over band; infinite where a number that the positions hold cannot be measured."""
+        if self.optional_and_absent or not self.is_reported:
+            return None
         if self.value is None:
-            return None if self.quantity.optional else math.inf
+            return math.inf
         return self.quantity.beside_band(self.value)
 
 
@@ -142,6 +152,8 @@ class BoxProblem:
         What the case of a curve of error over cost differs by from the scene; None where the problem has no curve.
     forces
         Whether forces are asked for where a program reports them.
+    changeable
+        Keys of `[rigid]` that may be others than in the problem's scene, so that the same numbers answer the question.
     """
 
     name: str
@@ -149,6 +161,7 @@ class BoxProblem:
     variants: tuple[BoxCase, ...] = ()
     curve: Mapping[str, Any] | None = None
     forces: bool = False
+    changeable: tuple[str, ...] = ()
 
     @property
     def cases(self) -> tuple[BoxCase, ...]:
@@ -198,7 +211,11 @@ def measured(quantities: Sequence[BoxQuantity], history: History) -> tuple[Measu
     """Return the numbers of an answer."""
     values = []
     for quantity in quantities:
-        value = quantity.measure(history)
+        try:
+            value = quantity.measure(history)
+        except KeyError:  # of a column that the answer withholds
+            values.append(MeasuredQuantity(quantity, None, is_reported=False))
+            continue
         if value is not None and not math.isfinite(value):
             value = None
         values.append(MeasuredQuantity(quantity, value))
@@ -693,8 +710,8 @@ ASKS = {
 def box_problems() -> Mapping[str, BoxProblem]:
     """Return the problems of rigid boxes by name."""
     problems = (
-        BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}),
-        BoxProblem("restitution", restitution, _restitution_cases(), {}),
+        BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}, changeable=("friction", "slope")),
+        BoxProblem("restitution", restitution, _restitution_cases(), {}, changeable=("restitution",)),
         BoxProblem("bouncing", bouncing, curve={"time.steps": 120}),
         BoxProblem("tumbling", tumbling),
         BoxProblem("pile", pile, forces=True),
@@ -704,3 +721,31 @@ def box_problems() -> Mapping[str, BoxProblem]:
         BoxProblem("impact", impact, curve={}, forces=True),
     )
     return {one.name: one for one in problems}
+
+
+def problem_posed(scene: Scene) -> BoxProblem:
+    """Return the problem that a scene of rigid boxes poses: one of the suite's, some of its data perhaps changed.
+
+    Raises
+    ------
+    InputError
+        It is none of them; what is measured on any other scene of boxes, and against what, nobody has said.
+    """
+    name = scene.name.removeprefix(PREFIX).partition("[")[0]
+    names = ", ".join(ASKS)
+    if name not in ASKS or not scene.name.startswith(PREFIX):
+        rule = f"must be one of {names}: rigid boxes are judged by the numbers of a problem"
+        raise InputError(rule, source=scene.name, field="rigid", advice="name the problem, and use --set")
+    problem = box_problems()[name]
+    own_scene = problem.scene()
+    rigid = boxes_of(scene)
+    for field_name in RigidSection.model_fields:
+        is_changed = getattr(rigid, field_name) != getattr(boxes_of(own_scene), field_name)
+        if is_changed and field_name not in (*problem.changeable, "refine"):
+            free = " and ".join(f"rigid.{key}" for key in problem.changeable) or "nothing"
+            rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
+            raise InputError(rule, source=scene.name, field=f"rigid.{field_name}")
+    same_time = (scene.time.step, scene.time.steps) == (own_scene.time.step, own_scene.time.steps)
+    if not same_time:
+        raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
+    return problem

@@ -65,7 +65,9 @@ def unit(column: str) -> str:
 
 
 def united(column: str) -> str:
-    """Return a history's column as the pack names it, with its unit."""
+    """Return a history's column as the pack names it, with its unit; a number of rigid boxes has its own name."""
+    if kind(column)[0] not in UNITS:
+        return column
     return f"{column}_{in_names(unit(column))}"
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
+from validation.problems.boxes import measured, problem_posed
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
@@ -132,9 +133,34 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
     """
     reference = against or standard(problem)
     _check_instants(problem, history, reference)
+    if problem.scene.rigid is not None:
+        return _judged_boxes(problem, history)
     names = problem.scene.run.columns
     columns = tuple(_judged(name, history.columns.get(name), reference) for name in names)
     return Judgement(problem.name, columns, quantities(problem, history, reference.exact))
+
+
+def _judged_boxes(problem: Problem, history: History) -> Judgement:
+    """Judge the numbers of rigid boxes: each stands where a column does, its error as a share of its scale."""
+    until = problem.scene.time.duration
+    posed = problem_posed(problem.scene)
+    answers = measured(posed.quantities(problem.scene), history.until(until))
+    columns = []
+    numbers = []
+    for one in answers:
+        if one.optional_and_absent:
+            continue
+        quantity = one.quantity
+        numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact))
+        above = one.value is None or one.value > quantity.exact
+        room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
+        word = Word(one.word)
+        error = None
+        if word is not Word.NOT_REPORTED:
+            error = math.inf if one.value is None else abs(one.value - quantity.exact) / quantity.scale
+        within = until if word is Word.PASS else 0.0
+        columns.append(Column(quantity.name, word, error, room / quantity.scale, until, quantity.reason, within))
+    return Judgement(problem.name, tuple(columns), tuple(numbers))
 
 
 def _check_instants(problem: Problem, history: History, reference: Standard) -> None:

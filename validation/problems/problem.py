@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.problems import boxes
 from validation.problems.truth import Truth, truth_of
 from validation.runs.history import Array
 from validation.scenes.scene import Scene, load_scene
@@ -66,7 +67,12 @@ ASKS = {
     "joint": "A shear wave through a joint that slips: what passes, what is sent back, and the slip.",
     "mass-ratio": "A heavy block on one of a thousandth of its mass: the light one rings between stiff contacts.",
 }
-PROBLEMS = tuple(ASKS)
+PROBLEMS = tuple(ASKS)  # of blocks and columns; those of rigid boxes are in `validation.problems.boxes`
+
+
+def scene_name(name: str) -> str:
+    """Return the name of a problem's scene."""
+    return (boxes.PREFIX if name in boxes.ASKS else PREFIX) + name
 
 
 def problem(name: str) -> Problem:
@@ -77,8 +83,9 @@ def problem(name: str) -> Problem:
     KeyError
         There is none of this name.
     """
-    scene = load_scene(PREFIX + name)
-    return Problem(name, ASKS[name], scene, truth_of(scene))
+    asks = {**ASKS, **boxes.ASKS}[name]
+    scene = load_scene(scene_name(name))
+    return Problem(name, asks, scene, truth_of(scene))
 
 
 def problem_of(scene: Scene) -> Problem:
@@ -87,6 +94,8 @@ def problem_of(scene: Scene) -> Problem:
     Raises
     ------
     InputError
-        The scene has a sweep, or no exact motion is known for it.
+        The scene has a sweep, no exact motion is known for it, or nothing is known that could be measured on it.
     """
+    if scene.rigid is not None:
+        boxes.problem_posed(scene)
     return Problem(scene.name, f"The scene {scene.name}.", scene, truth_of(scene))

@@ -56,7 +56,9 @@ def truth_of(scene: Scene) -> Truth:
     reasons = []
     for name in by_role(_role(scene)):
         solver = get_solver(name)
-        if (features.COLUMN in solver.handles) != (scene.column is not None):
+        kinds = {features.COLUMN: "column", features.RIGID_BOXES: "rigid"}
+        taken = {kind for feature, kind in kinds.items() if feature in solver.handles} or {"block"}
+        if scene.kind not in taken:
             continue  # what it says of the other kind of scene tells nobody anything
         reason = solver.refusal(scene)
         if reason is None:
@@ -84,7 +86,7 @@ def _role(scene: Scene) -> Role:
                 value=format(elastic[0], "g"),
             )
         return Role.LIMIT
-    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS} & scene_features else Role.LIMIT
+    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS, features.RIGID_BOXES} & scene_features else Role.LIMIT
 
 
 def exact(scene: Scene, truth: Truth) -> History:

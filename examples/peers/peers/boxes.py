@@ -16,7 +16,7 @@ Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwis
 ROUNDING = 1e-9
 SLOW_CORRECTION = 0.2  # 1/s
 FAST_CORRECTION = 20.0  # 1/s
-SPRING_RESOLUTION = 0.02  # angular frequency times step of the lightest box on a contact of given stiffness
+SPRING_RESOLUTION = 0.005  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
 def boxes_of(scene: Scene) -> RigidSection:
@@ -56,10 +56,13 @@ def spring_step(scene: Scene) -> float:
 def correction_rate(scene: Scene) -> float:
     """Return the rate at which overlap is to decay in a program that corrects it by a velocity that stays [1/s].
 
-    A landing overlaps by as much as the program's step, and what it is pushed out by it keeps: with restitution, energy
-    that no one brought. Where boxes come to rest on each other overlap adds up instead, and is to go.
+    A landing overlaps by as much as the program's step, and what a box is pushed out by it keeps: energy that no one
+    brought. Boxes that stand on each other overlap more and more where their impulses are not solved to the end; there
+    it is to go.
     """
-    return SLOW_CORRECTION if boxes_of(scene).restitution else FAST_CORRECTION
+    rigid = boxes_of(scene)
+    piled = len(rigid.box) > 1 and not rigid.restitution
+    return FAST_CORRECTION if piled else SLOW_CORRECTION
 
 
 def ground_ends(scene: Scene) -> tuple[float, float]:

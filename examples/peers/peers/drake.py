@@ -203,9 +203,7 @@ class Drake:
     handles = frozenset({features.RIGID_BOXES})
     chosen = True
     step = OWN_STEP
-    settings = (
-        "step 1 ms; hydroelastic contact of 100 GPa, given stiffness at the corners; stiction tolerance 1e-6 m/s"
-    )
+    settings = "step 1 ms; hydroelastic contact of 100 GPa, given stiffness at the corners; stiction tolerance 1e-6 m/s"
 
     @property
     def about(self) -> dict[str, str]:

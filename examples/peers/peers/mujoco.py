@@ -1,4 +1,4 @@
-"""MuJoCo as a solver: masses on tendons that are springs, or a rigid box on a plane with MuJoCo's own contact.
+"""MuJoCo as a solver: masses on tendons that are springs, or rigid boxes on a plane with MuJoCo's own contact.
 
 A block of one strain has the mass matrix m diag(1, 1, 1/3, 1/3, 1/3, 1/3) in its centroid's u, v and in what its edges
 move beside it, (a/2) ux, (h/2) uy, (a/2) vx, (h/2) vy: six masses on slide joints. Its strain energy and its corner
@@ -208,7 +208,10 @@ class MuJoCo:
     handles = features.LOADS | features.RULES | OF_CONTACT
     default = False
     model = "block of one strain by masses on slide joints, springs by tendons; a rigid box where it turns"
-    settings = "RK4, with friction the leapfrog, at fine steps; rigid box: elliptic cones, stiff contact"
+    settings = (
+        "RK4, with friction the leapfrog, at fine steps; a rigid box of a block: elliptic cones, stiff contact; "
+        "rigid boxes: semi-implicit Euler at 0.25 ms, elliptic cones, an approach turned in one step"
+    )
 
     @property
     def about(self) -> dict[str, str]:
@@ -259,7 +262,9 @@ class AsItComes(MuJoCo):
 
     default = True
     model = "where a corner can open, a rigid box on MuJoCo's own contact; else masses on slide joints"
-    settings = "semi-implicit Euler at the step of the scene; solref, solimp and cones as they come"
+    settings = (
+        "semi-implicit Euler at the step of the scene, rigid boxes at 2 ms; solref, solimp and cones as they come"
+    )
 
     def boxed(self, scene: Scene) -> bool:
         """Whether a rigid box on a plane is the scene's model."""

@@ -19,6 +19,7 @@ from validation.studies.field.table import FAIL, JUDGED, MISSING, NOT_APPLICABLE
 
 NONE = "n. a."
 SETTINGS = {"default": "as it comes", "chosen": "chosen"}  # words for the kind of a program
+OWN_CASE = "as titled"
 GAIN = "gain of energy"  # in the name of a quantity
 CHOSEN = ("chosen", "user")
 DEFAULTS = ("default",)
@@ -42,11 +43,12 @@ NOTE = (
     "below."
 )
 CURVES = (
-    "The curves of a problem show its largest error over its band, 1 being just allowed, over the steps of the "
-    "run and over its seconds on this machine: the program's own step, halved again and again until a run takes "
-    "too long. A program has one colour everywhere, and stands before the grey lines of the other families. The "
-    "star marks the best of its family: within the band, at this step and all finer ones, in the least time; "
-    f"times within a factor of {ALIKE:g} are taken for equal, since they are of single runs."
+    "A curve shows the largest error over its band, 1 being just allowed, over the steps of the run and over its "
+    "seconds on this machine, for the problem as titled, of some over its first seconds: the program's own step, "
+    "halved again and again until a run takes too long. A program has one colour everywhere, and stands before "
+    "the grey lines of the other families. The star marks the best of its family: of those that pass the problem, "
+    "whoever is within the band of the curve, at this step and all finer ones, in the least time. Times within a "
+    f"factor of {ALIKE:g} are taken for equal, since they are of single runs."
 )
 CAPTION = (
     "Error over what is allowed, over steps and seconds. Hairline: just allowed. Solid: chosen settings; dashed, "
@@ -281,7 +283,7 @@ def _best(engines: EngineTable, problem: str, family: str) -> str:
     if best:
         return ", ".join(f"{p.title}: {seconds(point.seconds)}, {point.steps}\u00a0steps" for p, point in best)
     has_curve = any(engines.cells[problem, p.name].points for p in engines.programs if p.family == family)
-    return "no run within the band" if has_curve else DASH
+    return "none" if has_curve else DASH
 
 
 def seconds(value: float | None) -> str:
@@ -353,17 +355,17 @@ def bands(engines: EngineTable, problem: EngineProblem) -> Table:
             name = f"{quantity.name} [{quantity.unit}]" if quantity.unit not in ("", "1") else quantity.name
             line = (capital(name), short(quantity.exact), _allowed(quantity), quantity.reason)
             cases = cases_by_line.setdefault(line, [])
-            if quantity.case and quantity.case not in cases:
+            if quantity.case not in cases:
                 cases.append(quantity.case)
     rows = []
     for (name, exact, allowed, reason), cases in cases_by_line.items():
-        rows.append((name, "; ".join(cases), exact, allowed, reason))
+        # A number of one case without words is of the problem itself, or of all its cases together, as a threshold is.
+        words = "; ".join(case or OWN_CASE for case in cases) if cases != [""] else ""
+        rows.append((name, words, exact, allowed, reason))
+    why = TableColumn("Why", "fill")
     if not any(row[1] for row in rows):
-        return table(
-            ("Asked", "Exact", "Allowed", TableColumn("Why", "fill")), [(row[0], *row[2:]) for row in rows], dense=True
-        )
-    heads = ("Asked", TableColumn("Case", "fill"), "Exact", "Allowed", TableColumn("Why", "fill"))
-    return table(heads, rows, dense=True)
+        return table(("Asked", "Exact", "Allowed", why), [(row[0], *row[2:]) for row in rows], dense=True)
+    return table(("Asked", TableColumn("Case", "fill"), "Exact", "Allowed", why), rows, dense=True)
 
 
 def _allowed(quantity: Quantity) -> str:
@@ -384,7 +386,7 @@ def programs(engines: EngineTable) -> Blocks:
         "Version",
         TableColumn("Model", "fill"),
         TableColumn("Settings", "fill"),
-        TableColumn("Adapter", "code"),
+        "Adapter",
     )
     note = f"The adapters are in {ADAPTERS} of this suite's repository."
     return [

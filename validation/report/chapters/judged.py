@@ -112,12 +112,15 @@ def page(answer: JudgedAnswer, directory: Path) -> Blocks:
         blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
         if answer.cause.would_tell:
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
+    further = []
+    if judgement.quantities:
+        further.append(_further_numbers(judgement.quantities, answer.problem.scene.rigid is not None))
     return [
         *blocks,
         Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
         _columns(judgement.columns, answer.standard),
         *figures(answer, directory),
-        *([_further_numbers(judgement.quantities)] if judgement.quantities else []),
+        *further,
         *([table(("Of the answer", TableColumn("", "fill")), tuple(answer.about))] if answer.about else []),
     ]
 
@@ -148,7 +151,10 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
 
 def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     rows = []
-    notes = [ALLOWED]
+    numbers = [column for column in columns_of_answer if column.name not in standard.bands and column.band is not None]
+    notes = [] if numbers else [ALLOWED]
+    notes += [f"{column.name}: {column.reason}." for column in numbers]
+    caption = "Errors of the numbers that are judged." if numbers else "Relative L2 error of each column."
     for column in columns_of_answer:
         name = united(column.name)
         error, band = (DASH if share is None else short(100 * share, 2) for share in (column.error, column.band))
@@ -158,7 +164,7 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     return table(
         ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]"),
         rows,
-        "Relative L2 error of each column.",
+        caption,
         tuple(notes),
     )
 
@@ -169,11 +175,10 @@ def datum(column: Column, standard: Standard) -> str:
     return band.datum if band else ""
 
 
-def _further_numbers(numbers: Sequence[Quantity]) -> Table:
+def _further_numbers(numbers: Sequence[Quantity], of_boxes: bool) -> Table:
+    caption = "The numbers that are judged." if of_boxes else "Further numbers, which are not judged."
     rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
-    return table(
-        (TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, "Further numbers, which are not judged."
-    )
+    return table((TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, caption)
 
 
 def _number_cell(number: Quantity, value: float | None) -> str:

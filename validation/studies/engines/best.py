@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from validation.studies.engines.table import EngineCell, EngineProgram, EngineTable, WorkPoint
+from validation.studies.field.table import PARTIAL, PASS
 
 ALIKE = 1.25  # ratio of seconds of single runs on a machine that does other things too: closer ones are equal
 FAMILIES = {
@@ -44,14 +45,17 @@ def by_family(table: EngineTable) -> dict[str, list[EngineProgram]]:
 
 
 def best_of_family(table: EngineTable, problem: str, family: str) -> list[tuple[EngineProgram, WorkPoint]]:
-    """Return the programs of a family that reach the band of a problem in the least time, and the runs that do.
+    """Return the programs of a family that pass a problem and reach its band in the least time, and the runs that do.
 
-    Those that take nearly as little are named with the first one; none where no program reaches the band.
+    A curve is of one case of the problem, and often of its first seconds: who is within the band there and fails the
+    problem is not the best at it. Those that take nearly as little time are named with the first one.
     """
     runs = []
     for program in table.programs:
-        point = reached(table.cells[problem, program.name].points)
-        if program.family == family and point is not None and point.seconds is not None:
+        cell = table.cells[problem, program.name]
+        point = reached(cell.points)
+        passes = cell.verdict in (PASS, PARTIAL)
+        if program.family == family and passes and point is not None and point.seconds is not None:
             runs.append((point.seconds, program, point))
     least = min((seconds for seconds, _, _ in runs), default=0.0)
     runs.sort(key=lambda run: run[0])

@@ -1,0 +1,111 @@
+"""Newton's adapters: that they state a scene of boxes rightly, by what each solver's integrator and contact must give.
+
+Warp compiles a solver's kernels when it is used first, for a minute or two, and keeps them in a folder of the user.
+"""
+
+import math
+import sys
+
+import numpy as np
+import pytest
+from peers.newton import XPBD, SemiImplicit, SemiImplicitAsItComes, XPBDAsItComes, program
+from programs.rigid_scenes import euler, rigid_scene
+
+try:
+    program()
+    ABSENT = False
+except NotImplementedError:
+    ABSENT = True
+installed = pytest.mark.skipif(ABSENT, reason="NOT RUN: Newton is not installed")
+ALL = [XPBD(), XPBDAsItComes(), SemiImplicit(), SemiImplicitAsItComes()]
+every = pytest.mark.parametrize("solver", ALL, ids=lambda solver: type(solver).__name__)
+SLOPE = math.radians(20.0)
+SINGLE = 2.0**-24  # what rounding takes of a number in single precision
+
+
+@pytest.mark.parametrize(
+    ("solver", "rigid", "field"),
+    [(XPBD(), {"stiffness": 1e6}, "stiffness"), (SemiImplicit(), {"restitution": 0.5}, "restitution")],
+)
+def test_refuses_what_a_solver_cannot_express(solver, rigid, field):
+    with pytest.raises(NotImplementedError, match=rf"rigid\.{field}"):
+        solver.solve(rigid_scene(**rigid))
+
+
+@pytest.mark.parametrize("package", ["newton", "warp"])
+def test_a_program_that_is_absent_is_named(package, monkeypatch):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(NotImplementedError, match="is not installed: pip install"):
+        XPBD().solve(rigid_scene())
+
+
+@installed
+@every
+def test_a_box_falls_and_spins_as_semi_implicit_euler_does(solver):
+    scene = rigid_scene({"lift": 5.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0, steps=60)
+    _, height, angle = scene.rigid.starts[0]
+    columns = solver.solve(scene)
+    count = round(scene.time.step * scene.time.steps / solver.step)
+    rounding = count * 8 * SINGLE  # each step rounds positions of up to 8 m
+    expected = euler(scene, solver.step, 3.0, 9.81 * math.sin(SLOPE))
+    np.testing.assert_allclose(columns["x_1"], expected, atol=rounding)
+    fall = euler(scene, solver.step, 1.0, -9.81 * math.cos(SLOPE))
+    np.testing.assert_allclose(columns["y_1"], height + fall, atol=rounding)
+    # SemiImplicit takes 0.05 of the spin away in a second as it comes, after each step.
+    damping = 0.05 if type(solver) is SemiImplicitAsItComes else 0.0
+    left = 1 - damping * solver.step
+    steps = round(scene.time.step / solver.step) * np.arange(1, scene.time.steps + 1)
+    turned = 9.0 * solver.step * np.cumsum(left ** np.arange(steps[-1]))[steps - 1]
+    # Newton adds half the rate of the quaternion times the step and normalises: the angle of a step is 2 atan(w h / 2).
+    lag = (9.0 * solver.step) ** 3 / 12 * count
+    # In each step it takes the spin to the body's axes and back, and at its end to a quaternion: about four roundings.
+    spin_rounding = 4 * count * 9.0 * SINGLE
+    time = scene.time.step * scene.time.steps
+    np.testing.assert_allclose(columns["angle_1"], angle + turned, atol=lag + rounding + spin_rounding * time)
+
+
+@installed
+@every
+def test_a_box_slides_without_friction_as_semi_implicit_euler_does_whatever_its_mass(solver):
+    scenes = [rigid_scene({"density": density}, slope=20.0, steps=50) for density in (10.0, 40.0)]
+    expected = euler(scenes[0], solver.step, 0.0, 9.81 * math.sin(SLOPE))
+    for scene in scenes:
+        np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, rtol=2e-3, atol=1e-4)
+
+
+@installed
+@pytest.mark.parametrize("solver", [XPBD(), SemiImplicit()], ids=lambda solver: type(solver).__name__)
+def test_an_elastic_box_comes_back_at_the_speed_it_came_with(solver):
+    scene = rigid_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=1.0, gravity=0.0, steps=20)
+    height = solver.solve(scene)["y_1"]
+    assert (height[-1] - height[-2]) / scene.time.step == pytest.approx(1.0, rel=2e-2)
+
+
+@installed
+def test_half_of_the_speed_comes_back_where_half_is_asked():
+    scene = rigid_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=0.5, gravity=0.0, steps=20)
+    for solver in (XPBD(), XPBDAsItComes()):
+        height = solver.solve(scene)["y_1"]
+        assert (height[-1] - height[-2]) / scene.time.step == pytest.approx(0.5, rel=2e-2)
+
+
+@installed
+@pytest.mark.parametrize("solver", [SemiImplicit(), SemiImplicitAsItComes()], ids=lambda solver: type(solver).__name__)
+def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
+    scene = rigid_scene({"density": 100.0}, stiffness=4e4, steps=400)
+    settled = 0.5 - solver.solve(scene)["y_1"][-20:].mean()
+    assert settled == pytest.approx(9.81 * 100.0 / 4e4, rel=1e-2)
+
+
+@installed
+def test_a_ground_that_moves_takes_a_box_along():
+    scene = rigid_scene(friction=45.0, base_amplitude=0.1, steps=50)
+    expected = [scene.rigid.base(scene.time.step * row)[0] for row in range(1, 51)]
+    np.testing.assert_allclose(XPBD().solve(scene)["x_1"], expected, atol=5e-3)
+
+
+@installed
+@pytest.mark.parametrize("solver", [XPBD(), SemiImplicit()], ids=lambda solver: type(solver).__name__)
+def test_a_ground_that_moves_leaves_a_frictionless_box_where_it_is(solver):
+    scene = rigid_scene(base_amplitude=0.1, steps=50)
+    assert np.max(np.abs(solver.solve(scene)["x_1"])) < 1e-5
