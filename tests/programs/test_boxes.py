@@ -21,6 +21,7 @@ if str(PEERS) not in sys.path:
 
 from peers import box2d, bullet, mujoco, mujoco_boxes, mujoco_model, pymunk  # noqa: E402
 from peers.boxes import SLOW_CORRECTION, ground_ends, spring_step, substeps  # noqa: E402
+from peers.spatial import OUT_OF_PLANE, check_plane  # noqa: E402
 
 DOUBLE = 1e-9
 SINGLE = 3e-4  # m or rad: 400 sub-steps, each rounded by half a unit in the last place of 10 m
@@ -367,3 +368,9 @@ def test_the_ground_reaches_as_far_as_a_box_can_slide_and_no_further_than_it_mus
 def test_a_spring_is_resolved_by_the_lightest_box_and_a_rigid_contact_needs_no_step() -> None:
     assert spring_step(scene([{}, {"density": 250.0}], stiffness=1e6)) == pytest.approx(0.005 * math.sqrt(250 / 1e6))
     assert spring_step(scene()) == math.inf
+
+
+def test_a_box_that_leaves_the_plane_gives_no_answer() -> None:
+    check_plane(math.cos(0.9 * OUT_OF_PLANE))
+    with pytest.raises(NotImplementedError, match="left the plane"):
+        check_plane(math.cos(1.1 * OUT_OF_PLANE))

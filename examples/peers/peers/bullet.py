@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
+from peers.spatial import check_plane
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import BoxSection
@@ -176,6 +177,7 @@ class World:
         for body in self.boxes:
             (x, _, z), orientation = self.bullet.getBasePositionAndOrientation(body, physicsClientId=self.server)
             matrix = self.bullet.getMatrixFromQuaternion(orientation)
+            check_plane(matrix[4])
             poses.append((x, z, math.atan2(matrix[6], matrix[0])))
         return poses
 

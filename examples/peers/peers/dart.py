@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, boxes_of, record
-from peers.spatial import Rotation, accelerated_reach
+from peers.spatial import Rotation, accelerated_reach, check_plane
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import RigidSection
@@ -106,6 +106,7 @@ class World:
         poses = []
         for body, rotation in zip(self.bodies, self.rotations, strict=True):
             transform = body.getWorldTransform().matrix()
+            check_plane(float(transform[2, 2]))
             angle = rotation.follow(math.atan2(transform[1, 0], transform[0, 0]))
             poses.append((float(transform[0, 3]), float(transform[1, 3]), angle))
         return poses

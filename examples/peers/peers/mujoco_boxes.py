@@ -22,6 +22,7 @@ import numpy as np
 
 from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
 from peers.mujoco_model import Columns, March, model_text, refuse
+from peers.spatial import check_plane
 from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
@@ -166,7 +167,8 @@ class World:
         self.march.mujoco.mj_step(self.march.model, data)
         if self.default:
             for number, turn in enumerate(self.turns):
-                w, _, y, _ = data.qpos[self.first + 7 * number + 3 : self.first + 7 * number + 7]
+                w, x, y, z = data.qpos[self.first + 7 * number + 3 : self.first + 7 * number + 7]
+                check_plane(1 - 2 * (x * x + z * z))
                 self.turns[number] = turn + math.remainder(-2 * math.atan2(y, w) - turn, math.tau)
 
     def poses(self) -> list[Pose]:

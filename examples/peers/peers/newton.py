@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, record, substeps
-from peers.spatial import Rotation
+from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import RigidSection
@@ -147,6 +147,7 @@ class World:
         base, _ = self.boxes.base(self.end)
         for place, rotation in zip(self.state.body_q.numpy(), self.rotations, strict=True):
             x, y, _, i, j, k, w = (float(value) for value in place)
+            check_plane(1 - 2 * (i * i + j * j))
             angle = math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k))
             poses.append((x + base, y, rotation.follow(angle) if math.isfinite(angle) else math.nan))
         return poses

@@ -1,4 +1,4 @@
-"""What programs in space need beside those in the plane: angles that are not folded, and a long enough ground."""
+"""What programs in space need beside those in the plane: unfolded angles, the plane of motion, a long enough ground."""
 
 from __future__ import annotations
 
@@ -8,6 +8,28 @@ from peers.boxes import boxes_of
 from validation.scenes.scene import Scene
 
 MARGIN = 10.0  # m on each side
+OUT_OF_PLANE = 0.05  # rad: tilt of a box's depth from which on its motion is no longer a plane one
+
+
+def check_plane(cosine: float) -> None:
+    """Refuse to answer for a box that has left the plane of its problem.
+
+    What is read of its motion in the plane lacks a part of its energy and its turns then.
+
+    Parameters
+    ----------
+    cosine
+        Of the angle between the box's depth and the normal of the plane.
+
+    Raises
+    ------
+    NotImplementedError
+        The box has left it.
+    """
+    if cosine < math.cos(OUT_OF_PLANE):
+        raise NotImplementedError(
+            "a box, free in space here, left the plane of the problem: its motion in the plane is no answer any more"
+        )
 
 
 class Rotation:
