@@ -57,6 +57,7 @@ def test_a_sound_submission_is_read(tmp_path: Path, one: Problem, motion: Histor
     assert found.problem.name == "locked" and found.data.program == STATED["program"]
     for name, values in motion.columns.items():
         np.testing.assert_array_equal(found.history.columns[name], values)
+    assert read_submission(submitted(tmp_path, table, pack="2.0")).problem.name == "locked"  # the same question
     swapped = [[row[1], row[2], row[0]] for row in rows_of(table)]  # columns go by their names
     found = read_submission(submitted(tmp_path, text_of(swapped)))
     np.testing.assert_array_equal(found.history.displacement, motion.displacement)

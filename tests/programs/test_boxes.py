@@ -140,11 +140,15 @@ def test_flies_as_its_integrator_does_and_turns_over_without_a_fold(program: Pro
 
 @pytest.mark.parametrize("program", of(DAMPED))
 def test_bullet_as_it_comes_loses_velocity_at_a_rate_that_grows_with_it(program: Program) -> None:
-    """The equation is v' = -0.04 v (1 + v / (1 m/s)), so that v / (1 + v) decays exponentially."""
-    answer = program.solver().solve(scene({"lift": 6.0, "velocity": (1.0, 0.0)}, rows=60, gravity=0.0))
+    """The equation is v' = -0.04 v (1 + v / (1 m/s)), so that v / (1 + v) decays exponentially; so does the spin."""
+    box = {"lift": 6.0, "velocity": (1.0, 0.0), "tilt": 20.0, "spin": 1.0}
+    answer = program.solver().solve(scene(box, rows=60, gravity=0.0))
     ratio = 0.5 * math.exp(-0.04 * (1 - 0.5 / 60))
     velocity = np.diff(answer["x_1"]) * 60
+    spin = np.diff(answer["angle_1"]) * 60
     assert velocity[-1] == pytest.approx(ratio / (1 - ratio), rel=1e-3)
+    assert spin[-1] == pytest.approx(ratio / (1 - ratio), rel=1e-3)
+    assert answer["angle_1"][0] == pytest.approx(math.radians(20.0) + 1 / 60, rel=1e-3)
 
 
 @pytest.mark.parametrize("program", UNDAMPED)
@@ -174,6 +178,44 @@ def test_returns_the_asked_share_of_the_velocity_above_every_threshold(program: 
     }
     within = 2.0 * shares.get(program.solver, 0.0) + max(program.rounding, 1e-5)
     assert velocity == pytest.approx(2.0 * restitution, abs=within)
+
+
+@pytest.mark.parametrize("program", of(*(name for name in WITH_RESTITUTION if name != DAMPED)))
+def test_turns_after_a_landing_on_a_corner_by_its_moment_of_inertia(program: Program) -> None:
+    """One impulse J = (1 + e) v / (1/m + r^2/I) at the lever r of the corner, without friction or gravity."""
+    box = {"width": 1.0, "height": 0.6, "tilt": 20.0, "lift": 0.2, "velocity": (0.0, -2.0)}
+    posed = scene(box, gravity=0.0, restitution=0.5, rows=12)
+    answer = program.solver().solve(posed)
+    one = posed.rigid.box[0]
+    tilt = math.radians(20.0)
+    lever = one.height / 2 * math.sin(tilt) - one.width / 2 * math.cos(tilt)
+    impulse = 1.5 * 2.0 / (1 / one.mass + lever**2 / one.inertia)
+    velocity = (answer["y_1"][-1] - answer["y_1"][-3]) * 30
+    spin = (answer["angle_1"][-1] - answer["angle_1"][-3]) * 30
+    assert velocity == pytest.approx(impulse / one.mass - 2.0, abs=0.02 * 2.0)  # the lever turns by a step at most
+    assert spin == pytest.approx(lever * impulse / one.inertia, rel=0.02)
+
+
+@pytest.mark.parametrize("program", of("pymunk", "box2d", "bullet", "mujoco"))
+def test_returns_it_at_a_crawl_with_the_chosen_settings(program: Program) -> None:
+    posed = scene({"tilt": 45.0, "lift": 0.02, "velocity": (0.0, -0.1)}, gravity=0.0, restitution=0.5)
+    answer = program.solver().solve(posed)
+    assert (answer["y_1"][-1] - answer["y_1"][-6]) * 60 / 5 == pytest.approx(0.05, rel=0.02)
+
+
+@pytest.mark.parametrize("program", of(*PROGRAMS))
+def test_a_box_that_falls_on_another_in_the_air_leaves_both_the_common_velocity(program: Program) -> None:
+    """Momentum, of masses of 500 and 2000 kg, without gravity or rebound; a fifth is what overlap adds, or damping."""
+    sizes = [
+        {"density": 500.0, "lift": 1.0},
+        {"density": 2000.0, "lift": 0.1, "velocity": (0.0, -1.0)},
+    ]
+    answer = program.solver().solve(scene(sizes, gravity=0.0, rows=40))
+    late = 60 / 10
+    velocities = [(answer[f"y_{number}"][-1] - answer[f"y_{number}"][-11]) * late for number in (1, 2)]
+    momentum = 500.0 * velocities[0] + 2000.0 * velocities[1]
+    assert momentum == pytest.approx(-2000.0, rel=0.08 if program.solver is bullet.AsItComes else 1e-4)
+    assert velocities == pytest.approx([-0.8, -0.8], rel=0.2)
 
 
 @pytest.mark.parametrize("program", UNDAMPED)
@@ -245,7 +287,10 @@ def test_box2d_reports_no_force() -> None:
 def test_a_spring_of_given_stiffness_gives_its_force_and_its_time(
     program: Program, width: float, stiffness: float
 ) -> None:
-    """Peak v sqrt(k m) and contact time pi sqrt(m / k) at 1 m/s without gravity; 0.02 rad a step."""
+    """Peak v sqrt(k m) and contact time pi sqrt(m / k) at 1 m/s without gravity.
+
+    An implicit spring loses pi / 2 of its 0.005 rad a step, of the speed.
+    """
     box = {"width": width, "velocity": (0.0, -1.0), "lift": 0.01}
     row = 1e-3
     posed = scene(box, rows=round(0.2 / row), row=row, gravity=0.0, stiffness=stiffness)
@@ -253,10 +298,10 @@ def test_a_spring_of_given_stiffness_gives_its_force_and_its_time(
     mass = posed.rigid.box[0].mass
     force = answer["force_1"]
     rate = math.sqrt(stiffness / mass)
-    assert np.max(force) == pytest.approx(math.sqrt(stiffness * mass), rel=0.03)
+    assert np.max(force) == pytest.approx(math.sqrt(stiffness * mass), rel=0.01)
     assert np.count_nonzero(force > 0) * row == pytest.approx(math.pi / rate, abs=2 * row)
     velocity = (answer["y_1"][-1] - answer["y_1"][-11]) / (10 * row)
-    assert velocity == pytest.approx(1.0, rel=0.04)
+    assert velocity == pytest.approx(1.0, rel=0.01)
 
 
 @pytest.mark.parametrize("program", of(*PROGRAMS))
@@ -320,5 +365,5 @@ def test_the_ground_reaches_as_far_as_a_box_can_slide_and_no_further_than_it_mus
 
 
 def test_a_spring_is_resolved_by_the_lightest_box_and_a_rigid_contact_needs_no_step() -> None:
-    assert spring_step(scene([{}, {"density": 250.0}], stiffness=1e6)) == pytest.approx(0.02 * math.sqrt(250 / 1e6))
+    assert spring_step(scene([{}, {"density": 250.0}], stiffness=1e6)) == pytest.approx(0.005 * math.sqrt(250 / 1e6))
     assert spring_step(scene()) == math.inf

@@ -47,16 +47,16 @@ def test_its_defaults_are_those_of_the_solver_of_compas():
 
 @installed
 @both
-@pytest.mark.parametrize("gravity", [9.81, 1.6])
-def test_a_box_flies_and_spins_as_the_midpoint_rule_does(solver, gravity, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("gravity", "width", "height"), [(9.81, 2.0, 0.5), (1.6, 1.0, 3.0), (9.81, 1.0, 1.0)])
+def test_a_box_flies_and_spins_as_the_midpoint_rule_does(solver, gravity, width, height, tmp_path, monkeypatch):
     """The step x + h (v + v') / 2 is exact of a constant force; a rotation by h w is 2 atan(h w / 2) in a step."""
     monkeypatch.chdir(tmp_path)
-    box = {"velocity": (3.0, 20.0), "spin": 2.0, "width": 2.0, "height": 0.5}
+    box = {"velocity": (3.0, 20.0), "spin": 2.0, "width": width, "height": height}
     scene = rigid_scene(box, slope=20.0, gravity=gravity)
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
     columns = solver.solve(scene)
     np.testing.assert_allclose(columns["x_1"], 3 * t + gravity * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
-    np.testing.assert_allclose(columns["y_1"], 0.25 + 20 * t - gravity * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(columns["y_1"], height / 2 + 20 * t - gravity * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
     h = solver.own_step
     rotation = t / h * 2 * math.atan(h * 2.0 / 2)
     # The step before the first turns it by half as much, from the rate 0.
@@ -90,6 +90,19 @@ def test_a_box_comes_back_at_e_times_the_speed_it_came_with(restitution, density
     scene = rigid_scene(box, gravity=0.0, restitution=restitution, step=h, steps=3)
     rebound = np.diff(LMGC90().solve(scene)["y_1"]) / h
     np.testing.assert_allclose(rebound, 2.0 * restitution, rtol=2 * TOLERANCE)
+
+
+@installed
+@both
+def test_a_box_turns_about_its_corner_as_a_rigid_body_does(solver):
+    """Less than a tenth of a second from upright, where theta'' = -m g w / 2 / I but for theta, here up to 0.05."""
+    width, height, spin = 1.0, 3.0, 0.7
+    box = {"width": width, "height": height, "spin": spin, "velocity": (-spin * height / 2, spin * width / 2)}
+    scene = rigid_scene(box, friction=40.0, steps=9)
+    t = scene.time.step * np.arange(1, scene.time.steps + 1)
+    back = 9.81 * width / 2 / ((width**2 + height**2) / 3)
+    expected = spin * t - back * t**2 / 2
+    np.testing.assert_allclose(solver.solve(scene)["angle_1"], expected, rtol=0.02, atol=solver.own_step * spin * 0.2)
 
 
 @installed

@@ -13,7 +13,7 @@ from validation.gates.gate import Status
 from validation.problems.boxes import box_problems
 from validation.results import Results
 from validation.solvers import registry
-from validation.studies.engines import cells, programs, study
+from validation.studies.engines import cells, predictions, programs, study
 from validation.studies.engines.cells import Point, finding, from_where
 from validation.studies.engines.table import EngineTable, read
 from validation.studies.field import programs as field_programs
@@ -105,13 +105,14 @@ def test_the_table_of_two_problems(brought: None, tmp_path: Path, monkeypatch: p
     steps = [point.steps for point in bounces["box2d"].points]
     assert steps == [60 * 8 * 2**n for n in range(5)]
     assert bounces["box2d"].points[0].step == pytest.approx(1 / 480, rel=1e-5)
-    assert bounces["box2d"].finding == "the error is below a thousandth of its band at every step"
+    assert bounces["box2d"].finding == "the error is below a twentieth of its band at every step"
     soft = bounces["box2d-default"]
     assert soft.verdict == FAIL
     assert soft.error == pytest.approx(70, rel=1e-3)
     assert soft.says.startswith("restitution 0.3 (exact 1), e = 1")
     assert soft.finding == "the error does not shrink with the step: 20 of its band at first, 20 after 4 halvings"
     assert soft.seconds is not None and soft.seconds > 0
+    assert all(point.seconds for point in soft.points)
     assert bounces["pymunk"].verdict == bounces["drake"].verdict == NOT_RUN
     assert bounces["mine"].verdict == FAIL and bounces["mine"].says == "not a number"
     assert bounces["mine"].error is None
@@ -142,7 +143,7 @@ def test_from_where_on_all_flags_are_up(flags: dict[float, bool], value: float) 
 
 
 def points(*errors: float | None, steps: int = 100) -> list[Point]:
-    return [Point(n, 0.1 / 2**n, steps * 2**n, 1.0, error, "completed") for n, error in enumerate(errors)]
+    return [Point(n, 0.1 / 2**n, steps * 2**n, error, "completed") for n, error in enumerate(errors)]
 
 
 @pytest.mark.parametrize(
@@ -151,9 +152,10 @@ def points(*errors: float | None, steps: int = 100) -> list[Point]:
         ((8.0, 4.0, 2.0, 1.0), "falls at each of 3 halvings of the step, order 1.0"),
         ((16.0, 4.0, 1.0, 0.25), "falls at each of 3 halvings of the step, order 2.0"),
         ((1.0, 2.0, 4.0, 8.0), "grows at each of 3 halvings of the step, order -1.0"),
+        ((0.4, 0.1, 0.025, 0.006), "falls at each of 3 halvings of the step, order 2.0"),
         ((3.0, 3.1, 2.9, 3.0), "does not shrink with the step: 3 of its band at first, 3 after 3 halvings"),
         ((3.0, 5.0, 0.5, 0.6), "falls unevenly, from 3 to 0.6"),
-        ((1e-5, 1e-6, 0.0, 1e-5), "below a thousandth of its band at every step"),
+        ((0.01, 0.04, 0.0, 0.011), "below a twentieth of its band at every step"),
     ],
 )
 def test_what_a_curve_shows(errors: tuple[float, ...], sentence: str) -> None:
@@ -166,3 +168,17 @@ def test_a_curve_that_is_short_or_whose_steps_were_not_halved_shows_nothing() ->
     assert finding(points(8.0, 4.0, math.inf, 1.0)) == ""
     same_steps = [replace(point, steps=100) for point in points(8.0, 4.0, 2.0, 1.0)]
     assert finding(same_steps) == ""
+
+
+def test_a_program_that_falls_otherwise_than_its_integrator_is_seen(
+    brought: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both toys are symplectic Euler, and neither is Box2D, which makes four parts of a step."""
+    falls = [predictions.Fall(name, lead, "why") for name, lead in (("box2d", 1.0), ("box2d-default", 0.25))]
+    monkeypatch.setattr(predictions, "FALLS", (*falls, predictions.Fall("mujoco", 1.0, "why")))
+    gates, table = run(("bouncing",), tmp_path, monkeypatch)
+    assert gates["rigid-bouncing box2d falls"] is Status.PASS
+    assert gates["rigid-bouncing box2d-default falls"] is Status.FAIL
+    assert gates["rigid-bouncing mujoco falls"] is Status.NOT_RUN
+    soft = table.cell("bouncing", "box2d-default")
+    assert soft.verdict == FAIL and soft.says.startswith("energy in the end over that at the start")

@@ -59,11 +59,12 @@ def judge(
 
     Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
     spall, cradle, joint; of rigid boxes, whose numbers are judged: standing, restitution, bouncing, tumbling, pile,
-    heavy-top, toppling, shaken, impact. They and folders to fill in, of one problem or of all, come with dda-validate
-    export-pack. A column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the
-    columns that it reports pass, others that the problem asks for are withheld. What is wrong with the files is listed
-    with file, line and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the solver
-    ended in a named failure.
+    heavy-top, toppling, shaken, impact, and in folders of answers their cases. They and folders to fill in, of one
+    problem or of all, come with dda-validate export-pack. A column passes where its error is below what one per cent of
+    the problem's data changes. PARTIAL: the columns that it reports pass, others that the problem asks for are
+    withheld. Stale: it answers an earlier pack, in which the problem was another. What is wrong with the files is
+    listed with file, line and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the
+    solver ended in a named failure.
 
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
@@ -148,7 +149,7 @@ def _print_set(judged: JudgedSet) -> None:
     name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
     echo(f"{name}: {headline(judged)}\n")
     shown = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
-    width = max(len(cell.problem) for cell in shown)
+    width = max(len(text) for text in ["problem", *(cell.problem for cell in shown)])
     echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
     for cell in shown:
         said = "; ".join(text for text in (cell.column, cell.reason) if text)

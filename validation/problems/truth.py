@@ -18,7 +18,6 @@ from validation.solvers.registry import by_role, get_solver
 from validation.solvers.rigid.rocking import friction_needed, quarter_period, rocking
 
 ROCKING = "rigid rocking"
-BOXES = "rigid-exact"
 
 
 @dataclass(frozen=True)
@@ -52,17 +51,14 @@ def truth_of(scene: Scene) -> Truth:
             field="sweep",
             advice="use --set key=value",
         )
-    if scene.rigid is not None:
-        why = get_solver(BOXES).refusal(scene)
-        if why is not None:
-            raise InputError(f"no exact motion is known: {why}", source=scene.name)
-        return Truth(BOXES, scene.time.duration)
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
     for name in by_role(_role(scene)):
         solver = get_solver(name)
-        if features.RIGID_BOXES in solver.handles or (features.COLUMN in solver.handles) != (scene.column is not None):
+        kinds = {features.COLUMN: "column", features.RIGID_BOXES: "rigid"}
+        taken = {kind for feature, kind in kinds.items() if feature in solver.handles} or {"block"}
+        if scene.kind not in taken:
             continue  # what it says of the other kind of scene tells nobody anything
         reason = solver.refusal(scene)
         if reason is None:
@@ -90,7 +86,7 @@ def _role(scene: Scene) -> Role:
                 value=format(elastic[0], "g"),
             )
         return Role.LIMIT
-    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS} & scene_features else Role.LIMIT
+    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS, features.RIGID_BOXES} & scene_features else Role.LIMIT
 
 
 def exact(scene: Scene, truth: Truth) -> History:

@@ -31,6 +31,8 @@ from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
 from validation.solvers.translation import no_fields, tension_note
 
 TIME_LIMIT = 300.0  # s a case beside the steps
+# s of a case of rigid boxes, of which a study has dozens: the slowest programs take some 20 s on a core of their own
+BOXES_LIMIT = 120.0
 VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # s for each step of the scene: an interpreted loop over a small dense system takes some 0.03 ms a step, a code that
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
@@ -128,7 +130,7 @@ class UserScene(Prepared):
         """Run the scene in the solver's own process."""
         no_fields(self.solver.name, self.scene, fields)
         start = perf_counter()
-        limit = base_limit() + ALLOWANCE * self.scene.time.steps
+        limit = base_limit(self.scene) + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}
         try:
             self._answer = ask(self.solver.command(), environment(), request, limit)
@@ -169,9 +171,10 @@ class UserScene(Prepared):
         return tuple(Mode(w, share, (complex(*a), complex(*b))) for w, share, (a, b, *_) in self._answer["modes"])
 
 
-def base_limit() -> float:
+def base_limit(scene: Scene | None = None) -> float:
     """Return the time limit of a case beside what its steps add [s]."""
-    return float(os.environ.get(VARIABLE, TIME_LIMIT))
+    usual = TIME_LIMIT if scene is None or scene.rigid is None else BOXES_LIMIT
+    return float(os.environ.get(VARIABLE, usual))
 
 
 def one_line(text: str) -> str:

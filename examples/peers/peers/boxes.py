@@ -16,7 +16,7 @@ Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwis
 ROUNDING = 1e-9
 SLOW_CORRECTION = 0.2  # 1/s
 FAST_CORRECTION = 20.0  # 1/s
-SPRING_RESOLUTION = 0.02  # angular frequency times step of the lightest box on a contact of given stiffness
+SPRING_RESOLUTION = 0.005  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
 def boxes_of(scene: Scene) -> RigidSection:

@@ -45,7 +45,6 @@ class World:
         self.own_step = USUAL_STEP if default else min(STEP, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
         along, up = rigid.pull
-        self.pull = along
         self.bullet.setGravity(along, 0, up, physicsClientId=self.server)
         self.bullet.setTimeStep(step, physicsClientId=self.server)
         if not default:
@@ -57,11 +56,9 @@ class World:
             )
         self.ground, self.ground_link = self._ground()
         self.boxes = []
-        self.links = []
         for box, start in zip(rigid.box, rigid.starts, strict=True):
-            body, link = self._free(box, start) if default else self._planar(box, start)
+            body = self._free(box, start) if default else self._planar(box, start)
             self.boxes.append(body)
-            self.links.append(link)
         self.starts = rigid.starts
         self.turns = [start[2] for start in rigid.starts]
 
@@ -105,8 +102,7 @@ class World:
         rigid = boxes_of(self.scene)
         left, right = ground_ends(self.scene)
         shape = self._shape((right - left) / 2, THICKNESS, THICKNESS / 2)
-        self.ground_start = (left + right) / 2
-        position = [self.ground_start, 0.0, -THICKNESS / 2]
+        position = [(left + right) / 2, 0.0, -THICKNESS / 2]
         if rigid.base_amplitude:
             mass = HEAVY * sum(box.mass for box in rigid.box)
             body = self._linked(position, [(self.bullet.JOINT_PRISMATIC, [1, 0, 0])], [mass], shape)
@@ -120,7 +116,7 @@ class World:
             self._change(body, link, contactStiffness=rigid.stiffness / CORNERS, contactDamping=0.0)
         return body, link
 
-    def _free(self, box: BoxSection, start: Pose) -> tuple[int, int]:
+    def _free(self, box: BoxSection, start: Pose) -> int:
         """Return a box that is free in space."""
         x, y, angle = start
         body: int = self.bullet.createMultiBody(
@@ -133,9 +129,9 @@ class World:
         along, up = box.velocity
         self.bullet.resetBaseVelocity(body, [along, 0, up], [0, -box.spin, 0], physicsClientId=self.server)
         self._set(body, BASE)
-        return body, BASE
+        return body
 
-    def _planar(self, box: BoxSection, start: Pose) -> tuple[int, int]:
+    def _planar(self, box: BoxSection, start: Pose) -> int:
         """Return a box on joints that leave it the plane."""
         x, y, angle = start
         joints = [
@@ -151,7 +147,7 @@ class World:
             self.bullet.resetJointState(body, joint, value, velocity, physicsClientId=self.server)
         self._change(body, BASE, linearDamping=0.0, angularDamping=0.0)
         self._set(body, len(joints) - 1)
-        return body, len(joints) - 1
+        return body
 
     def _set(self, body: int, link: int) -> None:
         """Set friction and restitution; a pair has the product of its two coefficients."""
@@ -169,10 +165,7 @@ class World:
         if self.ground_link != BASE:
             position = self.bullet.getJointState(self.ground, 0, physicsClientId=self.server)[0]
             velocity = base_velocity(self.scene, start, step, position)
-            # Gravity along a slope accelerates the link of the ground by as much, before it is moved.
-            self.bullet.resetJointState(
-                self.ground, 0, position, velocity - self.pull * step, physicsClientId=self.server
-            )
+            self.bullet.resetJointState(self.ground, 0, position, velocity, physicsClientId=self.server)
         self.bullet.stepSimulation(physicsClientId=self.server)
         if self.default:
             for number, (_, _, angle) in enumerate(self._free_poses()):

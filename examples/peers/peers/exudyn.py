@@ -23,7 +23,8 @@ from validation.scenes.scene import Scene
 PACKAGE = "exudyn"
 RECIPE = "pip install exudyn==1.13.6"
 DEFAULT_STEP = 0.01  # s: endTime 1 in numberOfSteps 100, the defaults of its TimeIntegrationSettings
-SINKS = 1e-3  # of its height that a box sinks by its weight, where nothing else gives a stiffness
+EARTH = 9.81  # m/s2
+SINKS = 1e-3  # of its height that a box sinks by its weight on Earth, where nothing else gives a stiffness
 ARM = 1e-3  # least radius of a corner's sphere over the height of its box
 DEEP = 2.0  # radius over the deepest penetration
 BEYOND = 1e-3  # of its width that a face goes beyond its corners, so that boxes of equal width stand on these
@@ -112,12 +113,12 @@ class AsItComes(Exudyn):
     friction_zone = None
     settings = (
         "generalized alpha, spectral radius 0.9, step 10 ms (endTime 1 in numberOfSteps 100); contact stiffness, which "
-        "has no default: a box sinks by 0.1 % of its height under its weight"
+        "has no default: a box sinks by 0.1 % of its height under its weight on Earth"
     )
 
     def stiffness(self, rigid: RigidSection, step: float) -> list[float]:
         """Return the stiffness of the contact below each box, where the scene gives none [N/m]."""
-        return [carried * acceleration(rigid) / (SINKS * rigid.box[0].height) for carried in carried_masses(rigid)]
+        return [carried * EARTH / (SINKS * rigid.box[0].height) for carried in carried_masses(rigid)]
 
     def choose(self, time: Any, rigid: RigidSection) -> None:
         """Leave Exudyn's settings as they are."""

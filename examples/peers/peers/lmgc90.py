@@ -1,9 +1,11 @@
-"""LMGC90 as a solver of rigid boxes: polyhedra of depth 1 m by the Moreau-Jean scheme, through `compas_lmgc90`.
+"""LMGC90 as a solver of rigid boxes: polyhedra by the Moreau-Jean scheme, through `compas_lmgc90`.
 
 That package is LMGC90 in one module, `_lmgc90`, which exposes a part of it: materials, contact laws, polyhedra, driven
 velocities and forces, a step. Boxes move in x and z; their velocity across the plane and their other two rotations are
-driven to zero, which keeps the motion plane. There is no initial velocity and no gravity but 9.81 m/s2 downwards: both
-are forces here, the former in one more step before the first, in which a box gets its momentum.
+driven to zero, which keeps the motion plane. Rotations are those about principal axes; the depth of the boxes is twice
+their largest side, with the mass of 1 m, so that the axis across the plane is always one of these. There is no initial
+velocity and no gravity but 9.81 m/s2 downwards: both are forces here, the former in one more step before the first, in
+which a box gets its momentum.
 
 Contact is sought once, in the first step, between faces that are parallel and within the distance `alert`; its points
 then move with both bodies, half with each. Boxes that start tilted, slide far or turn over are refused for this reason.
@@ -29,7 +31,7 @@ DEFAULT_STEP = 1e-2  # s: dt of compas_lmgc90.Solver
 DEFAULT_ALERT = 1e-3  # m: of its contact_law
 THETA = 0.5  # its default, the midpoint rule
 GRAVITY = 9.81  # m/s2, fixed in the wrapper
-DEPTH = 1.0  # m
+DEEP = 2.0  # depth of all boxes over their largest side
 POINTS = 4  # of the contact of two rectangles
 FOREVER = 1e6  # s
 TRIANGLES = (1, 3, 4, 1, 4, 2, 5, 6, 8, 5, 8, 7, 1, 2, 6, 1, 6, 5, 2, 4, 8, 2, 8, 6, 4, 3, 7, 4, 7, 8, 3, 1, 5, 3, 5, 7)
@@ -153,7 +155,8 @@ class Model:
         rigid = self.rigid
         solver.initialize(self.step, THETA, False)
         solver.add_one_tact_behav(LAW, *contact_law(rigid))
-        densities = sorted({box.density for box in rigid.box})
+        self.depth = DEEP * max(max(box.width, box.height) for box in rigid.box)
+        densities = sorted({box.density / self.depth for box in rigid.box})
         self.materials = {density: f"s{number:04d}" for number, density in enumerate(densities, start=1)}
         solver.set_materials(densities)
         solver.set_see_tables(alert)
@@ -171,8 +174,8 @@ class Model:
         left = min(box.x - box.width for box in self.rigid.box)
         right = max(box.x + box.width for box in self.rigid.box)
         height = self.rigid.box[0].height
-        vertices, faces = cuboid(right - left, 2 * DEPTH, height)
-        density = self.rigid.box[0].density
+        vertices, faces = cuboid(right - left, 2 * self.depth, height)
+        density = self.rigid.box[0].density / self.depth
         self.ground_centre = (left + right) / 2
         centre = [self.ground_centre, 0.0, -height / 2]
         self.solver.set_one_polyr(self.materials[density], centre, faces, vertices, 6, 0)
@@ -187,8 +190,8 @@ class Model:
         back = self.step * THETA  # this step goes from rest to the velocity
         x = start[0] - back * box.velocity[0]
         z = start[1] - back * box.velocity[1]
-        vertices, faces = cuboid(box.width, DEPTH, box.height, -back * box.spin)
-        material = self.materials[box.density]
+        vertices, faces = cuboid(box.width, self.depth, box.height, -back * box.spin)
+        material = self.materials[box.density / self.depth]
         axes = self.axes[number - 2]
         across = int(np.argmax(np.abs(axes[:, 1])))  # the principal axis along y
         rotation = 4 + across

@@ -210,7 +210,7 @@ class MuJoCo:
     model = "block of one strain by masses on slide joints, springs by tendons; a rigid box where it turns"
     settings = (
         "RK4, with friction the leapfrog, at fine steps; a rigid box of a block: elliptic cones, stiff contact; "
-        "rigid boxes: semi-implicit Euler at 0.5 ms, elliptic cones, an approach turned in one step"
+        "rigid boxes: semi-implicit Euler at 0.25 ms, elliptic cones, an approach turned in one step"
     )
 
     @property

@@ -25,16 +25,16 @@ from peers.mujoco_model import Columns, March, model_text, refuse
 from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
-STEP = 0.0005  # s
-TIME_CONSTANT = 0.02  # s: that of MuJoCo's contact as it comes
-# Impedance: how much of what else pushes a contact counters; MuJoCo takes 0.9999 at most.
+STEP = 0.00025  # s
+TIME_CONSTANT = 0.01  # s: half of that of MuJoCo's contact as it comes
+# Impedance: how much of what else pushes a contact counters; MuJoCo takes 0.0001 to 0.9999.
 REBOUND_IMPEDANCE = 0.9999
 REST_IMPEDANCE = 0.8
+COMPLIANT = 0.0001  # of a given stiffness
 LANDING = 0.5  # of an approach is stopped in a step, where nothing rebounds
 # Depth decays so where nothing rebounds [1/s]: alone a box is thrown up by it, on each other boxes stand less deep.
 REST_CORRECTION = 10.0
 PILE_CORRECTION = 100.0
-COMPLIANT = 0.0001  # the least
 CORNERS = 4  # contact points of a box that lies flat
 HALF_DEPTH = 0.5  # m of boxes
 THICKNESS = 1.0  # m of a ground that moves
@@ -92,9 +92,8 @@ class World:
             size = f"{(right - left) / 2!r} {HALF_DEPTH + THICKNESS!r} {THICKNESS / 2!r}"
             joint = '<joint type="slide" axis="1 0 0"/>'
             geom = f'<geom name="{GROUND}" type="box" size="{size}" mass="{mass!r}" {surface}/>'
-            self.ground_start = (left + right) / 2
-            position = f"{self.ground_start!r} 0 {-THICKNESS / 2!r}"
-            yield f'<body pos="{position}" gravcomp="1">{joint}{geom}</body>'
+            position = f"{(left + right) / 2!r} 0 {-THICKNESS / 2!r}"
+            yield f'<body pos="{position}">{joint}{geom}</body>'
         else:
             yield f'<geom name="{GROUND}" type="plane" size="1 1 1" {surface}/>'
         slides = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'

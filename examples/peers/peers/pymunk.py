@@ -13,7 +13,7 @@ from validation.scenes.scene import Scene
 
 RECIPE = "pip install pymunk==7.3.1"
 USUAL_STEP = 1 / 60  # s: of most of its examples, and the one that the default of collision_bias is worked out for
-STEP = 1 / 960  # s
+STEP = 1 / 1920  # s
 ITERATIONS = 100
 SLOP = 1e-5  # m
 CORRECTION_RATE = 60.0  # 1/s: overlap beyond the slop decays as exp(-rate t)
@@ -108,7 +108,7 @@ class Pymunk:
 
     handles = frozenset({features.RIGID_BOXES})
     default = False
-    settings = f"step 1/960 s, {ITERATIONS} iterations, slop 10 micrometres, overlap corrected at 60 1/s"
+    settings = f"step 1/1920 s, {ITERATIONS} iterations, slop 10 micrometres, overlap corrected at 60 1/s"
 
     @property
     def about(self) -> dict[str, str]:

@@ -33,6 +33,7 @@ COSTS = {
     "response": 0.1,
     "work-precision": 0.8,
     "field": 1.2,
+    "engines": 1.2,
 }
 LONG = 5.0  # times `core` from which on a run announces its length
 SECONDS = 20.0  # of `core`, for the example

@@ -18,7 +18,7 @@ from validation.runs.row import Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.studies.declaration import Study
-from validation.studies.engines import cells
+from validation.studies.engines import cells, predictions
 from validation.studies.engines.cells import BESIDE, case_scenes, curve_scenes
 from validation.studies.engines.programs import BoxProgram, about, box_programs
 from validation.studies.engines.table import STUDY
@@ -26,14 +26,14 @@ from validation.studies.field.table import is_absent
 
 ENDS = tuple(o for o in Outcome if o not in (Outcome.COMPLETED, Outcome.NOT_RUN, Outcome.NOT_APPLICABLE))
 ANSWERED = "problems answered"
-SAMPLED = 0.05  # of a band: what measuring at rows adds, greatest for a time of contact between two of them
 
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on this suite's own answers, and that programs which are there answer."""
     for name in box_problems():
         why = "it is the exact motion; what is left is what measuring at the rows adds"
-        yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, SAMPLED, why)
+        yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, cells.SETTLED, why)
+    yield from predictions.gates()
     for program in box_programs():
         if program.kind in ("chosen", "default"):
             why = "a program that is installed answers a problem at least; there are no more than all"
@@ -43,6 +43,7 @@ def gates() -> Iterator[Gate]:
 def derived() -> Iterator[Derived]:
     """Yield the cells, and how many problems each program answers."""
     yield from cells.derived()
+    yield from predictions.derived()
     for program in box_programs():
         if program.kind in ("chosen", "default"):
             yield Derived(STUDY, program.name, (), _answered(program))
@@ -65,12 +66,18 @@ def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which cases each problem has."""
     problems = []
     cases = {}
+    curves = {}
     for name, problem in box_problems().items():
         title = problem.scene().title
         problems.append({"name": name, "scene": PREFIX + name, "title": title, "asks": ASKS[name]})
         cases[name] = [scene.name for _, scene in case_scenes(name)]
-        cases[name] += [scene.name for scene in curve_scenes(name)]
-    return {"problems": problems, "cases": cases, "programs": [_program(one) for one in box_programs()]}
+        curves[name] = [scene.name for scene in curve_scenes(name)]
+    return {
+        "problems": problems,
+        "cases": cases,
+        "curves": curves,
+        "programs": [_program(one) for one in box_programs()],
+    }
 
 
 def _program(program: BoxProgram) -> dict[str, Any]:

@@ -165,6 +165,11 @@ def read(results: Results) -> EngineTable | None:
     for case in manifest.get("cases", []):
         if case["key"] in rows:
             row_by_case[case["scene"], case["solver"]] = rows[case["key"]]
+
+    def seconds_of(scene: str, program: str) -> float | None:
+        row = row_by_case.get((scene, program))
+        return sum(row.seconds.values()) if row is not None and row.outcome is Outcome.COMPLETED else None
+
     metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
     cells = {}
     for program in programs:
@@ -177,7 +182,9 @@ def read(results: Results) -> EngineTable | None:
                 reason = f"not installed: {program.recipe}"
                 cell = EngineCell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=reason)
             elif metrics:
-                cell = _judged(problem.name, program.name, metrics)
+                curve = [seconds_of(name, program.name) for name in data["curves"][problem.name]]
+                own_seconds = seconds_of(data["cases"][problem.name][0], program.name)
+                cell = _judged(problem.name, program.name, metrics, own_seconds, curve)
             else:
                 own_rows = [row_by_case.get((name, program.name)) for name in data["cases"][problem.name]]
                 cell = _unanswered(problem.name, program.name, [row for row in own_rows if row is not None])
@@ -185,7 +192,10 @@ def read(results: Results) -> EngineTable | None:
     return EngineTable(problems, programs, cells)
 
 
-def _judged(problem: str, program: str, metrics: Mapping[str, Value]) -> EngineCell:
+def _judged(
+    problem: str, program: str, metrics: Mapping[str, Value], seconds: float | None, curve: Sequence[float | None]
+) -> EngineCell:
+    """Return the cell of a derived row; seconds are those of the runs, of the problem's own case and of its curve."""
     quantities = []
     for one in _numbered(metrics, "number"):
         band = (_number(one["low"]) or 0.0, _number(one["high"]) or 0.0)
@@ -200,7 +210,7 @@ def _judged(problem: str, program: str, metrics: Mapping[str, Value]) -> EngineC
         counts = [int(_number(one[name]) or 0) for name in ("refine", "steps")]
         step = _number(one["step"]) or math.nan
         points.append(
-            WorkPoint(counts[0], step, counts[1], _number(one["seconds"]), _number(one["error"]), str(one["outcome"]))
+            WorkPoint(counts[0], step, counts[1], curve[counts[0]], _number(one["error"]), str(one["outcome"]))
         )
     texts_of_cell = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "finding", "reason")}
     return EngineCell(
@@ -208,7 +218,7 @@ def _judged(problem: str, program: str, metrics: Mapping[str, Value]) -> EngineC
         program,
         **texts_of_cell,
         error=_number(metrics.get("error over band")),
-        seconds=_number(metrics.get("seconds")),
+        seconds=seconds,
         quantities=tuple(quantities),
         points=tuple(points),
     )
