@@ -7,8 +7,8 @@ import itertools
 import math
 from typing import Any
 
-from peers.boxes import Pose, boxes_of, record
-from peers.spatial import Rotation, accelerated_reach, check_plane
+from peers.boxes import Pose, boxes_of, ground_ends, record
+from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import RigidSection
@@ -50,9 +50,9 @@ class World:
             options.mEnabled = False
             self.world.setDeactivationOptions(options)
         # A box and not a plane: on DART's PlaneShape a box gets fewer than four points of contact and turns about them.
-        reach = accelerated_reach(scene)
-        self.ground, _ = self._body("ground", (2 * reach, 1.0, GROUND_DEPTH))
-        self._place(self.ground, (0.0, -0.5, 0.0), (0.0, 0.0, 0.0))
+        left, right = ground_ends(scene)
+        self.ground, _ = self._body("ground", (right - left, 1.0, GROUND_DEPTH))
+        self._place(self.ground, ((left + right) / 2, -0.5, 0.0), (0.0, 0.0, 0.0))
         # The velocity is prescribed: contact forces do not move it.
         self.ground.setActuatorType(self.dart.dynamics.ActuatorType.VELOCITY)
         self.bodies = []

@@ -1,13 +1,9 @@
-"""What programs in space need beside those in the plane: unfolded angles, the plane of motion, a long enough ground."""
+"""What programs in space need beside those in the plane: angles that are not folded, and that the plane is kept."""
 
 from __future__ import annotations
 
 import math
 
-from peers.boxes import boxes_of
-from validation.scenes.scene import Scene
-
-MARGIN = 10.0  # m on each side
 OUT_OF_PLANE = 0.05  # rad: tilt of a box's depth from which on its motion is no longer a plane one
 
 
@@ -45,21 +41,3 @@ class Rotation:
         """Return the angle nearest to the last one that differs from a folded one by full turns [rad]."""
         self.angle += math.remainder(folded - self.angle, 2 * math.pi)
         return self.angle
-
-
-def accelerated_reach(scene: Scene) -> float:
-    """Return how far from x = 0 a box of the scene can be at most [m].
-
-    Its speed is at most what its energy at the start gives it, what the slope adds, and twice the ground's.
-    """
-    boxes = boxes_of(scene)
-    time = scene.time.step * scene.time.steps
-    along, upwards = boxes.pull
-    _, peak = boxes.base(1 / (4 * boxes.base_frequency))
-    reach = 0.0
-    for box, (x, y, _) in zip(boxes.box, boxes.starts, strict=True):
-        diagonal = math.hypot(box.width, box.height)
-        energy = math.hypot(*box.velocity) ** 2 + (box.spin * diagonal) ** 2 + 2 * abs(upwards) * y
-        speed = math.sqrt(energy) + 2 * abs(peak)
-        reach = max(reach, abs(x) + diagonal + speed * time + abs(along) * time**2 / 2)
-    return reach + MARGIN
