@@ -137,7 +137,7 @@ def record(
     return named(rows, per_row * scene.time.steps)
 
 
-def named(rows: Array, program_steps: int | None = None) -> dict[str, Array]:
+def named(rows: Array, program_steps: int) -> dict[str, Array]:
     """Return the columns of an answer.
 
     Parameters
@@ -145,9 +145,9 @@ def named(rows: Array, program_steps: int | None = None) -> dict[str, Array]:
     rows
         x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
     program_steps
-        How many steps the program made, for the curves of error over cost; None: one a row.
+        How many steps the program made, for the curves of error over cost.
     """
     names = (*POSE, FORCE)[: rows.shape[2]]
     boxes = range(rows.shape[1])
     columns = {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
-    return columns | {PROGRAM_STEPS: np.array(float(program_steps or len(rows)))}
+    return columns | {PROGRAM_STEPS: np.array(float(program_steps))}

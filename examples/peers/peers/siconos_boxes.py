@@ -53,7 +53,7 @@ def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
     rows = np.concatenate([answer["poses"], answer["forces"][:, :, None]], axis=2)
     instants = scene.time.step * np.arange(1, scene.time.steps + 1)
     rows[:, :, 0] += np.array([rigid.base(float(instant))[0] for instant in instants])[:, None]
-    return named(rows)
+    return named(rows, parts * scene.time.steps)
 
 
 def times(scene: Scene, parts: int) -> dict[str, float]:
@@ -120,4 +120,4 @@ def springs(scene: Scene, rigid: RigidSection, fine: bool, ask: Any) -> dict[str
     level = state[:, 1]
     force = rigid.stiffness * np.maximum(0.0, -level)
     columns = [box.x + state[:, 0], box.height / 2 + level, np.zeros(len(level)), force]
-    return named(np.stack(columns, axis=1)[:, None, :])
+    return named(np.stack(columns, axis=1)[:, None, :], parts * scene.time.steps)
