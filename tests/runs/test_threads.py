@@ -31,8 +31,14 @@ MANY = 3  # threads of this process, whatever the machine has
 
 
 def threads() -> set[int]:
-    """Return the numbers of threads of the BLAS libraries of this process."""
-    return {info["num_threads"] for info in threadpool_info() if info["user_api"] == "blas"}
+    """Return the numbers of threads of the BLAS libraries of this process that are numpy's and scipy's."""
+    return {info["num_threads"] for info in threadpool_info() if info["user_api"] == "blas" and is_ours(info)}
+
+
+def is_ours(info: dict[str, Any]) -> bool:
+    """Whether a library came with numpy or scipy, or from the system: programs under test bring others of their own."""
+    folder = Path(info["filepath"]).parent.name
+    return not folder.endswith(".libs") or folder in ("numpy.libs", "scipy.libs")
 
 
 @pytest.fixture

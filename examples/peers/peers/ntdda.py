@@ -52,7 +52,7 @@ class Histories:
             There is none, or the histories are not here.
         """
         if scene.kind != "block":
-            raise NotImplementedError("a history is data: there are some of blocks only")
+            raise NotImplementedError(f"a history is data: those here are of a block, not of {scene.kind_in_words}")
         file, beside, otherwise = ON_SLOPE if scene.load.gravity else PRESSED
         own = load_scene(directory() / beside).with_values(otherwise)
         for field, mine, theirs in differing(scene, own):
