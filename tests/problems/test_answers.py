@@ -53,6 +53,20 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     assert sets[1].data.step_of("locked") is None
 
 
+def test_problems_that_the_stated_pack_did_not_have_are_one_defect(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = packs.packs()[PACK]
+    earlier = {name: digest for name, digest in now.items() if name not in ("column", "rocking")}
+    monkeypatch.setattr(packs, "packs", lambda: {"1.9": earlier, PACK: now})
+    for module in ("answers", "submission"):
+        monkeypatch.setattr(f"validation.problems.{module}.packs", packs.packs)
+    answered(tmp_path, pack="1.9", names=("locked", "column", "rocking"))
+    (tmp_path / "creep.csv").write_text(blank_table(problem("creep")))
+    (line,) = defects_of(tmp_path)
+    assert f"{FILE}:3:10: pack: must be {PACK}, from which on the pack holds column.csv and 1 more" in line
+
+
 def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path: Path) -> None:
     answered(tmp_path, names=("locked",))
     rows = [line.rsplit(",", 1)[0] for line in (tmp_path / "locked.csv").read_text().splitlines()]

@@ -170,6 +170,7 @@ def _answers(
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
     asked = packs()[pack]
+    later: list[str] = []  # tables of problems that the stated pack did not have yet
     withheld_by_name = document.content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
         withheld_by_name = {}
@@ -177,12 +178,13 @@ def _answers(
     names = [path.name for path in _tables(folder)]
     for path in _tables(folder):
         name = path.name.removesuffix(TABLE)
-        if name not in asked:
+        is_later = name not in asked and name in packs()[PACK]
+        if name not in asked and not is_later:
             near = difflib.get_close_matches(name.lower(), asked, n=1)
             advice = f"did you mean {near[0]}{TABLE}?" if near else f"problems are {', '.join(asked)}"
             defects.add(Place(path), f"must be named after a problem of pack {pack}", value=path.name, advice=advice)
             continue
-        reason = stale(pack, name)
+        reason = None if is_later else stale(pack, name)
         if reason is not None:
             answers[name] = Answer(name, None, None, stale=reason)
             continue
@@ -190,9 +192,16 @@ def _answers(
         posed = question_named(name)
         withheld = withheld_by_name.get(name, [])
         columns = reported(document, ("not_reported", name), withheld, posed, defects)
+        known_defects = len(defects)
         history = read_answer(path, posed, columns, defects) if columns else None
+        if is_later and (history is not None or len(defects) > known_defects):
+            later.append(path.name)
         if history is not None:
             answers[name] = Answer(name, posed, history, tuple(withheld))
+    if later:
+        more = f" and {len(later) - 1} more" if len(later) > 1 else ""
+        rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
+        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
     for field in ("not_reported", "step_s"):
         _check_problems(document, field, asked, names, defects)
     order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
@@ -204,7 +213,7 @@ def _check_problems(document: Document, field: str, asked: Any, tables: Sequence
     stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
         place = document.place((field, name), of_key=True)
-        if name not in asked:
+        if name not in asked and name not in packs()[PACK]:
             near = difflib.get_close_matches(name, asked, n=1)
             advice = f"did you mean {near[0]}?" if near else None
             defects.add(place, f"{name}: must be among {', '.join(asked)}", field=field, advice=advice)
