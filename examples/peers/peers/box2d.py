@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, substeps
+from peers.packages import imported, version_of
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -93,7 +93,7 @@ class Box2D:
         """What is run, in words."""
         return {
             "program": "Box2D v3 (pyb2d3)",
-            "version": _version(),
+            "version": version_of("pyb2d3"),
             "recipe": RECIPE,
             "model": "boxes in the plane; soft contact, relaxed in every sub-step; single precision",
             "settings": self.settings,
@@ -127,15 +127,4 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import pyb2d3
-    except ImportError as error:
-        raise NotImplementedError(f"Box2D is not installed: {RECIPE}") from error
-    return pyb2d3
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("pyb2d3")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"
+    return imported("pyb2d3", "Box2D", RECIPE)

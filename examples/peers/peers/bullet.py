@@ -6,11 +6,11 @@ three joints, two that slide and one that turns, which Bullet's multi-bodies kee
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
+from peers.packages import imported, version_of
 from peers.spatial import check_plane
 from validation.runs.history import Array
 from validation.scenes import features
@@ -220,7 +220,7 @@ class Bullet:
         """What is run, in words."""
         return {
             "program": "Bullet (PyBullet)",
-            "version": _version(),
+            "version": version_of("pybullet"),
             "recipe": RECIPE,
             "model": self.model,
             "settings": self.settings,
@@ -257,15 +257,4 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import pybullet
-    except ImportError as error:
-        raise NotImplementedError(f"PyBullet is not installed: {RECIPE}") from error
-    return pybullet
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("pybullet")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"
+    return imported("pybullet", "PyBullet", RECIPE)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import itertools
 import math
 from typing import Any
 
 from peers.boxes import Pose, boxes_of, ground_ends, record
+from peers.packages import imported, version_of
 from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
 from validation.scenes import features
@@ -30,11 +30,7 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import dartpy
-    except ImportError:
-        raise NotImplementedError(f"DART is not installed: {RECIPE}") from None
-    return dartpy
+    return imported("dartpy", "DART", RECIPE)
 
 
 class World:
@@ -158,7 +154,7 @@ class Dart:
         """What is run, in words."""
         return {
             "program": "DART",
-            "version": _version(),
+            "version": version_of("dartpy"),
             "recipe": RECIPE,
             "model": "free bodies in space on a long box; rigid contact with impulses, Newton's restitution",
             "settings": self.settings,
@@ -185,10 +181,3 @@ class AsItComes(Dart):
     step = OWN_STEP
     sleeps = True
     settings = "all as it comes: step 1 ms, boxes that are slow for half a second sleep"
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("dartpy")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"

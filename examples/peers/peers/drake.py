@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import itertools
 import logging
 import math
@@ -10,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from peers.boxes import Pose, boxes_of, record, spring_step, substeps
+from peers.packages import imported, version_of
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.rigid import BoxSection, RigidSection
@@ -32,10 +32,7 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import pydrake.all as drake
-    except ImportError:
-        raise NotImplementedError(f"Drake is not installed: {RECIPE}") from None
+    drake = imported("pydrake.all", "Drake", RECIPE)
     # It warns that a rigid half-space touches no deformable body, of which there is none.
     logging.getLogger("drake").setLevel(logging.ERROR)
     return drake
@@ -211,7 +208,7 @@ class Drake:
         """What is run, in words."""
         return {
             "program": "Drake",
-            "version": _version(),
+            "version": version_of("drake"),
             "recipe": RECIPE,
             "model": "bodies on planar joints over a half-space, with compliant contact",
             "settings": self.settings,
@@ -238,10 +235,3 @@ class AsItComes(Drake):
 
     chosen = False
     settings = "all as it comes: step 1 ms, lagged approximation, a point of contact for each pair of bodies"
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("drake")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"

@@ -8,7 +8,6 @@ one that only pushes, its plasticity one that slips, at a yield that follows the
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
 from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
+from peers.packages import version_of
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.record import base_record
@@ -218,7 +218,7 @@ class MuJoCo:
         """What is run, in words."""
         return {
             "program": "MuJoCo",
-            "version": _version(),
+            "version": version_of("mujoco"),
             "recipe": RECIPE,
             "model": self.model,
             "settings": self.settings,
@@ -276,10 +276,3 @@ class AsItComes(MuJoCo):
 
 def _pushed(scene: Scene) -> bool:
     return scene.load.pressure != 0 or scene.load.traction != 0
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("mujoco")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"

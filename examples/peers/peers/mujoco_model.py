@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from peers.packages import imported
 from validation.runs.history import Array
 
 RECIPE = "pip install mujoco==4.0.0"
@@ -151,11 +152,7 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import mujoco
-    except ImportError as error:
-        raise NotImplementedError(f"MuJoCo is not installed: {RECIPE}") from error
-    return mujoco
+    return imported("mujoco", "MuJoCo", RECIPE)
 
 
 def refuse(why: str, *, where: bool) -> None:

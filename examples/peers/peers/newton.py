@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import atexit
-import importlib.metadata
 import math
 import os
 import shutil
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, record, substeps
+from peers.packages import imported, version_of
 from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
 from validation.scenes import features
@@ -40,10 +40,7 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import warp
-    except ImportError:
-        raise NotImplementedError(f"Newton is not installed: {RECIPE}") from None
+    warp = imported("warp", "Newton", RECIPE)
     # It reports every module that it compiles, and that there is no graphics processor.
     warp.config.log_level = warp.LOG_ERROR
     # Nobody differentiates: less to compile, and the same numbers.
@@ -52,11 +49,7 @@ def program() -> Any:
         folder = tempfile.mkdtemp(prefix="warp-")
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
         warp.config.kernel_cache_dir = folder
-    try:
-        import newton
-    except ImportError:
-        raise NotImplementedError(f"Newton is not installed: {RECIPE}") from None
-    return newton
+    return imported("newton", "Newton", RECIPE)
 
 
 def _has_writable_cache() -> bool:
@@ -166,7 +159,7 @@ class Newton:
         """What is run, in words."""
         return {
             "program": f"Newton, {self.solver}",
-            "version": _version(),
+            "version": version_of("newton"),
             "recipe": RECIPE,
             "model": "free bodies in space over a plane, in single precision",
             "settings": self.settings,
@@ -281,10 +274,3 @@ class SemiImplicit(SemiImplicitAsItComes):
     def options(self, boxes: RigidSection) -> dict[str, Any]:
         """Take the damping of rotation away."""
         return {"angular_damping": 0.0}
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("newton")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
 from peers.opensees_models import NEAR, Look, Plan, block, column, loads, parts
+from peers.packages import version_of
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -58,7 +58,7 @@ class OpenSees:
         """What the program is, and what is set so that it can express the scene."""
         return {
             "program": "OpenSees",
-            "version": _version(),
+            "version": version_of(PACKAGE),
             "recipe": RECIPE,
             "model": MODEL,
             "settings": self.settings,
@@ -128,13 +128,6 @@ def program() -> Any:
         raise NotImplementedError(f"OpenSees is not installed: {RECIPE} ({error})") from None
     ops.logFile(os.devnull, "-noEcho")
     return ops
-
-
-def _version() -> str:
-    try:
-        return metadata.version(PACKAGE)
-    except metadata.PackageNotFoundError:
-        return "not installed"
 
 
 def _counts(scene: Scene) -> Iterator[int]:

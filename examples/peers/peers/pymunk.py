@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record
+from peers.packages import imported, version_of
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -115,7 +115,7 @@ class Pymunk:
         """What is run, in words."""
         return {
             "program": "pymunk (Chipmunk)",
-            "version": _version(),
+            "version": version_of("pymunk"),
             "recipe": RECIPE,
             "model": "boxes in the plane; contact by impulses, sequentially, warm-started",
             "settings": self.settings,
@@ -149,15 +149,4 @@ def program() -> Any:
     NotImplementedError
         It is not installed.
     """
-    try:
-        import pymunk
-    except ImportError as error:
-        raise NotImplementedError(f"pymunk is not installed: {RECIPE}") from error
-    return pymunk
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("pymunk")
-    except importlib.metadata.PackageNotFoundError:
-        return "not installed"
+    return imported("pymunk", "pymunk", RECIPE)
