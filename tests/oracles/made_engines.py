@@ -4,38 +4,29 @@ from __future__ import annotations
 
 import itertools
 
-from validation.studies.engines.table import (
-    EngineCell,
-    EngineProblem,
-    EngineProgram,
-    EngineTable,
-    Quantity,
-    WorkPoint,
-)
-from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS
+from validation.studies.engines.table import EngineCell, EngineTable, Quantity, WorkPoint
+from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, ProblemLine, ProgramLine
 
 PROBLEMS = tuple(
-    EngineProblem(name, f"rigid-{name}", f"made {name}", f"What of {name}?")
+    ProblemLine(name, f"rigid-{name}", f"made {name}", f"What of {name}?")
     for name in ("standing", "restitution", "bouncing", "pile")
 )
 
 
-def program(name: str, title: str, family: str, default: bool = False, **about: str) -> EngineProgram:
+def program(name: str, title: str, family: str, default: bool = False, **about: str) -> ProgramLine:
     ending = ("-default", ", as it comes", "default") if default else ("", "", "chosen")
     information = {"program": title, "version": "1.5", "model": "impulses", "settings": f"settings of {title}"} | about
-    return EngineProgram(
-        name + ending[0], title + ending[1], f"pip install {name}", ending[2], family, True, information
-    )
+    return ProgramLine(name + ending[0], title + ending[1], f"pip install {name}", ending[2], True, information, family)
 
 
 PROGRAMS = (
-    EngineProgram("rigid-exact", "Exact motion", "", "suite", "suite", True, {"settings": "none"}),
+    ProgramLine("rigid-exact", "Exact motion", "", "suite", True, {"settings": "none"}, "suite"),
     program("siconos", "Siconos", "mechanics"),
     program("siconos", "Siconos", "mechanics", default=True, settings="its defaults"),
     program("newton-xpbd", "Newton XPBD", "robotics"),
     program("newton-xpbd", "Newton XPBD", "robotics", default=True),
     program("box2d", "Box2D", "games"),
-    EngineProgram("drake", "Drake", "pip install drake", "chosen", "robotics", False),
+    ProgramLine("drake", "Drake", "pip install drake", "chosen", False, family="robotics"),
 )
 
 

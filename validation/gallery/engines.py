@@ -5,12 +5,13 @@ from __future__ import annotations
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.engines import ADAPTERS, SETTINGS, adapter, installed_programs, outcome, plain_title
 from validation.report.chapters.text import capital
-from validation.studies.engines.table import EngineCell, EngineProgram, EngineTable
+from validation.studies.engines.table import EngineCell, EngineTable
+from validation.studies.field.table import ProgramLine
 
 
 def program_blocks(engines: EngineTable) -> Blocks:
     """Return a section for each program: what it says of itself, and its answers to all problems."""
-    sides: dict[str, list[EngineProgram]] = {}
+    sides: dict[str, list[ProgramLine]] = {}
     for program in installed_programs(engines):
         sides.setdefault(plain_title(program), []).append(program)
     blocks: Blocks = []
@@ -19,7 +20,7 @@ def program_blocks(engines: EngineTable) -> Blocks:
     return [Heading("Program by program"), *blocks] if blocks else []
 
 
-def _about(programs: list[EngineProgram]) -> Blocks:
+def _about(programs: list[ProgramLine]) -> Blocks:
     first = programs[0]
     version = first.about.get("version", "")
     model = first.about.get("model", "")
@@ -33,7 +34,7 @@ def _about(programs: list[EngineProgram]) -> Blocks:
     return [Paragraph(line, "small" if number else "plain") for number, line in enumerate(lines)]
 
 
-def _answers(engines: EngineTable, programs: list[EngineProgram]) -> Table:
+def _answers(engines: EngineTable, programs: list[ProgramLine]) -> Table:
     rows = []
     for problem in engines.problems:
         cells = [engines.cells[problem.name, program.name] for program in programs]
@@ -43,7 +44,7 @@ def _answers(engines: EngineTable, programs: list[EngineProgram]) -> Table:
     return table(["Problem", *columns, TableColumn("Curve", "fill")], rows)
 
 
-def _findings(programs: list[EngineProgram], cells: list[EngineCell]) -> str:
+def _findings(programs: list[ProgramLine], cells: list[EngineCell]) -> str:
     """Return what the curves show, with the settings that each is of where there are two."""
     findings = []
     for program, cell in zip(programs, cells, strict=True):

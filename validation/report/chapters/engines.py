@@ -13,9 +13,20 @@ from validation.report.figures.engines import LARGEST, LEAST, STAR, engine_figur
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.engines.best import ALIKE, FAMILIES, best_of_family, by_family, reached
-from validation.studies.engines.table import EngineCell, EngineProblem, EngineProgram, EngineTable, Quantity, read
+from validation.studies.engines.table import EngineCell, EngineTable, Quantity, read
 from validation.studies.field.programs import DEFAULT
-from validation.studies.field.table import FAIL, JUDGED, MISSING, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS, is_absent
+from validation.studies.field.table import (
+    FAIL,
+    JUDGED,
+    MISSING,
+    NOT_APPLICABLE,
+    NOT_RUN,
+    PARTIAL,
+    PASS,
+    ProblemLine,
+    ProgramLine,
+    is_absent,
+)
 
 NONE = "n. a."
 SETTINGS = {"default": "as it comes", "chosen": "chosen"}  # words for the kind of a program
@@ -176,7 +187,7 @@ def _percent(share: float) -> str:
     return f"{short(100 * share, 2)}\u00a0%"
 
 
-def plain_title(program: EngineProgram) -> str:
+def plain_title(program: ProgramLine) -> str:
     """Return what people call a program, whatever its settings."""
     return program.title.partition(", as it comes")[0]
 
@@ -184,19 +195,19 @@ def plain_title(program: EngineProgram) -> str:
 # ---- tables -------------------------------------------------------------------------------------------------------
 
 
-def installed_programs(engines: EngineTable) -> list[EngineProgram]:
+def installed_programs(engines: EngineTable) -> list[ProgramLine]:
     """Return the programs that are there, family by family; one that gave no answer at all is among them."""
     return [p for programs in by_family(engines).values() for p in programs if _is_there(engines, p)]
 
 
-def _is_there(engines: EngineTable, program: EngineProgram) -> bool:
+def _is_there(engines: EngineTable, program: ProgramLine) -> bool:
     if not program.installed:
         return False
     cells = _cells(engines, program)
     return not is_absent([(cell.verdict == NOT_APPLICABLE or MISSING in cell.reason, cell.reason) for cell in cells])
 
 
-def _cells(engines: EngineTable, program: EngineProgram) -> list[EngineCell]:
+def _cells(engines: EngineTable, program: ProgramLine) -> list[EngineCell]:
     return [engines.cells[problem.name, program.name] for problem in engines.problems]
 
 
@@ -242,7 +253,7 @@ def outcome(cell: EngineCell) -> str:
     return f"{cell.verdict} {cell.says}".rstrip() if cell.verdict in JUDGED else _mark(cell)
 
 
-def side_by_side(engines: EngineTable, problem: EngineProblem) -> Table:
+def side_by_side(engines: EngineTable, problem: ProblemLine) -> Table:
     """Return what came out of a problem, with chosen settings and as the programs come, in a line for each program."""
     answers: dict[str, dict[str, str]] = {}
     for program in installed_programs(engines):
@@ -322,7 +333,7 @@ def _lines(
 # ---- problems -----------------------------------------------------------------------------------------------------
 
 
-def section(engines: EngineTable, problem: EngineProblem, directory: Path) -> Blocks:
+def section(engines: EngineTable, problem: ProblemLine, directory: Path) -> Blocks:
     """Return the section of a problem: what it asks, the curves, what they show, the numbers and their bands."""
     blocks: Blocks = [Heading(f"{capital(problem.name)}: {problem.title}", 2), Paragraph(problem.asks)]
     figure = engine_figure(engines, problem.name)
@@ -332,7 +343,7 @@ def section(engines: EngineTable, problem: EngineProblem, directory: Path) -> Bl
     return [*blocks, *(part for part in parts if part.rows)]
 
 
-def curve_findings(engines: EngineTable, problem: EngineProblem) -> Table:
+def curve_findings(engines: EngineTable, problem: ProblemLine) -> Table:
     """Return what the curves show, the programs of one finding in a line, with the price of the band."""
     programs_by_finding: dict[str, list[str]] = {}
     for program in installed_programs(engines):
@@ -347,7 +358,7 @@ def curve_findings(engines: EngineTable, problem: EngineProblem) -> Table:
     return table((TableColumn("What the curve shows", "fill"), TableColumn("Programs", "fill")), rows, notes=notes)
 
 
-def bands(engines: EngineTable, problem: EngineProblem) -> Table:
+def bands(engines: EngineTable, problem: ProblemLine) -> Table:
     """Return the numbers that are asked, their exact values and what is allowed, with its reason."""
     cases_by_line: dict[tuple[str, str, str, str], list[str]] = {}
     for program in engines.programs:
@@ -397,7 +408,7 @@ def programs(engines: EngineTable) -> Blocks:
 
 
 def _about(engines: EngineTable) -> Iterator[tuple[str, str, str, str, str]]:
-    previous: EngineProgram | None = None
+    previous: ProgramLine | None = None
     for program in installed_programs(engines):
         about = program.about
         version = about.get("version", "")

@@ -25,7 +25,7 @@ from validation.studies.field.table import (
     is_absent,
     read,
 )
-from validation.studies.field.table import Table as Field
+from validation.studies.field.table import FieldTable as Field
 
 NONE = "n. a."
 PLACE = re.compile(r" \([^()]*:\d+, in [^()]*\)$")  # of the code that raised an error

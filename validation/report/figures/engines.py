@@ -11,7 +11,8 @@ from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.histories import LABEL_GAP, Margins
 from validation.studies.engines.best import FAMILIES, best_of_family, curves
-from validation.studies.engines.table import EngineProgram, EngineTable, WorkPoint
+from validation.studies.engines.table import EngineTable, WorkPoint
+from validation.studies.field.table import ProgramLine
 
 LEAST = 1e-3  # of what is allowed: smaller errors are drawn here
 LARGEST = 1e3
@@ -72,7 +73,7 @@ def _range(costs: Sequence[float | None]) -> tuple[float, float]:
     return (min(values) / 1.5, max(values) * 1.5) if values else (0.1, 10.0)
 
 
-def _line(program: EngineProgram, points: Sequence[WorkPoint], place: int, is_best: bool) -> ChartLine:
+def _line(program: ProgramLine, points: Sequence[WorkPoint], place: int, is_best: bool) -> ChartLine:
     style = style_of(program.name)
     pairs = [(cost, point.error) for point in points if (cost := _cost(point, place)) is not None]
     x = np.array([cost for cost, _ in pairs])

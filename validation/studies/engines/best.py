@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from validation.studies.engines.table import EngineCell, EngineProgram, EngineTable, WorkPoint
-from validation.studies.field.table import PARTIAL, PASS
+from validation.studies.engines.table import EngineCell, EngineTable, WorkPoint
+from validation.studies.field.table import PARTIAL, PASS, ProgramLine
 
 ALIKE = 1.25  # ratio of seconds of single runs on a machine that does other things too: closer ones are equal
 FAMILIES = {
@@ -34,9 +34,9 @@ def reached(points: Sequence[WorkPoint]) -> WorkPoint | None:
     return cheapest
 
 
-def by_family(table: EngineTable) -> dict[str, list[EngineProgram]]:
+def by_family(table: EngineTable) -> dict[str, list[ProgramLine]]:
     """Return the programs of each family that has some, chosen settings before defaults of the same program."""
-    families: dict[str, list[EngineProgram]] = {}
+    families: dict[str, list[ProgramLine]] = {}
     for family in FAMILIES:
         programs = [program for program in table.programs if program.family == family]
         if programs:
@@ -44,7 +44,7 @@ def by_family(table: EngineTable) -> dict[str, list[EngineProgram]]:
     return families
 
 
-def best_of_family(table: EngineTable, problem: str, family: str) -> list[tuple[EngineProgram, WorkPoint]]:
+def best_of_family(table: EngineTable, problem: str, family: str) -> list[tuple[ProgramLine, WorkPoint]]:
     """Return the programs of a family that pass a problem and reach its band in the least time, and the runs that do.
 
     A curve is of one case of the problem, and often of its first seconds: who is within the band there and fails the
@@ -62,7 +62,7 @@ def best_of_family(table: EngineTable, problem: str, family: str) -> list[tuple[
     return [(program, point) for seconds, program, point in runs if seconds <= ALIKE * least]
 
 
-def curves(table: EngineTable, problem: str) -> Iterator[tuple[EngineProgram, EngineCell]]:
+def curves(table: EngineTable, problem: str) -> Iterator[tuple[ProgramLine, EngineCell]]:
     """Yield the programs that have a curve of a problem, and their cells."""
     for program in table.programs:
         cell = table.cells[problem, program.name]

@@ -16,7 +16,7 @@ OWN_HALVINGS = 4  # of DDA's step
 
 @dataclass(frozen=True)
 class BoxProgram:
-    """A column of the field of engines; see `validation.studies.engines.table.EngineProgram`.
+    """A column of the field of engines; see `validation.studies.field.table.ProgramLine`.
 
     Attributes
     ----------

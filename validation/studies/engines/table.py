@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
-from validation.studies.field.table import MISSING, NOT_APPLICABLE, NOT_RUN, is_absent
+from validation.studies.field.table import (
+    MISSING,
+    NOT_APPLICABLE,
+    NOT_RUN,
+    ProblemLine,
+    ProgramLine,
+    Table,
+    is_absent,
+)
 
 STUDY = "engines"
 
@@ -100,50 +108,7 @@ class EngineCell:
     points: tuple[WorkPoint, ...] = ()
 
 
-@dataclass(frozen=True)
-class EngineProblem:
-    """A problem: what it asks, and which quantity decides."""
-
-    name: str
-    scene: str
-    title: str
-    asks: str
-
-
-@dataclass(frozen=True)
-class EngineProgram:
-    """A program; `about` is what it says of itself (program, version, recipe, model, settings)."""
-
-    name: str
-    title: str
-    recipe: str
-    kind: str  # "suite", "chosen" (settings chosen for accuracy), "default" (as it comes) or "user"
-    family: str  # "suite", "mechanics", "robotics", "games" or "user"
-    installed: bool
-    about: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class EngineTable:
-    """The field of engines: every problem has a cell for every program."""
-
-    problems: tuple[EngineProblem, ...]
-    programs: tuple[EngineProgram, ...]
-    cells: Mapping[tuple[str, str], EngineCell]  # by names of problem and program
-
-    def cell(self, problem: str, program: str) -> EngineCell:
-        """Return a cell.
-
-        Raises
-        ------
-        KeyError
-            There is no such problem or program.
-        """
-        return self.cells[problem, program]
-
-    def row(self, problem: str) -> tuple[EngineCell, ...]:
-        """Return the cells of a problem in the order of the programs."""
-        return tuple(self.cells[problem, program.name] for program in self.programs)
+EngineTable = Table[EngineCell]
 
 
 def read(results: Results) -> EngineTable | None:
@@ -158,8 +123,8 @@ def read(results: Results) -> EngineTable | None:
     data = manifest.get("data", {})
     if "programs" not in data:
         return None
-    problems = tuple(EngineProblem(**line) for line in data["problems"])
-    programs = tuple(EngineProgram(**line) for line in data["programs"])
+    problems = tuple(ProblemLine(**line) for line in data["problems"])
+    programs = tuple(ProgramLine(**line) for line in data["programs"])
     rows = results.rows()
     row_by_case: dict[tuple[str, str], Row] = {}
     for case in manifest.get("cases", []):
@@ -189,7 +154,7 @@ def read(results: Results) -> EngineTable | None:
                 own_rows = [row_by_case.get((name, program.name)) for name in data["cases"][problem.name]]
                 cell = _unanswered(problem.name, program.name, [row for row in own_rows if row is not None])
             cells[problem.name, program.name] = cell
-    return EngineTable(problems, programs, cells)
+    return Table(problems, programs, cells)
 
 
 def _judged(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
@@ -128,17 +128,21 @@ class ProgramLine:
     kind: str  # "suite", "chosen" (for accuracy), "default" (as it comes) or "user"
     installed: bool
     about: Mapping[str, str] = field(default_factory=dict)
+    family: str = "user"  # of contact engines "suite", "mechanics", "robotics", "games" or "user"
+
+
+CellT = TypeVar("CellT")
 
 
 @dataclass(frozen=True)
-class Table:
-    """The field: every problem has a cell for every program."""
+class Table(Generic[CellT]):
+    """A field: every problem has a cell for every program."""
 
     problems: tuple[ProblemLine, ...]
     programs: tuple[ProgramLine, ...]
-    cells: Mapping[tuple[str, str], Cell]  # by names of problem and program
+    cells: Mapping[tuple[str, str], CellT]  # by names of problem and program
 
-    def cell(self, problem: str, program: str) -> Cell:
+    def cell(self, problem: str, program: str) -> CellT:
         """Return a cell.
 
         Raises
@@ -148,12 +152,15 @@ class Table:
         """
         return self.cells[problem, program]
 
-    def row(self, problem: str) -> tuple[Cell, ...]:
+    def row(self, problem: str) -> tuple[CellT, ...]:
         """Return the cells of a problem in the order of the programs."""
         return tuple(self.cells[problem, program.name] for program in self.programs)
 
 
-def read(results: Results) -> Table | None:
+FieldTable = Table[Cell]
+
+
+def read(results: Results) -> FieldTable | None:
     """Return the field of a results directory, None where the study was not run.
 
     Raises
