@@ -386,7 +386,8 @@ def _shorter(step: float, frequency: float, is_enough: Callable[[float], bool]) 
 
 def _box2d(question: _Question) -> EngineAdvice:
     """Hertz by the penetration; the rebound is that of the shapes, as the relaxation takes what the spring returns."""
-    targets, step = question.targets, question.step
+    targets = question.targets
+    step = question.step
     if targets.hidden is not None:
         raise InputError(
             "cannot be chosen in Box2D, whose contacts do not vibrate: each sub-step relaxes them",
@@ -440,7 +441,9 @@ def _box2d(question: _Question) -> EngineAdvice:
 
 def _pybullet(question: _Question) -> EngineAdvice:
     """Stiffness by the penetration, damping by the restitution of the implicit steps."""
-    targets, landing, step = question.targets, question.landing, question.step
+    targets = question.targets
+    landing = question.landing
+    step = question.step
     if targets.penetration is None:
         raise InputError(
             "must be given for pybullet, whose contact is rigid as it comes: 0.01 mm deep at rest and without rebound",
@@ -521,7 +524,8 @@ def _spread(contact: SoftContact, question: _Question, step: float) -> dict[str,
 
 def _mujoco(question: _Question) -> EngineAdvice:
     """The reference by penetration and restitution at a constant impedance, which rises where refsafe would act."""
-    targets, step = question.targets, question.step
+    targets = question.targets
+    step = question.step
     stated = targets.penetration
     if stated is None:
         if question.acceleration <= 0:
@@ -552,7 +556,8 @@ def _mujoco_own_penetration(question: _Question) -> float:
 
 def _mujoco_contact(question: _Question, penetration: float, step: float) -> tuple[float, SoftContact] | None:
     """Return the least impedance from 0.95 on with a timeconst of two steps, and its contact; None if there is none."""
-    landing, targets = question.landing, question.targets
+    landing = question.landing
+    targets = question.targets
     load = question.relative_load(step)
 
     def contact_at(d: float) -> SoftContact | None:
@@ -588,7 +593,8 @@ def _mujoco_contact(question: _Question, penetration: float, step: float) -> tup
     if spare(d) < 0:
         if spare(most) < 0:
             return None
-        low, high = d, most
+        low = d
+        high = most
         for _ in range(50):  # a bisection: the mean rebound has small jumps
             middle = (low + high) / 2
             if spare(middle) < 0:
@@ -625,7 +631,8 @@ def _mujoco_answer(question: _Question, solution: tuple[float, SoftContact], ste
 
 def _yade(question: _Question) -> EngineAdvice:
     """The damping of all forces by restitution or hidden damping, kn by the penetration, the step by kn."""
-    targets, landing = question.targets, question.landing
+    targets = question.targets
+    landing = question.landing
     alpha = 0.0
     if targets.restitution is not None:
         e = targets.restitution
@@ -687,7 +694,8 @@ def _yade(question: _Question) -> EngineAdvice:
 
 def _opensees(question: _Question) -> EngineAdvice:
     """The penalty by the penetration; average acceleration hides no damping."""
-    targets, landing = question.targets, question.landing
+    targets = question.targets
+    landing = question.landing
     if targets.restitution not in (None, 1.0):
         raise InputError(
             "cannot be chosen in OpenSees, whose contact elements are springs without a dashpot",

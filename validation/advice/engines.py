@@ -118,8 +118,8 @@ def translate(
         parameters = program.defaults
         step = program.step if step is None else step
         at_step = "" if step is None else f", step {step:.6g} s"
-        shown = ", ".join(f"{name} = {_in_words(value)}" for name, value in parameters.items())
-        notes.append(f"{program.title} as it comes: {shown}{at_step}")
+        stated_parameters = ", ".join(f"{name} = {_in_words(value)}" for name, value in parameters.items())
+        notes.append(f"{program.title} as it comes: {stated_parameters}{at_step}")
     missing = [name for name in PARAMETERS[engine] if name not in parameters and name not in OPTIONAL]
     if engine == "mujoco" and missing == ["solimp"]:
         missing = []  # dmax stands in its place

@@ -148,13 +148,13 @@ def _print_set(judged: JudgedSet) -> None:
 
     name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
     echo(f"{name}: {headline(judged)}\n")
-    shown = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
-    width = max(len(text) for text in ["problem", *(cell.problem for cell in shown)])
+    answered_cells = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
+    width = max(len(text) for text in ["problem", *(cell.problem for cell in answered_cells)])
     echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
-    for cell in shown:
-        said = "; ".join(text for text in (cell.column, cell.reason) if text)
-        echo(f"  {cell.problem:<{width}} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {said}".rstrip())
-    missing = len(cells(judged)) - len(shown)
+    for cell in answered_cells:
+        explanation = "; ".join(text for text in (cell.column, cell.reason) if text)
+        echo(f"  {cell.problem:<{width}} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {explanation}".rstrip())
+    missing = len(cells(judged)) - len(answered_cells)
     echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
 

@@ -129,8 +129,8 @@ def summary(sets: Sequence[JudgedSet]) -> Counter[str]:
 def headline(judged: JudgedSet) -> str:
     """Return how many of its answers pass, in a few words."""
     counts = summary([judged])
-    others = [f"{count} {word}" for word, count in sorted(counts.items()) if word != Word.PASS]
-    return ", ".join([f"{counts[Word.PASS]} of {counts.total()} PASS", *others])
+    other_counts = [f"{count} {word}" for word, count in sorted(counts.items()) if word != Word.PASS]
+    return ", ".join([f"{counts[Word.PASS]} of {counts.total()} PASS", *other_counts])
 
 
 # ---- plain data -----------------------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ def verdicts(sets: Sequence[JudgedSet]) -> dict[str, Any]:
 
 def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
     data = judged.answers.data
-    own = data if isinstance(data, AnswersData) else None
+    answers_data = data if isinstance(data, AnswersData) else None
     rows = []
     for answer in judged.answers.answers:
         row: dict[str, Any] = {
@@ -157,7 +157,7 @@ def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
             "settings_name": judged.answers.settings_name,
             "answered_pack": data.pack,
             "problem": answer.name,
-            "step_s": own.step_of(answer.name) if own else None,
+            "step_s": answers_data.step_of(answer.name) if answers_data else None,
         }
         if answer.stale is not None:
             rows.append(row | {"verdict": STALE, "reason": answer.stale})

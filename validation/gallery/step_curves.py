@@ -73,7 +73,7 @@ def _chart(name: str, version: str, scheme: str, points: Sequence[tuple[float, f
         return TOP + (HEIGHT - TOP - BOTTOM) * ((high - ratio) / (high - low) if high > low else 0.5)
 
     marks = [{"x": round(x(s), 1), "y": round(y(r), 1)} for s, r in zip(steps, ratios, strict=True)]
-    said = ", ".join(f"{short(ratio, 2)} at {short(step, 2)} s" for step, ratio in reversed(points))
+    description = ", ".join(f"{short(ratio, 2)} at {short(step, 2)} s" for step, ratio in reversed(points))
     return {
         "problem": name,
         "version": version,
@@ -83,7 +83,7 @@ def _chart(name: str, version: str, scheme: str, points: Sequence[tuple[float, f
         "allowed": round(y(0.0), 1),
         "first_step": f"{short(points[0][0], 2)} s",
         "last_step": f"{short(points[-1][0], 2)} s",
-        "words": f"error over allowed {said}",
+        "words": f"error over allowed {description}",
         "width": WIDTH,
         "height": HEIGHT,
         "left": LEFT,

@@ -146,10 +146,10 @@ def _read_set(folder: Path, defects: Defects, step: Callable[[str], None]) -> An
     if document.content.get("format") == SUBMISSION:
         submission = read_submission(folder)
         step(submission.problem.name)
-        one = Answer(
+        answer = Answer(
             submission.problem.name, submission.problem, submission.history, tuple(submission.data.not_reported)
         )
-        return AnswerSet(folder, submission.data, (one,))
+        return AnswerSet(folder, submission.data, (answer,))
     before = len(defects)
     pack = check_pack(document, defects)
     data = checked(document, AnswersData, FILLED_IN, defects)
@@ -169,7 +169,7 @@ def _answers(
     folder: Path, document: Document, pack: str, defects: Defects, step: Callable[[str], None]
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
-    asked = packs()[pack]
+    digests = packs()[pack]
     later: list[str] = []  # tables of problems that the stated pack did not have yet
     withheld_by_name = document.content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
@@ -178,10 +178,10 @@ def _answers(
     names = [path.name for path in _tables(folder)]
     for path in _tables(folder):
         name = path.name.removesuffix(TABLE)
-        is_later = name not in asked and name in packs()[PACK]
-        if name not in asked and not is_later:
-            near = difflib.get_close_matches(name.lower(), asked, n=1)
-            advice = f"did you mean {near[0]}{TABLE}?" if near else f"problems are {', '.join(asked)}"
+        is_later = name not in digests and name in packs()[PACK]
+        if name not in digests and not is_later:
+            near = difflib.get_close_matches(name.lower(), digests, n=1)
+            advice = f"did you mean {near[0]}{TABLE}?" if near else f"problems are {', '.join(digests)}"
             defects.add(Place(path), f"must be named after a problem of pack {pack}", value=path.name, advice=advice)
             continue
         reason = None if is_later else stale(pack, name)
@@ -203,20 +203,20 @@ def _answers(
         rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
         defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
     for field in ("not_reported", "step_s"):
-        _check_problems(document, field, asked, names, defects)
+        _check_problems(document, field, digests, names, defects)
     order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
     return tuple(answers[name] for name in order if name in answers)
 
 
-def _check_problems(document: Document, field: str, asked: Any, tables: Sequence[str], defects: Defects) -> None:
+def _check_problems(document: Document, field: str, digests: Any, tables: Sequence[str], defects: Defects) -> None:
     """Add a defect for each problem that a field names and no table answers."""
     stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
         place = document.place((field, name), of_key=True)
-        if name not in asked and name not in packs()[PACK]:
-            near = difflib.get_close_matches(name, asked, n=1)
+        if name not in digests and name not in packs()[PACK]:
+            near = difflib.get_close_matches(name, digests, n=1)
             advice = f"did you mean {near[0]}?" if near else None
-            defects.add(place, f"{name}: must be among {', '.join(asked)}", field=field, advice=advice)
+            defects.add(place, f"{name}: must be among {', '.join(digests)}", field=field, advice=advice)
         elif name + TABLE not in tables:
             defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
@@ -237,8 +237,8 @@ def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
     known: dict[tuple[object, ...], Path] = {}
     for answer_set in sets:
         names = tuple(answer.name for answer in answer_set.answers)
-        alone = () if isinstance(answer_set.data, AnswersData) else (answer_set.data.settings, *names)
-        key = (*answer_set.address, *alone)
+        settings_key = () if isinstance(answer_set.data, AnswersData) else (answer_set.data.settings, *names)
+        key = (*answer_set.address, *settings_key)
         if key in known:
             rule = "must have another settings_name, or another version"
             defects.add(Place(answer_set.place / FILE), rule, value=f"those of {known[key]}")
@@ -293,5 +293,5 @@ def _same_files(answer_set: AnswerSet, place: Path) -> bool:
     if not place.is_dir():
         return False
     files = {path.name: path.read_bytes() for path in _kept_files(answer_set)}
-    there = {path.name: path.read_bytes() for path in [place / FILE, *_tables(place)] if path.is_file()}
-    return files == there
+    present_files = {path.name: path.read_bytes() for path in [place / FILE, *_tables(place)] if path.is_file()}
+    return files == present_files

@@ -491,7 +491,7 @@ def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
     box = rectangle_of(scene)
     spin = abs(boxes_of(scene).box[0].spin)
     widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
-    if spin >= min(critical_spin(other) for other in widths):
+    if spin >= min(critical_spin(changed_box) for changed_box in widths):
         return overturning(scene)
     rotation = _rotation(scene)
     return (
@@ -499,7 +499,7 @@ def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
             "greatest rotation",
             "deg",
             math.degrees(greatest_rotation(box, spin)),
-            [math.degrees(greatest_rotation(other, spin)) for other in widths],
+            [math.degrees(greatest_rotation(changed_box, spin)) for changed_box in widths],
             "one per cent of the width changes it by as much",
             measure=lambda history: math.degrees(rotation(history)),
         ),
@@ -534,7 +534,7 @@ def toppling_threshold(scene: Scene) -> BoxQuantity:
         "overturns from a spin of",
         "1",
         1.0,
-        [critical_spin(other) / critical_spin(box) for other in widths],
+        [critical_spin(changed_box) / critical_spin(box) for changed_box in widths],
         "one per cent of the width changes the spin that just overturns it by as much",
         of="the exact one",
         measure=lambda history: None,
@@ -584,7 +584,7 @@ def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
             "slip in the end",
             "mm",
             1e3 * float(exact[-1]),
-            [1e3 * float(other[-1]) for other in changed],
+            [1e3 * float(changed_slip[-1]) for changed_slip in changed],
             why,
             measure=lambda history: 1e3 * float(slip(history)[-1]),
             **width,
@@ -593,7 +593,7 @@ def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
             "largest slip",
             "mm",
             1e3 * float(np.max(np.abs(exact))),
-            [1e3 * float(np.max(np.abs(other))) for other in changed],
+            [1e3 * float(np.max(np.abs(changed_slip))) for changed_slip in changed],
             why,
             measure=lambda history: 1e3 * float(np.max(np.abs(slip(history)))),
             **width,
@@ -648,7 +648,7 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
         return math.sqrt(max(0.0, 2 * energy))
 
     lands = (exact.speed + box.velocity[1]) / rigid.gravity
-    force = [1e-3 * other.peak_force for other in changed]
+    force = [1e-3 * changed_impact.peak_force for changed_impact in changed]
     return (
         around(
             "peak force by the sinking",
@@ -671,7 +671,7 @@ def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
             "time of contact",
             "ms",
             1e3 * exact.duration,
-            [1e3 * other.duration for other in changed],
+            [1e3 * changed_impact.duration for changed_impact in changed],
             why,
             measure=lambda history: _times(1e3, measures.contact_time(history, gap(history))),
         ),
@@ -720,7 +720,7 @@ def box_problems() -> Mapping[str, BoxProblem]:
         BoxProblem("shaken", shaken, curve={"time.steps": 60}),
         BoxProblem("impact", impact, curve={}, forces=True),
     )
-    return {one.name: one for one in problems}
+    return {box_problem.name: box_problem for box_problem in problems}
 
 
 def problem_posed(scene: Scene) -> BoxProblem:

@@ -73,9 +73,9 @@ class Defects:
 
     def take(self, error: InputError) -> None:
         """Add what another check has refused."""
-        for one in DefectsError.of(error).defects:
-            path = one.source.path if isinstance(one.source, Place) else Path(str(one.source))
-            self._errors.setdefault((path, one.field, str(one)), one)
+        for defect in DefectsError.of(error).defects:
+            path = defect.source.path if isinstance(defect.source, Place) else Path(str(defect.source))
+            self._errors.setdefault((path, defect.field, str(defect)), defect)
 
     def check(self) -> None:
         """Raise what was met.

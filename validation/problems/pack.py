@@ -61,36 +61,36 @@ ANSWERS_TEMPLATE: Mapping[str, Any] = {
 CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 
-def problem_data(one: Problem, reference: Standard) -> ProblemData:
+def problem_data(posed: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
-    scene = one.scene
+    scene = posed.scene
     judged = [_judged(column, reference.bands[column]) for column in scene.run.columns]
     return ProblemData(
-        problem=one.name,
-        digest=digest(one),
-        title=one.title,
-        asks=one.asks,
+        problem=posed.name,
+        digest=digest(posed),
+        title=posed.title,
+        asks=posed.asks,
         **parts(scene),
         sampling=SamplingData(step_s=scene.time.step, count=len(reference.exact.time)),
         answer=tuple(judged),
-        exact=f"exact/{one.name}.csv",
+        exact=f"exact/{posed.name}.csv",
     )
 
 
-def box_problem_data(one: BoxQuestion) -> ProblemData:
+def box_problem_data(question: BoxQuestion) -> ProblemData:
     """Return a problem of rigid boxes as plain data."""
     numbers = []
-    for quantity in one.quantities:
+    for quantity in question.quantities:
         band = {"exact": quantity.exact, "low": quantity.low, "high": quantity.high}
         numbers.append(NumberData(name=quantity.name, unit=quantity.unit, reason=quantity.reason, **band))
     return ProblemData(
-        problem=one.name,
-        digest=digest(one),
-        title=one.title,
-        asks=one.asks,
-        **parts(one.scene),
-        sampling=SamplingData(step_s=one.scene.time.step, count=one.scene.time.steps),
-        answer=tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in one.columns),
+        problem=question.name,
+        digest=digest(question),
+        title=question.title,
+        asks=question.asks,
+        **parts(question.scene),
+        sampling=SamplingData(step_s=question.scene.time.step, count=question.scene.time.steps),
+        answer=tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in question.columns),
         numbers=tuple(numbers),
         exact=None,
     )
@@ -126,15 +126,15 @@ def write_problems(directory: Path, progress: Progress = lambda number, total, l
     place, rows = directory / PLACE, []
     for number, name in enumerate(PROBLEMS):
         progress(number, len(PROBLEMS), name)
-        one = problem(name)
-        reference = standard(one)
-        data = problem_data(one, reference)
+        posed = problem(name)
+        reference = standard(posed)
+        data = problem_data(posed, reference)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / str(data.exact), table_of(reference.exact, one.scene.run.columns))
+        _write(place / str(data.exact), table_of(reference.exact, posed.scene.run.columns))
         blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
         _write(place / "submissions" / name / "submission.json", _json(blank))
-        _write(place / "answers" / f"{name}.csv", blank_table(one))
-        rows.append(f"| `{name}` | {one.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
+        _write(place / "answers" / f"{name}.csv", blank_table(posed))
+        rows.append(f"| `{name}` | {posed.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
     for name, box_question in box_questions().items():
         data = box_problem_data(box_question)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
@@ -162,11 +162,11 @@ def table_of(motion: History, columns: Iterable[str]) -> str:
     return text.getvalue()
 
 
-def blank_table(one: Question) -> str:
+def blank_table(question: Question) -> str:
     """Return the table of an answer to fill in: header and instants."""
-    columns = one.columns
+    columns = question.columns
     lines = [",".join([TIME, *map(united, columns)])]
-    lines += [format(instant, ".9g") + "," * len(columns) for instant in one.instants]
+    lines += [format(instant, ".9g") + "," * len(columns) for instant in question.instants]
     return "\n".join(lines) + "\n"
 
 

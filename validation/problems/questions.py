@@ -60,14 +60,18 @@ Question: TypeAlias = Problem | BoxQuestion
 def box_questions() -> Mapping[str, BoxQuestion]:
     """Return the cases of the problems of rigid boxes by name."""
     questions = {}
-    for one in box_problems().values():
-        for case in one.cases:
-            scene = one.scene(case)
+    for box_problem in box_problems().values():
+        for case in box_problem.cases:
+            scene = box_problem.scene(case)
             label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower())
-            name = "-".join(part for part in (one.name, label.strip("-")) if part)
+            name = "-".join(part for part in (box_problem.name, label.strip("-")) if part)
             title = ": ".join(part for part in (scene.title, case.label) if part)
-            asked = tuple(one for one in (case.quantities or one.quantities)(scene) if not one.optional)
-            questions[name] = BoxQuestion(name, ASKS[one.name], title, scene, asked)
+            asked = tuple(
+                box_problem
+                for box_problem in (case.quantities or box_problem.quantities)(scene)
+                if not box_problem.optional
+            )
+            questions[name] = BoxQuestion(name, ASKS[box_problem.name], title, scene, asked)
     return questions
 
 

@@ -271,13 +271,13 @@ def curve_rebounds(
     gravity
         g [m/s2].
     """
-    way = speed * step  # the unit of x
+    distance = speed * step  # the unit of x
     k = (step / (curve.greatest * timeconst * dampratio)) ** 2
     b = 2 * step / (curve.greatest * timeconst)
     load = gravity * step / speed
 
     def forces(x: Array, v: Array) -> tuple[Array, Mask]:
-        d = np.array([curve(float(depth)) for depth in x * way])
+        d = np.array([curve(float(depth)) for depth in x * distance])
         together = points * d / (1 + (points - 1) * d)
         return np.maximum(together * (load - b * v - k * d * x), 0.0), x < 0
 

@@ -124,10 +124,10 @@ def findings(engines: EngineTable) -> Table:
     rows = []
     known = {problem.name for problem in engines.problems}
     for question, names in QUESTIONS:
-        asked = [name for name in names if name in known]
-        if asked:
-            title = f"{question} ({', '.join(asked)})"
-            rows.append((title, *(_who_passes(engines, asked, kinds) for kinds in (CHOSEN, DEFAULTS))))
+        names_of_question = [name for name in names if name in known]
+        if names_of_question:
+            title = f"{question} ({', '.join(names_of_question)})"
+            rows.append((title, *(_who_passes(engines, names_of_question, kinds) for kinds in (CHOSEN, DEFAULTS))))
     if any(GAIN in quantity.name for cell in engines.cells.values() for quantity in cell.quantities):
         gains = [_who_gains(engines, kinds) for kinds in (CHOSEN, DEFAULTS)]
         rows.append(("Who gains energy?", *gains))
@@ -171,9 +171,11 @@ def _who_gains(engines: EngineTable, kinds: Collection[str]) -> str:
             continue
         values = []
         for cell in _cells(engines, program):
-            measured = [one for one in cell.quantities if GAIN in one.name and one.value is not None]
+            measured = [
+                quantity for quantity in cell.quantities if GAIN in quantity.name and quantity.value is not None
+            ]
             is_judged = is_judged or bool(measured)
-            values += [one.value for one in measured if one.value is not None and one.word == FAIL]
+            values += [quantity.value for quantity in measured if quantity.value is not None and quantity.word == FAIL]
         if values:
             gains.append(f"{plain_title(program)} ({_percent(max(values))})")
     if not is_judged:

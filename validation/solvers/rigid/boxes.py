@@ -159,8 +159,8 @@ def _poses(rigid: RigidSection, time: Array, **moved: Array) -> dict[str, Array]
 def _why_tips(rigid: RigidSection) -> str | None:
     box = rigid.box[0]
     slides = box.velocity[0] != 0 or abs(rigid.slope) > rigid.friction
-    needed = rigid.friction_coefficient if slides else abs(math.tan(math.radians(rigid.slope)))
-    if needed >= box.width / box.height:
+    needed_friction = rigid.friction_coefficient if slides else abs(math.tan(math.radians(rigid.slope)))
+    if needed_friction >= box.width / box.height:
         return "the motion is not known of a box that friction overturns: tan(phi) must be below width / height"
     return None
 
@@ -323,9 +323,9 @@ def _why_not_about_corner(scene: Scene, rigid: RigidSection) -> str | None:
     end = return_time(rectangle, abs(box.spin))
     if scene.time.duration >= end:
         return f"the motion about a corner is known until the box comes back after {end:.4g} s"
-    needed = friction_needed(box.width, box.height, greatest_rotation(rectangle, abs(box.spin)))
-    if rigid.friction_coefficient <= needed:
-        return f"the corner slips: friction must be above {math.degrees(math.atan(needed)):.4g} deg"
+    needed_friction = friction_needed(box.width, box.height, greatest_rotation(rectangle, abs(box.spin)))
+    if rigid.friction_coefficient <= needed_friction:
+        return f"the corner slips: friction must be above {math.degrees(math.atan(needed_friction)):.4g} deg"
     return None
 
 

@@ -25,7 +25,7 @@ def reached(points: Sequence[WorkPoint]) -> WorkPoint | None:
     """
     cheapest = None
     least = math.inf
-    for point in sorted(points, key=lambda one: -one.refine):
+    for point in sorted(points, key=lambda candidate: -candidate.refine):
         if point.error is None or point.error > 1:
             break
         if point.seconds is not None and point.seconds < least:

@@ -82,7 +82,9 @@ def scenes() -> Iterator[Scene]:
         for _, scene in case_scenes(name):
             yield scene.with_values({"run.solvers": names}).model_copy(update={"name": scene.name})
         for refine, scene in enumerate(curve_scenes(name)):
-            refined = [one.name for one in programs if one.halvings is not None and one.halvings >= refine]
+            refined = [
+                program.name for program in programs if program.halvings is not None and program.halvings >= refine
+            ]
             if refined:
                 yield scene.with_values({"run.solvers": refined}).model_copy(update={"name": scene.name})
 
@@ -149,7 +151,7 @@ def _points(problem: BoxProblem, program: BoxProgram, finished: Finished) -> Ite
 
 def largest_error(quantities: Sequence[MeasuredQuantity]) -> float | None:
     """Return the largest error over its band, None where nothing was measured."""
-    return max((one.beside for one in quantities if one.beside is not None), default=None)
+    return max((number.beside for number in quantities if number.beside is not None), default=None)
 
 
 # ---- the grid -------------------------------------------------------------------------------------------------------
@@ -211,17 +213,17 @@ def _creep_allowed(scene: Scene) -> float:
 
 def metrics_of(problem: BoxProblem, answers: Sequence[Answer], points: Sequence[Point]) -> dict[str, Value]:
     """Return a cell as the metrics of a row: its own, those of each number, then the points of its curve."""
-    labelled = [(answer.case.label, one) for answer in answers for one in answer.quantities]
+    labelled = [(answer.case.label, number_of_answer) for answer in answers for number_of_answer in answer.quantities]
     grid = threshold(problem, answers)
     if grid is not None:
         labelled.insert(1, ("", grid))
     ended_wrong = [answer for answer in answers if _is_wrong(answer)]
     missing = [answer for answer in answers if answer.history is None and not _is_wrong(answer)]
-    words = [one.word for _, one in labelled]
+    words = [number_of_answer.word for _, number_of_answer in labelled]
     verdict = PARTIAL if missing else PASS
     if FAIL in words or ended_wrong:
         verdict = FAIL
-    error = largest_error([one for _, one in labelled])
+    error = largest_error([number_of_answer for _, number_of_answer in labelled])
     metrics: dict[str, Value] = {
         "verdict": verdict,
         "says": _says(labelled, ended_wrong),
@@ -230,17 +232,17 @@ def metrics_of(problem: BoxProblem, answers: Sequence[Answer], points: Sequence[
     }
     if error is not None and math.isfinite(error) and not ended_wrong:
         metrics[BESIDE] = settled(error)
-    for number, (label, one) in enumerate(labelled):
-        quantity = one.quantity
+    for number, (label, number_of_answer) in enumerate(labelled):
+        quantity = number_of_answer.quantity
         metrics |= {
             f"number {number}: name": quantity.name,
             f"number {number}: unit": quantity.unit,
             f"number {number}: case": label,
-            f"number {number}: value": None if one.value is None else settled(one.value),
+            f"number {number}: value": None if number_of_answer.value is None else settled(number_of_answer.value),
             f"number {number}: exact": settled(quantity.exact),
             f"number {number}: low": settled(quantity.low),
             f"number {number}: high": settled(quantity.high),
-            f"number {number}: word": one.word,
+            f"number {number}: word": number_of_answer.word,
             f"number {number}: reason": quantity.reason,
         }
     for number, point in enumerate(points):
@@ -260,7 +262,7 @@ def _says(labelled: Sequence[tuple[str, MeasuredQuantity]], ended_wrong: Sequenc
     if ended_wrong and ended_wrong[0].row is not None:
         label = f" at {ended_wrong[0].case.label}" if ended_wrong[0].case.label else ""
         return f"{ended_wrong[0].row.outcome}{label}"
-    judged = [(label, one) for label, one in labelled if one.beside is not None]
+    judged = [(label, number) for label, number in labelled if number.beside is not None]
     if not judged:
         return ""
     # the first of those that are equally far: the problem's own scene stands before its variants
@@ -268,16 +270,16 @@ def _says(labelled: Sequence[tuple[str, MeasuredQuantity]], ended_wrong: Sequenc
     return f"{number_in_words(worst)}{f', {label}' if label else ''}"
 
 
-def number_in_words(one: MeasuredQuantity) -> str:
+def number_in_words(number: MeasuredQuantity) -> str:
     """Return a number of an answer with its exact value, in words."""
-    quantity = one.quantity
+    quantity = number.quantity
     unit = "" if quantity.unit == "1" else f" {quantity.unit}"
     if quantity.name == "overturns":
-        return "overturns" if one.value else "does not overturn"
-    if one.value is None:
+        return "overturns" if number.value else "does not overturn"
+    if number.value is None:
         return f"{quantity.name} cannot be measured"
     exact = f" (exact {_short(quantity.exact)})" if quantity.exact else ""
-    return f"{quantity.name} {_short(one.value)}{unit}{exact}"
+    return f"{quantity.name} {_short(number.value)}{unit}{exact}"
 
 
 def _short(value: float) -> str:

@@ -67,18 +67,28 @@ def box_programs() -> tuple[BoxProgram, ...]:
     """Return all columns."""
     available = entry_points()
     columns = [*OWN]
-    for one in KNOWN:
-        if not one.boxes:
+    for program in KNOWN:
+        if not program.boxes:
             continue
         columns.append(
-            BoxProgram(one.name, one.title, one.recipe, "chosen", one.family, one.name in available, one.halvings)
+            BoxProgram(
+                program.name,
+                program.title,
+                program.recipe,
+                "chosen",
+                program.family,
+                program.name in available,
+                program.halvings,
+            )
         )
-        if one.default:
-            name = one.name + DEFAULT
-            title = f"{one.title}, as it comes"
-            columns.append(BoxProgram(name, title, one.recipe, "default", one.family, name in available, one.halvings))
-    for program in brought():
-        columns.append(BoxProgram(program.name, program.title, "", "user", "user", True, None))
+        if program.default:
+            name = program.name + DEFAULT
+            title = f"{program.title}, as it comes"
+            columns.append(
+                BoxProgram(name, title, program.recipe, "default", program.family, name in available, program.halvings)
+            )
+    for user_program in brought():
+        columns.append(BoxProgram(user_program.name, user_program.title, "", "user", "user", True, None))
     return tuple(columns)
 
 

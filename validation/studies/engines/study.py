@@ -76,7 +76,7 @@ def data() -> Mapping[str, Any]:
         "problems": problems,
         "cases": cases,
         "curves": curves,
-        "programs": [_program(one) for one in box_programs()],
+        "programs": [_program(program) for program in box_programs()],
     }
 
 

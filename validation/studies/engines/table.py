@@ -138,8 +138,8 @@ def read(results: Results) -> EngineTable | None:
     metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
     cells = {}
     for program in programs:
-        ended = [row for (_, solver), row in row_by_case.items() if solver == program.name]
-        endings = [(row.outcome is Outcome.NOT_APPLICABLE, " ".join(row.notes)) for row in ended]
+        program_rows = [row for (_, solver), row in row_by_case.items() if solver == program.name]
+        endings = [(row.outcome is Outcome.NOT_APPLICABLE, " ".join(row.notes)) for row in program_rows]
         absent = not program.installed or is_absent(endings)
         for problem in problems:
             metrics = metrics_by_cell.get((problem.scene, f"judged {program.name}"), {})
@@ -162,20 +162,20 @@ def _judged(
 ) -> EngineCell:
     """Return the cell of a derived row; seconds are those of the runs, of the problem's own case and of its curve."""
     quantities = []
-    for one in _numbered(metrics, "number"):
-        band = (_number(one["low"]) or 0.0, _number(one["high"]) or 0.0)
-        name = str(one["name"])
-        unit = str(one["unit"])
-        label = str(one["case"] or "")
-        exact = _number(one["exact"]) or 0.0
-        reason = str(one["reason"] or "")
-        quantities.append(Quantity(name, unit, label, _number(one["value"]), exact, band, str(one["word"]), reason))
+    for entry in _numbered(metrics, "number"):
+        band = (_number(entry["low"]) or 0.0, _number(entry["high"]) or 0.0)
+        name = str(entry["name"])
+        unit = str(entry["unit"])
+        label = str(entry["case"] or "")
+        exact = _number(entry["exact"]) or 0.0
+        reason = str(entry["reason"] or "")
+        quantities.append(Quantity(name, unit, label, _number(entry["value"]), exact, band, str(entry["word"]), reason))
     points = []
-    for one in _numbered(metrics, "point"):
-        counts = [int(_number(one[name]) or 0) for name in ("refine", "steps")]
-        step = _number(one["step"]) or math.nan
+    for entry in _numbered(metrics, "point"):
+        counts = [int(_number(entry[name]) or 0) for name in ("refine", "steps")]
+        step = _number(entry["step"]) or math.nan
         points.append(
-            WorkPoint(counts[0], step, counts[1], curve[counts[0]], _number(one["error"]), str(one["outcome"]))
+            WorkPoint(counts[0], step, counts[1], curve[counts[0]], _number(entry["error"]), str(entry["outcome"]))
         )
     texts_of_cell = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "finding", "reason")}
     return EngineCell(

@@ -148,19 +148,19 @@ OWN = (
 def known() -> Iterator[Program]:
     """Yield the programs of blocks on springs whose adapters the suite has, installed or not."""
     entry_point_names = entry_points()
-    for one in KNOWN:
-        if not one.springs:
+    for program in KNOWN:
+        if not program.springs:
             continue
-        yield Program(one.name, one.title, one.recipe, "chosen", one.name in entry_point_names)
-        if one.default:
-            default_name = one.name + DEFAULT
-            title = f"{one.title}, as it comes"
-            yield Program(default_name, title, one.recipe, "default", default_name in entry_point_names)
+        yield Program(program.name, program.title, program.recipe, "chosen", program.name in entry_point_names)
+        if program.default:
+            default_name = program.name + DEFAULT
+            title = f"{program.title}, as it comes"
+            yield Program(default_name, title, program.recipe, "default", default_name in entry_point_names)
 
 
 def brought() -> Iterator[Program]:
     """Yield the solvers that other installed packages bring."""
-    names = {name for one in KNOWN for name in (one.name, one.name + DEFAULT)}
+    names = {name for known_program in KNOWN for name in (known_program.name, known_program.name + DEFAULT)}
     for name in entry_points():
         if name not in names:
             yield Program(name, name, "", "user", True)
