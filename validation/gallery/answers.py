@@ -24,7 +24,7 @@ from validation.problems.data import PACK, AnswersData, united
 from validation.problems.judge import Word
 from validation.problems.questions import names, question
 from validation.report.chapters.judged import JudgedAnswer, as_data, page, per_cent
-from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, page_of_boxes, shares
+from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, page_of_boxes
 from validation.report.chapters.text import DASH, short
 from validation.runs.files import atomic_directory
 
@@ -97,7 +97,7 @@ def cells(judged: JudgedSet) -> list[AnswerCell]:
 def _cell(judged: JudgedAnswer | JudgedBoxes) -> AnswerCell:
     if isinstance(judged, JudgedBoxes):
         number = judged.deciding
-        error, allowed = shares(number)
+        error, allowed = number.shares
         name = judged.question.name
         return AnswerCell(name, str(judged.word), per_cent(error), _allowed(allowed), number.quantity.name)
     judgement = judged.judgement

@@ -108,6 +108,15 @@ class MeasuredQuantity:
         return "PASS" if self.quantity.passes(self.value) else "FAIL"
 
     @property
+    def shares(self) -> tuple[float | None, float]:
+        """Error, None where it cannot be measured, and what is allowed on its side, as shares of the number's scale."""
+        quantity = self.quantity
+        above = self.value is None or self.value > quantity.exact or quantity.low == quantity.exact
+        room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
+        error = None if self.value is None else abs(self.value - quantity.exact) / quantity.scale
+        return error, room / quantity.scale
+
+    @property
     def beside(self) -> float | None:
         """Error over band; infinite where a number that the positions hold cannot be measured."""
         if self.optional_and_absent or not self.is_reported:

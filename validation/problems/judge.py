@@ -152,14 +152,12 @@ def _judged_boxes(problem: Problem, history: History) -> Judgement:
             continue
         quantity = one.quantity
         numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact))
-        above = one.value is None or one.value > quantity.exact
-        room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
+        error, allowed = one.shares
         word = Word(one.word)
-        error = None
-        if word is not Word.NOT_REPORTED:
-            error = math.inf if one.value is None else abs(one.value - quantity.exact) / quantity.scale
+        if error is None and word is not Word.NOT_REPORTED:
+            error = math.inf
         within = until if word is Word.PASS else 0.0
-        columns.append(Column(quantity.name, word, error, room / quantity.scale, until, quantity.reason, within))
+        columns.append(Column(quantity.name, word, error, allowed, until, quantity.reason, within))
     return Judgement(problem.name, tuple(columns), tuple(numbers))
 
 

@@ -52,16 +52,6 @@ def _beside(number: MeasuredQuantity) -> float:
     return number.beside if number.beside > ROUNDING else 0.0
 
 
-def shares(number: MeasuredQuantity) -> tuple[float | None, float]:
-    """Return the error of a number and what is allowed on its side of the exact value, as shares of its scale."""
-    quantity = number.quantity
-    above = number.value is None or number.value > quantity.exact or quantity.low == quantity.exact
-    room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
-    if number.value is None:
-        return None, room / quantity.scale
-    return abs(number.value - quantity.exact) / quantity.scale, room / quantity.scale
-
-
 def headline_of_boxes(answer: JudgedBoxes) -> str:
     """Return the verdict and the number it rests on, in a sentence."""
     number = answer.deciding
@@ -128,7 +118,7 @@ def data_of_boxes(answer: JudgedBoxes) -> dict[str, Any]:
     """Return a judgement as plain data."""
     numbers = []
     for number in answer.numbers:
-        error, allowed = shares(number)
+        error, allowed = number.shares
         quantity = number.quantity
         numbers.append(
             {
