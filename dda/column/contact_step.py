@@ -86,7 +86,6 @@ class StepNumbers(NamedTuple):
     """Numbers of a stage of the scheme and of the base."""
 
     stage: Stage
-    begin: float  # where the stage begins, over the step
     stages: int  # of the scheme
     newmark: bool  # whether it is Newmark's
     averages: bool  # whether its stage balances the forces between the ends of the step
@@ -322,8 +321,11 @@ def predict(
     gg = stage.gg
     early = stage.e_0
     late = stage.g_0
-    follows = numbers.begin > 0
-    fall = alpha * numbers.fall
+    d_g = stage.d_g
+    e_g = stage.e_g
+    g_g = stage.g_g
+    fall = alpha * numbers.share * numbers.fall
+    stiff = alpha * numbers.share
     w = state.w
     s = state.s
     e = state.e
@@ -332,11 +334,9 @@ def predict(
     gap = state.gap
     q = work.q
     if numbers.averages:
-        fall = alpha * numbers.share * numbers.fall
         known_accelerations(numbers, blocks, state, start, work)
     state.u[0] += stage.d_u * (gg * start.w[0]) + early * start.s[0]
-    if follows:
-        state.u[0] += stage.d_g * w[0] + stage.e_g * s[0]
+    state.u[0] += stage.d_g * w[0] + stage.e_g * s[0]
     relaxation = blocks.relaxation
     if numbers.welded == 1:
         below = predict_welded(numbers, blocks, state, start, drive, row, work)
@@ -346,23 +346,14 @@ def predict(
         speed = gg * start.w[i]
         stretch_speed = gg * start.we[i]
         moved = stage.d_u * speed + early * start.s[i]
+        moved += d_g * w[i] + e_g * s[i]
         half = stage.d_u * stretch_speed + early * start.se[i]
-        speed += late * start.s[i]
-        stretch_speed += late * start.se[i]
-        if follows:
-            moved += stage.d_g * w[i] + stage.e_g * s[i]
-            half += stage.d_g * we[i] + stage.e_g * se[i]
-            speed += stage.g_g * s[i]
-            stretch_speed += stage.g_g * se[i]
-        w[i] = speed
-        we[i] = stretch_speed
-        moved += fall
+        half += d_g * we[i] + e_g * se[i]
+        w[i] = speed + late * start.s[i] + g_g * s[i]
+        we[i] = stretch_speed + late * start.se[i] + g_g * se[i]
+        moved += fall + alpha * work.mean_0[i]
         e[i] += half
-        if numbers.averages:
-            moved += alpha * work.mean_0[i]
-            half = 0.5 * (half - alpha * (numbers.share * relaxation[i] * e[i] - work.stretch_0[i]))
-        else:
-            half = 0.5 * (half - alpha * relaxation[i] * e[i])
+        half = 0.5 * (half - (stiff * relaxation[i] * e[i] - alpha * work.stretch_0[i]))
         q[i] = gap[i] + (moved - half - below)
         below = moved + half
 
@@ -394,6 +385,7 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work:
     """Write the state under the contact forces."""
     alpha = numbers.stage.alpha
     delta = numbers.stage.delta
+    share = numbers.share
     fall = numbers.fall
     w = state.w
     s = state.s
@@ -407,11 +399,8 @@ def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work:
     below = force[numbers.welded]
     for i in range(numbers.welded, len(w)):
         above = force[i + 1]
-        a = fall + mobility[i] * (below - above)
-        ae = 0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)
-        if numbers.averages:
-            a = numbers.share * a + work.mean_0[i]
-            ae = numbers.share * ae + work.stretch_0[i]
+        a = share * (fall + mobility[i] * (below - above)) + work.mean_0[i]
+        ae = share * (0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)) + work.stretch_0[i]
         below = above
         w[i] += delta * a
         s[i] = a
@@ -440,12 +429,10 @@ def predict_welded(
     base_change = numbers.step * numbers.step * drive.acceleration[row]
     top_speed = stage.gg * (start.w[0] + start.we[0] / 2)
     top_change = start.s[0] + start.se[0] / 2
+    change_before = state.s[0] + state.se[0] / 2
     moved = stage.d_u * top_speed + stage.e_0 * top_change
-    predicted_speed = top_speed + stage.g_0 * top_change
-    if numbers.begin > 0:
-        change_before = state.s[0] + state.se[0] / 2
-        moved += stage.d_g * (state.w[0] + state.we[0] / 2) + stage.e_g * change_before
-        predicted_speed += stage.g_g * change_before
+    moved += stage.d_g * (state.w[0] + state.we[0] / 2) + stage.e_g * change_before
+    predicted_speed = top_speed + stage.g_0 * top_change + stage.g_g * change_before
     if blocks.stiffness[0] == 0:
         moved = base - stage.alpha * base_change
         predicted_speed = base_speed - stage.delta * base_change
@@ -461,11 +448,10 @@ def top_acceleration(
 ) -> float:
     """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
     weight = numbers.fall / blocks.mobility[0] / 2
-    force = weight - above - blocks.stiffness[0] * state.e[0]
+    force = numbers.share * (weight - above - blocks.stiffness[0] * state.e[0]) + work.mean_0[0]
     coupling = numbers.welded_coupling
-    if numbers.averages:
-        force = numbers.share * force + work.mean_0[0]
-        coupling *= numbers.share if blocks.stiffness[0] > 0 else 1.0
+    if blocks.stiffness[0] > 0:
+        coupling *= numbers.share
     return float(numbers.welded_mobility * force - coupling * state.s[0])
 
 
@@ -489,9 +475,8 @@ def dashpot_force(
 ) -> float:
     """Return the force of the half-space on a predicted column, z (2 v - velocity of the foot) [Pa]."""
     foot = state.w[0] - state.we[0] / 2
-    gained = numbers.fall + blocks.relaxation[0] * state.e[0] / 2
-    if numbers.averages:
-        gained = numbers.share * gained + work.mean_0[0] - work.stretch_0[0] / 2
+    gained = numbers.share * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
+    gained += work.mean_0[0] - work.stretch_0[0] / 2
     foot += numbers.stage.delta * gained
     force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
     return force
@@ -586,8 +571,6 @@ def make_column_steps(
                 account(stage, before, state, drive, row, step, energies)
         if not write_step(last, state, work, observed, step, values, states, energies):
             return step - 1, OVERFLOW
-        if len(energies) > 0 and not last.numbers.newmark:
-            close_balance(energies, step)
     return len(values) - 1, FOUND
 
 
@@ -760,16 +743,6 @@ def add_damping(stage: ColumnStage, state: ColumnState, energies: Rows, step: in
     energies[step, DAMPING] += (1 - gg * gg) * kinetic
 
 
-def close_balance(energies: Rows, step: int) -> None:
-    """Write what the algorithm loses of a scheme without a closed form: what the others leave of the energy."""
-    now = energies[step]
-    last = energies[step - 1]
-    released = (now[GIVEN] - last[GIVEN]) - (now[DAMPING] - last[DAMPING])
-    released -= (now[SWITCHING] - last[SWITCHING]) + (now[FRICTION] - last[FRICTION])
-    released += (last[KINETIC] - now[KINETIC]) + (last[STRAINED] - now[STRAINED]) + (last[SPRINGS] - now[SPRINGS])
-    now[ALGORITHMIC] = last[ALGORITHMIC] + released
-
-
 def account(
     stage: ColumnStage,
     before: ColumnState,
@@ -782,8 +755,8 @@ def account(
     """Add what a stage loses, and what weight, pressure, base and half-space put in [J/m^2]; see `dda.stepping.energy`.
 
     All forces act with the weights 1 - delta and delta at the two ends of Newmark's step, with one half at those of
-    another scheme's stage, whose algorithmic loss `close_balance` writes. A base that moves with a block welded to it
-    does not move as Newmark's formulas do: its work is as accurate as the scheme.
+    another scheme's stage, whose algorithmic loss the energies leave. A base that moves with a block welded to it does
+    not move as Newmark's formulas do: its work is as accurate as the scheme.
     """
     numbers = stage.numbers
     blocks = stage.blocks
@@ -839,7 +812,7 @@ def account(
     base_force = (1 - late) * before.force[0] + late * after.force[0]
     top_force = (1 - late) * before.force[n] + late * after.force[n]
     row[GIVEN] += numbers.fall / dt2 * work + base_force * foot - top_force * top
-    row[IMPULSE] += numbers.step * (numbers.stage.end - numbers.begin) * base_force
+    row[IMPULSE] += numbers.step * (numbers.stage.end - numbers.stage.begin) * base_force
     if step == 1 and numbers.newmark:  # A0 may be any, later accelerations follow from the forces
         row[ALGORITHMIC] += (1 - late) * missing_work(numbers, blocks, before, after)
 

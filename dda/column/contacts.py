@@ -47,7 +47,7 @@ from dda.one_block.solution import Result, times_of
 from dda.scheme.newmark import Scheme, implicit_weight, late_momentum, plain_stage
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import OUTCOMES
-from dda.stepping.energy import ENERGIES, GIVEN, SUMS
+from dda.stepping.energy import SUMS, energies_of
 
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 COLUMN_OUTCOMES = OUTCOMES | {LIMIT: "solve limit exceeded"}
@@ -89,6 +89,7 @@ class ColumnContactResult(Result):
     step_switches: NDArray[np.int64]  # contacts whose state changed in a step, (steps,)
     states: NDArray[np.int8] | None  # 0 open, 1 stuck, 2 and -2 slipping, (blocks, steps), by the block above
     record: Array | None  # (RECORDED, steps + 1) from t = 0 on: energies, momentum, extremes of contacts
+    newmark: bool  # whether the scheme is Newmark's, whose algorithmic loss is a sum of the steps
 
     def state_of(self, contact: int) -> NDArray[np.int8]:
         """Return the states at the foot of a block, (steps,).
@@ -110,10 +111,9 @@ class ColumnContactResult(Result):
         """
         if self.record is None:
             return None
-        stored = self.record[[KINETIC, STRAINED, SPRINGS]]
-        sums = self.record[:SUMS, 1:]
-        load = -sums[GIVEN] - stored[1:, 0].sum()
-        return dict(zip(ENERGIES, (*stored[:, 1:], load, *sums[:4]), strict=True))
+        kinetic, strain, springs = self.record[[KINETIC, STRAINED, SPRINGS]]
+        load = np.full_like(kinetic, -(strain[0] + springs[0]))
+        return energies_of((kinetic, strain, springs, load), self.record[:SUMS].T, not self.newmark)
 
 
 def solve_contact_column(
@@ -191,6 +191,7 @@ def solve_contact_column(
         step_switches=switches[rows],
         states=states[rows].T if options.states else None,
         record=record[: reached + 1].T if options.energies else None,
+        newmark=scheme.table is None,
     )
 
 
@@ -276,7 +277,6 @@ def step_equations(
     blocks = BlockColumn(mass, stiffness, dt2 / mass, stretch / 2, stretch * stiffness, stretch * mass / 12 / dt2)
     numbers = StepNumbers(
         stage=plain_stage(stage)._replace(gg=scheme.gg),
-        begin=0.0 if stage is scheme.stages[0] else float(scheme.stages[0].end),
         stages=len(scheme.stages),
         newmark=scheme.table is None,
         averages=scheme.averages,

@@ -52,7 +52,7 @@ def advance(
     theta = math.sqrt(block.last.numbers.alpha)
     begin_step(block, state, length)
     if block.ramp > 0:
-        share = mean_share(block, part, theta)
+        share = mean_share(block, block.last.numbers, part, theta)
         for i in range(n):
             length.F[i] = share * h * h * block.load[i]
     start = room.change  # h u
@@ -108,7 +108,7 @@ def account(
         sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
     share = 1.0
     if block.ramp > 0:
-        share = mean_share(block, part, theta)
+        share = mean_share(block, block.last.numbers, part, theta)
     change = room.change
     stored = 0.0
     for i in range(n):

@@ -41,7 +41,7 @@ from dda.one_block.unilateral_step import (
 from dda.scheme.newmark import Scheme
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
-from dda.stepping.energy import CONTACT, DASHPOT, ENERGIES, GIVEN, spring_energies
+from dda.stepping.energy import CONTACT, DASHPOT, energies_of, spring_energies
 from dda.stepping.energy import IMPACT as IMPACT_LOSS
 
 LOOPS = {CONSERVING: make_conserving_steps, IMPACT: make_impact_steps, AUGMENTED: make_augmented_steps}
@@ -247,24 +247,23 @@ def energies(
     does the work U0 - U1 itself and loses nothing.
     """
     n = len(form.unknowns)
-    D = history.motion[1:, :n]
-    V = history.motion[1:, n : 2 * n] / scheme.step
-    load = -(D - form.start) @ form.F - history.sums[1:, GIVEN]
+    D = history.motion[:, :n]
+    V = history.motion[:, n : 2 * n] / scheme.step
+    load = -(D - form.start) @ form.F
     if model.load.motion is not None:
-        moved = model.load.motion.at(step_times(scheme, len(D)))
+        moved = model.load.motion.at(scheme.step * np.arange(float(len(D))))
         load -= moved @ (form.axes.T @ form.translation.T @ form.F)
     law = model.contact if rule != AUGMENTED else replace(model.contact, stiffness=math.inf)
-    normal = history.normal[1:]
+    normal = history.normal
     if law.damping:
-        normal = law.stiffness * np.maximum(-history.gap[1:], 0.0)
-    springs = spring_energies(law, normal, history.shear[1:])
+        normal = law.stiffness * np.maximum(-history.gap, 0.0)
     stored = (
         np.einsum("ki,ij,kj->k", V, np.linalg.inv(form.M), V) / 2,
         (D * D) @ form.K / 2,
-        form.multiplicity * springs,
+        form.multiplicity * spring_energies(law, normal, history.shear),
         load,
     )
-    energies = dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
+    energies = energies_of(stored, history.sums, scheme.table is not None)
     if law.damping:
         energies[DASHPOT] = history.sums[1:, CONTACT]
     if rule == IMPACT:

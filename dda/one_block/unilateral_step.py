@@ -38,7 +38,7 @@ import numpy as np
 from dda.contact.augmented import augmented
 from dda.contact.conserving import conserving
 from dda.contact.dashpot import damped, set_gaps
-from dda.contact.dense import Matrix, Vector, copy_matrix, dot, invert, multiply, quadratic, zeros
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
     NONE,
@@ -54,7 +54,6 @@ from dda.contact.kernel import (
     find_contacts,
     law_of,
     shear_law_of,
-    spring_energy,
     work_for,
 )
 from dda.contact.unilateral import OPEN, Unilateral
@@ -74,16 +73,7 @@ from dda.scheme.newmark import (
 )
 from dda.scheme.stages import Stage
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
-from dda.stepping.energy import (
-    ALGORITHMIC,
-    CONTACT,
-    DAMPING,
-    FRICTION,
-    GIVEN,
-    SWITCHING,
-    add_contact_losses,
-    bulk_loss,
-)
+from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
 NEWMARK = "newmark"
 IMPLICIT = "implicit"
@@ -112,7 +102,7 @@ class BlockState(NamedTuple):
     D: Vector  # (n,) unknowns of the form
     P: Vector  # (n,) dt M V
     f: Vector  # (n,) dt^2 M A
-    force: Vector  # (n,) dt^2 (F - K0 D + B' lambda), of a scheme whose M A is an average of it
+    force: Vector  # (n,) dt^2 (F - K0 D + B' lambda), M A of a scheme that does not average it
     contacts: Contacts
 
 
@@ -120,8 +110,6 @@ class BlockStage(NamedTuple):
     """One stage of the scheme."""
 
     numbers: Stage  # with gg = 1: the momentum that it takes is discounted
-    begin: float  # where it begins, over the step
-    averages: bool  # whether it balances the forces between the ends of the step
     whole: StepLength  # of a whole step
     part: StepLength  # of the last part of a step
     base: Vector  # (2,) displacement of the base in the stage that was made last [m]
@@ -196,9 +184,7 @@ def block_equations(
     vectors += [Free(*zeros(c, c, c)), Free(*zeros(c, c, c))]
     vectors += zeros(c, (n, n), n, 2, n)
     between: list[Any] = [*zeros(n, n, n, n), at_rest(np.zeros(c))]
-    stages = [plain_stage(stage) for stage in scheme.stages]
-    rooms = [stage_room(stage, n, c, q) for stage in stages]
-    rooms[-1] = rooms[-1]._replace(begin=float(stages[0].end) if len(stages) == 2 else 0.0)
+    rooms = [stage_room(plain_stage(stage), n, c, q) for stage in scheme.stages]
     block = BlockEquations(
         law=law_of(replace(law, stiffness=math.inf) if rule == AUGMENTED else law, limit),
         stiffness=law.stiffness,
@@ -207,7 +193,7 @@ def block_equations(
         restitution=restitution,
         rule=0 if rule == AUGMENTED else RULES.index(rule),
         newmark=scheme.table is None,
-        stages=len(stages),
+        stages=len(rooms),
         lag=float(scheme.lag),
         gg=scheme.gg,
         step=scheme.step,
@@ -235,11 +221,9 @@ def block_equations(
 
 
 def stage_room(stage: Stage, n: int, c: int, q: int) -> BlockStage:
-    """Return a first stage, with room for what belongs to it."""
+    """Return a stage, with room for what belongs to it."""
     return BlockStage(
         numbers=stage,
-        begin=0.0,
-        averages=stage.am != 0 or stage.af != 0,
         whole=length_room(n, q),
         part=length_room(n, q),
         base=np.zeros(2),
@@ -410,20 +394,14 @@ def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, 
             accept(block, shear_law, stage, length, before, target)
             if shear_law is not None:
                 refer(block, before.contacts, target)
+                copy(target.contacts.slipped, stage.slipped)
             before = target
         if shear_law is not None and stages == 2:
-            add_slips(block, after.contacts)
+            for i in range(len(after.contacts.slipped)):
+                after.contacts.slipped[i] += block.first.slipped[i]
         return FOUND, total
 
     return advance
-
-
-def add_slips(block: BlockEquations, contacts: Contacts) -> None:
-    """Keep what the contacts slipped in each of two stages, and write their sum for the step."""
-    for i in range(len(contacts.slipped)):
-        block.first.slipped[i] = block.between.contacts.slipped[i]
-        block.last.slipped[i] = contacts.slipped[i]
-        contacts.slipped[i] += block.first.slipped[i]
 
 
 def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> None:
@@ -436,9 +414,7 @@ def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> 
     for i in range(len(P)):
         P[i] = gg * (ratio * state.P[i])
         f[i] = ratio * ratio * state.f[i]
-    if block.last.averages:
-        for i in range(len(P)):
-            room.force_0[i] = ratio * ratio * state.force[i]
+        room.force_0[i] = ratio * ratio * state.force[i]
 
 
 def free_stage(
@@ -456,8 +432,6 @@ def free_stage(
     n = len(block.K)
     c = len(block.room.slide)
     ratio = part.ratio
-    averages = stage.averages
-    follows = stage.begin > 0
     if block.ramp > 0:
         share = load_share(block.ramp, (part.begun + ratio * numbers.end) * block.step)
         for i in range(n):
@@ -466,16 +440,16 @@ def free_stage(
     f = room.f
     alpha = numbers.alpha
     d_u = numbers.d_u
+    d_g = numbers.d_g
+    e_g = numbers.e_g
     for i in range(n):
         force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
-        if averages:
-            force = inertia_force(numbers, force, room.force_0[i], f[i])
+        force = inertia_force(numbers, force, room.force_0[i], f[i])
         balance = predictor(numbers, d_u * P[i], f[i])
-        if follows:
-            balance += numbers.d_g * (ratio * before.P[i]) + numbers.e_g * (ratio * ratio * before.f[i])
+        balance += d_g * (ratio * before.P[i]) + e_g * (ratio * ratio * before.f[i])
         room.balance[i] = balance + alpha * force
     if base is not None:
-        interval = Part(part.begun + ratio * stage.begin, ratio * (numbers.end - stage.begin))
+        interval = Part(part.begun + ratio * numbers.begin, ratio * (numbers.end - numbers.begin))
         base_displacement(base, block.step, interval, room.start, stage.base)
         for i in range(n):
             room.balance[i] -= dot(block.carried[i], stage.base, 2)
@@ -496,16 +470,16 @@ def retard(block: BlockEquations, stage: BlockStage, length: StepLength, before:
     h = length.numbers[2]
     retardation = block.law.damping * block.law.compliance
     for i in range(n):
-        room.change[i] = momentum_at_end(block, stage, length, before, before.D[i] + room.x[i], 0.0, i)
+        _, _, room.change[i] = motion_at_end(block, stage, length, before, before.D[i] + room.x[i], 0.0, i)
     for i in range(c):
         rate = dot(block.inverse_mass[n - c + i], room.change, n) / h
         if base_moves:
-            rate -= stage.base[1] / (h * (stage.numbers.end - stage.begin))
+            rate -= stage.base[1] / (h * (stage.numbers.end - stage.numbers.begin))
         room.retarded.slide[i] = retardation * rate
         room.retarded.gap[i] = room.free.gap[i] + room.retarded.slide[i]
 
 
-def momentum_at_end(
+def motion_at_end(
     block: BlockEquations,
     stage: BlockStage,
     length: StepLength,
@@ -513,8 +487,8 @@ def momentum_at_end(
     D: float,
     pressed: float,
     i: int,
-) -> float:
-    """Return h M V of an unknown at the end of a stage, in units of the step's length.
+) -> tuple[float, float, float]:
+    """Return force, h^2 M A and h M V of an unknown at the end of a stage, in units of the step's length.
 
     Parameters
     ----------
@@ -524,13 +498,10 @@ def momentum_at_end(
     room = block.room
     numbers = stage.numbers
     ratio = length.numbers[0]
-    f1 = acceleration_corrector(length.F[i], length.k[i], D) + pressed
-    if stage.averages:
-        f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
-    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
-    if stage.begin > 0:
-        P1 += numbers.g_g * (ratio * ratio * before.f[i])
-    return float(P1)
+    force = acceleration_corrector(length.F[i], length.k[i], D) + pressed
+    f1 = inertia_force(numbers, force, room.force_0[i], room.f[i])
+    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1) + numbers.g_g * (ratio * ratio * before.f[i])
+    return force, f1, P1
 
 
 def slides_by(block: BlockEquations, x: Vector, slide: Vector) -> None:
@@ -555,13 +526,10 @@ def accept(
 ) -> None:
     """Write (D, P, f) at the end of the stage under the contact forces."""
     room = block.room
-    numbers = stage.numbers
     n = len(block.K)
     c = len(block.room.slide)
     normal = block.work.mean if block.rule == 2 else after.contacts.normal
     contact_forces(block, shear_law, normal, after.contacts.shear)
-    averages = stage.averages
-    follows = stage.begin > 0
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     for i in range(n):
@@ -573,17 +541,11 @@ def accept(
         for j in range(len(block.B)):
             pressed += block.B[j][i] * room.forces[j]
         pressed = h2 * (block.multiplicity * pressed)
-        f1 = acceleration_corrector(length.F[i], length.k[i], after.D[i])
-        if block.rule == 0:
-            f1 += pressed
-        if averages:
-            after.force[i] = f1 / (ratio * ratio)
-            f1 = inertia_force(numbers, f1, room.force_0[i], room.f[i])
-        P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1)
-        if follows:
-            P1 += numbers.g_g * (ratio * ratio * before.f[i])
+        own = pressed if block.rule == 0 else 0.0  # what of it enters f
+        force, f1, P1 = motion_at_end(block, stage, length, before, after.D[i], own, i)
         if block.rule != 0:
             P1 += pressed
+        after.force[i] = force / (ratio * ratio)
         after.P[i] = P1 / ratio
         after.f[i] = f1 / (ratio * ratio)
 
@@ -639,52 +601,90 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 def account(
     block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
 ) -> None:
-    """Add what an accepted part of a step loses [J]."""
-    if block.newmark:
-        account_newmark(block, shear_law, state, after, part, sums)
+    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says."""
+    length = length_of(block, shear_law, block.last, part.ratio)
+    gg = length.numbers[1]
+    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
+    if gg != 1 and not late_start:
+        squares = quadratic(block.inverse_mass, state.P, len(block.K))
+        sums[DAMPING] += (1 - gg * gg) * squares / 2 / (block.step * block.step)
+    if block.stages == 2:
+        account_stage(block, shear_law, block.first, state, block.between, part, sums)
+        account_stage(block, shear_law, block.last, block.between, after, part, sums)
     else:
-        account_by_balance(block, shear_law, state, after, part, sums)
+        account_stage(block, shear_law, block.last, state, after, part, sums)
+    if block.newmark:
+        add_algorithmic_loss(block, length, state, after, part, sums)
 
 
-def account_newmark(
-    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
+def account_stage(
+    block: BlockEquations,
+    shear_law: Shear,
+    stage: BlockStage,
+    before: BlockState,
+    after: BlockState,
+    part: Part,
+    sums: Vector,
 ) -> None:
-    """Add what an accepted part of Newmark's step loses [J], as `dda.stepping.energy` says."""
+    """Add what the contacts lose in a stage, and what base and a load that rises give.
+
+    Forces of contact and loads that rise act with the weights 1 - delta and delta at the two ends of Newmark's step,
+    with one half at those of another scheme's stage.
+    """
+    room = block.room
+    numbers = stage.numbers
+    late = numbers.delta if block.newmark else 0.5
+    for i in range(len(block.K)):
+        room.change[i] = after.D[i] - before.D[i]
+    if block.rule != 2:
+        if shear_law is not None:
+            slides_by(block, room.change, room.slide)
+        add_contact_losses(
+            block.law,
+            shear_law,
+            before.contacts,
+            after.contacts,
+            stage.slipped,
+            room.slide,
+            stage.base,
+            late if block.rule == 0 else 1.0,
+            block.step * part.ratio * (numbers.end - numbers.begin),
+            block.multiplicity,
+            sums,
+        )
+    if block.ramp > 0:  # what a load that rises does beside the work of the whole one
+        share = mean_share(block, numbers, part, late)
+        for i in range(len(block.K)):
+            moved = room.change[i] + dot(block.translation[i], stage.base, 2)
+            sums[GIVEN] += (share - 1) * block.load[i] * moved
+
+
+def mean_share(block: BlockEquations, numbers: Stage, part: Part, late: float) -> float:
+    """Return the share of a load that rises which acts over a stage, `late` of it as at its end."""
+    begin = load_share(block.ramp, (part.begun + part.ratio * numbers.begin) * block.step)
+    end = load_share(block.ramp, (part.begun + part.ratio * numbers.end) * block.step)
+    return (1 - late) * begin + late * end
+
+
+def add_algorithmic_loss(
+    block: BlockEquations, length: StepLength, state: BlockState, after: BlockState, part: Part, sums: Vector
+) -> None:
+    """Add what Newmark's step loses [J] beside the contacts."""
     room = block.room
     alpha = block.last.numbers.alpha
     delta = block.last.numbers.delta
-    carried = block.last.base
     n = len(block.K)
-    length = length_of(block, shear_law, block.last, part.ratio)
-    gg = length.numbers[1]
     h2 = length.numbers[2] * length.numbers[2]
     dt2 = block.step * block.step
-    if gg != 1:
-        sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / dt2
     stiff = 0.0
     for i in range(n):
         room.change[i] = after.D[i] - state.D[i]
         stiff += room.change[i] * room.change[i] * block.K[i]
-    if block.rule != 2:
-        if shear_law is not None:
-            slides_by(block, room.change, room.slide)
-        h = length.numbers[2]
-        late = delta if block.rule == 0 else 1.0
-        share = block.multiplicity
-        slipped = after.contacts.slipped
-        add_contact_losses(
-            block.law, shear_law, state.contacts, after.contacts, slipped, room.slide, carried, late, h, share, sums
-        )
-    if block.ramp > 0:  # what a load that rises does beside the work of the whole one
-        share = mean_share(block, part, delta)
-        for i in range(n):
-            moved = room.change[i] + dot(block.translation[i], carried, 2)
-            sums[GIVEN] += (share - 1) * block.load[i] * moved
     if part.begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
         share = load_share(block.ramp, 0.0)
         for i in range(n):
             missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - part.ratio * part.ratio * state.f[i]
-            moved = room.change[i] + dot(block.translation[i], carried, 2)
+            moved = room.change[i] + dot(block.translation[i], block.last.base, 2)
             sums[ALGORITHMIC] += (1 - delta) * moved * missing / h2
     kinetic = 0.0
     kinetic_of_change = 0.0
@@ -695,84 +695,6 @@ def account_newmark(
         kinetic = stored / 2 / dt2 / dt2
         kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
     sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic, kinetic_of_change)
-
-
-def mean_share(block: BlockEquations, part: Part, late: float) -> float:
-    """Return the share of a load that rises which acts over a part of a step, `late` of it as at its end."""
-    begin = load_share(block.ramp, part.begun * block.step)
-    end = load_share(block.ramp, (part.begun + part.ratio) * block.step)
-    return (1 - late) * begin + late * end
-
-
-def account_by_balance(
-    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
-) -> None:
-    """Add what an accepted part of a step loses [J], of a scheme without a closed form: the algorithm loses the rest.
-
-    Forces of contact and loads that rise act with the mean of both ends of each stage.
-    """
-    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN]
-    algorithmic = sums[ALGORITHMIC]
-    n = len(block.K)
-    gg = length_of(block, shear_law, block.last, part.ratio).numbers[1]
-    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
-    if gg != 1 and not late_start:
-        sums[DAMPING] += (1 - gg * gg) * quadratic(block.inverse_mass, state.P, n) / 2 / (block.step * block.step)
-    released = stored_energy(block, shear_law, state, gg if late_start else 1.0)
-    released -= stored_energy(block, shear_law, after, 1.0)
-    if block.stages == 2:
-        between = block.between
-        released += add_stage(block, shear_law, block.first, state, between, block.first.slipped, part, sums)
-        released += add_stage(block, shear_law, block.last, between, after, block.last.slipped, part, sums)
-    else:
-        released += add_stage(block, shear_law, block.last, state, after, after.contacts.slipped, part, sums)
-    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] + sums[CONTACT] - sums[GIVEN] - lost
-    sums[ALGORITHMIC] = algorithmic + released - lost
-
-
-def add_stage(
-    block: BlockEquations,
-    shear_law: Shear,
-    stage: BlockStage,
-    before: BlockState,
-    after: BlockState,
-    slipped: Vector,
-    part: Part,
-    sums: Vector,
-) -> float:
-    """Add what the contacts lose in a stage and what base and a load that rises give; return the whole load's work."""
-    room = block.room
-    begin = (part.begun + part.ratio * stage.begin) * block.step
-    end = (part.begun + part.ratio * stage.numbers.end) * block.step
-    rise = (load_share(block.ramp, begin) + load_share(block.ramp, end)) / 2 - 1
-    work = 0.0
-    for i in range(len(block.K)):
-        room.change[i] = after.D[i] - before.D[i]
-        work += block.load[i] * (room.change[i] + dot(block.translation[i], stage.base, 2))
-    sums[GIVEN] += rise * work
-    if shear_law is not None:
-        slides_by(block, room.change, room.slide)
-    share = block.multiplicity
-    base = stage.base
-    law = block.law
-    add_contact_losses(
-        law, shear_law, before.contacts, after.contacts, slipped, room.slide, base, 0.5, end - begin, share, sums
-    )
-    return work
-
-
-def stored_energy(block: BlockEquations, shear_law: Shear, state: BlockState, discount: float) -> float:
-    """Return kinetic energy, strain energy and that of the contacts' springs [J]; `discount` is that of P."""
-    room = block.room
-    n = len(block.K)
-    strain = 0.0
-    for i in range(n):
-        room.change[i] = discount * state.P[i] + block.lag * state.f[i]
-        strain += block.K[i] * state.D[i] * state.D[i]
-    energy = (quadratic(block.inverse_mass, room.change, n) / (block.step * block.step) + strain) / 2
-    for i in range(len(room.slide)):
-        energy += block.multiplicity * spring_energy(block.law, shear_law, state.contacts, i)
-    return float(energy)
 
 
 def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:

@@ -35,7 +35,7 @@ from dda.rotation.step import STATE, RollingState, Setting, make_steps, rolling_
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import History, base_record, history_of, reached_history
-from dda.stepping.energy import ENERGIES, FRICTION, GIVEN, IMPULSE, SWITCHING, spring_energies
+from dda.stepping.energy import IMPULSE, energies_of, spring_energies
 
 COMPILE_TIME = 4.0  # of the loop, over that of contacts which slide freely
 PLAIN_STEP = 4e-4  # seconds of plain Python for each step
@@ -284,11 +284,7 @@ def energies(setting: Setting, states: RollingMotion, history: History) -> dict[
     turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
     load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ setting.weight)
     loaded = states.points(setting.where)
-    load -= np.einsum("kma,ma->k", loaded - loaded[0], setting.dead) + history.sums[:, GIVEN]
+    load -= np.einsum("kma,ma->k", loaded - loaded[0], setting.dead)
     strain = growth * np.einsum("ki,ij,kj->k", states.e, setting.body.K, states.e) / 2
     stored = ((moving + turning) / 2, strain, spring_energies(setting.law, history.normal, history.shear), load)
-    total = np.sum(stored, axis=0)
-    damped, switching, friction = history.sums[1:, SWITCHING - 1 : FRICTION + 1].T
-    algorithmic = total[0] - total[1:] - damped - switching - friction
-    values = (*(part[1:] for part in stored), algorithmic, damped, switching, friction)
-    return dict(zip(ENERGIES, values, strict=True))
+    return energies_of(stored, history.sums, by_balance=True)

@@ -99,8 +99,6 @@ class RollingStage(NamedTuple):
     """One stage of the scheme."""
 
     numbers: Stage
-    begin: float  # where it begins, over the step
-    averages: bool  # whether it balances the forces between the ends of the step
     weight: float  # of h^2 K beside M
     whole: StepMatrices
     part: StepMatrices
@@ -188,7 +186,6 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     where[:loads] = setting.where
     dead[:loads] = setting.dead
     stages = [stage_room(stage, corners) for stage in scheme.stages]
-    stages[-1] = stages[-1]._replace(begin=float(scheme.stages[0].end) if len(stages) == 2 else 0.0)
     rows: list[Any] = zeros(*[6] * 15)
     between: list[Any] = [*zeros(6, (2, 2), 6, 6, 6), at_rest(np.zeros(corners))]
     rows.append(Turn(*zeros((2, 2), (2, 2), (2, 2))))
@@ -224,16 +221,9 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
 
 
 def stage_room(stage: Scheme | Stage, corners: int) -> RollingStage:
-    """Return a first stage, with room for what belongs to it."""
+    """Return a stage, with room for what belongs to it."""
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
-    return RollingStage(
-        plain_stage(stage),
-        0.0,
-        stage.am != 0 or stage.af != 0,
-        float(implicit_weight(stage)),
-        *lengths,
-        *zeros(corners, corners, 2),
-    )
+    return RollingStage(plain_stage(stage), float(implicit_weight(stage)), *lengths, *zeros(corners, corners, 2))
 
 
 def touching(n: int) -> Touching:
@@ -388,21 +378,18 @@ def predict(
     gg = matrices.numbers[1]
     h = matrices.numbers[2]
     if base is not None:
-        base_at(base, body.step * (part.begun + part.ratio * stage.begin), room.start)
+        base_at(base, body.step * (part.begun + part.ratio * numbers.begin), room.start)
         base_at(base, body.step * (part.begun + part.ratio * numbers.end), room.base)
         for axis in range(2):
             stage.moved[axis] = room.base[axis] - room.start[axis]
     hold(body, matrices, state.q, room.held)
-    length = numbers.end - stage.begin
+    length = numbers.end - numbers.begin
     for i in range(6):
         room.guess[i] = length * (gg * h * room.V[i]) + length * length * (h * h / 2 * room.A_0[i])
         room.new[i] = numbers.d_u * (gg * h * room.V[i]) + h * h * numbers.e_0 * room.A_0[i]
-        if stage.begin > 0:
-            room.new[i] += numbers.d_g * h * state.V[i] + h * h * numbers.e_g * state.A[i]
-    if stage.averages:
-        for i in range(6):
-            known = numbers.af * room.R[i] - numbers.am * dot(matrices.M[i], room.A_0, 6)
-            room.held[i] += known / (1 - numbers.af)
+        room.new[i] += numbers.d_g * h * state.V[i] + h * h * numbers.e_g * state.A[i]
+        known = numbers.af * room.R[i] - numbers.am * dot(matrices.M[i], room.A_0, 6)
+        room.held[i] += known / (1 - numbers.af)
     for i in range(6):
         room.free[i] = dot(matrices.flexible[i], room.held, 6) + dot(matrices.kept[i], room.new, 6)
     place_corners(body, state.q, state.Q, room.start, room.before)
@@ -653,16 +640,11 @@ def accept(
     for i in range(6):
         room.push[i] += room.held[i]
     for i in range(6):
-        after.A[i] = dot(matrices.accelerating[i], room.push, 6)
         after.R[i] = room.push[i]
-    if stage.averages:
-        for i in range(6):
-            known = numbers.af * dot(matrices.accelerating[i], room.R, 6) - numbers.am * room.A_0[i]
-            after.A[i] = ((1 - numbers.af) * after.A[i] + known) / (1 - numbers.am)
-    for i in range(6):
+        known = numbers.af * dot(matrices.accelerating[i], room.R, 6) - numbers.am * room.A_0[i]
+        after.A[i] = ((1 - numbers.af) * dot(matrices.accelerating[i], room.push, 6) + known) / (1 - numbers.am)
         gained = h * (numbers.g_0 * room.A_0[i] + numbers.delta * after.A[i])
-        if stage.begin > 0:
-            gained += h * numbers.g_g * state.A[i]
+        gained += h * numbers.g_g * state.A[i]
         after.V[i] = matrices.numbers[1] * room.V[i] + gained
     place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(len(body.xi)):
@@ -703,7 +685,7 @@ def add_stage_losses(
     sums: Vector,
 ) -> None:
     """Add what the contacts lose in a stage of a step of length h."""
-    length = h * (stage.numbers.end - stage.begin)
+    length = h * (stage.numbers.end - stage.numbers.begin)
     add_contact_losses(
         body.law, shear_law, before, after, slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
     )

@@ -44,6 +44,7 @@ def composite(rho_inf: float = 0.0, split: float | None = None) -> Table:
         d_g=q1,
         e_g=q2 * q1 - quarter,
         g_g=q1,
+        begin=gamma,
     )
     return Table((first, second))
 

@@ -68,6 +68,7 @@ class Scheme:
     g_g: ClassVar[int] = 0
     am: ClassVar[int] = 0
     af: ClassVar[int] = 0
+    begin: ClassVar[int] = 0
     end: ClassVar[int] = 1
 
     def __post_init__(self) -> None:

@@ -30,7 +30,8 @@ class Stage(NamedTuple):
     g_g: float = 0.0  # the same in the velocity
     am: float = 0.0  # share of the inertia at the start in the balance of forces
     af: float = 0.0  # share of the other forces at the start
-    end: float = 1.0  # where it ends, over the step
+    begin: float = 0.0  # where it begins, over the step
+    end: float = 1.0  # where it ends
     gg: float = 1.0  # share of the velocity that the step starts with
     step: float = 1.0  # dt [s]
 

@@ -16,6 +16,8 @@ F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from dda.contact.dense import Vector
@@ -95,3 +97,29 @@ def spring_energies(law: Unilateral, normal: Array, shear: Array) -> Array:
     """Return the energy of the springs of all contacts after every step, whose rows the forces have [J]."""
     energies: Array = np.sum(normal**2 * law.compliance + shear**2 * law.softness, axis=1) / 2
     return energies
+
+
+def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> dict[str, Array]:
+    """Return the energies by `ENERGIES` [J] after every step, losses summed from t = 0 on.
+
+    Parameters
+    ----------
+    stored
+        Kinetic energy, strain energy, that of the springs and that of the load without what the base gave, from t = 0
+        on, (steps + 1,) each.
+    sums
+        (steps + 1, SUMS) of the steps.
+    by_balance
+        Whether the algorithm loses what the others leave of the total.
+    """
+    kinetic, strain, springs, load = stored
+    load = load - sums[:, GIVEN]
+    algorithmic = sums[:, ALGORITHMIC]
+    damped = sums[:, DAMPING]
+    switching = sums[:, SWITCHING]
+    friction = sums[:, FRICTION]
+    if by_balance:
+        total = kinetic + strain + springs + load
+        algorithmic = total[0] - total - damped - switching - friction - sums[:, CONTACT]
+    parts = (kinetic, strain, springs, load, algorithmic, damped, switching, friction)
+    return {name: part[1:] for name, part in zip(ENERGIES, parts, strict=True)}

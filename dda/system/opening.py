@@ -35,7 +35,6 @@ from dda.contact.kernel import (
     find_contacts,
     law_of,
     shear_law_of,
-    spring_energy,
     work_for,
 )
 from dda.contact.springs import Contact, base_directions
@@ -51,17 +50,7 @@ from dda.scheme.newmark import Scheme, inertia_force, late_momentum, predictor, 
 from dda.scheme.stages import Stage
 from dda.stepping.compiled import Compilable
 from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
-from dda.stepping.energy import (
-    ALGORITHMIC,
-    DAMPING,
-    ENERGIES,
-    FRICTION,
-    GIVEN,
-    SWITCHING,
-    add_contact_losses,
-    bulk_loss,
-    spring_energies,
-)
+from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss, energies_of, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import StageSolver
 from dda.system.subdivision import Pattern, subdivided
@@ -229,13 +218,13 @@ class OpeningBody:
         P = late_momentum(self.scheme, P, f)
         return SystemState(np.zeros_like(F), P, f, np.zeros(len(e.pressure)), F, self.find.room(contacts))
 
-    def stored(self, state: SystemState, discount: float = 1.0) -> tuple[float, ...]:
+    def stored(self, state: SystemState, discount: float) -> tuple[float, ...]:
         """Return kinetic and strain energy, and that of the load without what the base gave [J]."""
         dt = self.scheme.step
         strain = self.stiff(state.D, state.mu / dt**2) / 2
         return self.kinetic(self.momentum(state, discount) / dt), strain, -float(self.F @ state.D)
 
-    def momentum(self, state: SystemState, discount: float = 1.0) -> Array:
+    def momentum(self, state: SystemState, discount: float) -> Array:
         """Return dt M V at the time of the displacements; `discount` is that of P."""
         return discount * state.P + self.scheme.lag * state.f if self.scheme.lag else state.P
 
@@ -261,12 +250,12 @@ def advance(
     length = body.length(part.ratio)
     body.passed.clear()
     before = state
-    begin = 0.0
     total = 0
-    for number, stage in enumerate(length.stages):
-        target = after if number + 1 == len(length.stages) else body.between
-        end = float(stage.solver.stage.end)
-        interval = Part(part.begun + part.ratio * begin, part.ratio * (end - begin))
+    for stage in length.stages:
+        target = after if stage is length.stages[-1] else body.between
+        begin = stage.solver.stage.begin
+        share = stage.solver.stage.end - begin
+        interval = Part(part.begun + part.ratio * begin, part.ratio * share)
         carried = np.zeros(2)
         if base is not None:
             base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
@@ -275,9 +264,8 @@ def advance(
         if outcome != FOUND:
             return outcome, total
         slipped = np.array(target.contacts.slipped)
-        body.passed.append(MadeStage(before, target, carried, slipped, end - begin))
+        body.passed.append(MadeStage(before, target, carried, slipped, share))
         before = target
-        begin = end
     if len(body.passed) > 1:
         for i in range(body.points):
             after.contacts.slipped[i] = sum(stage.slipped[i] for stage in body.passed)
@@ -310,10 +298,8 @@ def make_stage(
     f = ratio * ratio * state.f
     force_0 = ratio * ratio * state.force
     mu = ratio * ratio * before.mu
-    follows = before is not state
     balance = predictor(stage, stage.d_u * P, f)
-    if follows:
-        balance = balance + stage.d_g * (ratio * before.P) + stage.e_g * (ratio * ratio * before.f)
+    balance = balance + stage.d_g * (ratio * before.P) + stage.e_g * (ratio * ratio * before.f)
     # contact forces at the start of the stage are no part of what is known of its end
     internal = solver.k @ before.D + solver.Bt @ mu
     balance = balance + stage.alpha * inertia_force(stage, length.F - internal, force_0, f)
@@ -337,9 +323,7 @@ def make_stage(
         pressed = length.push @ forces
     force = length.F - (solver.k @ D + solver.Bt @ mu) + pressed
     f1 = inertia_force(stage, force, force_0, f)
-    P1 = velocity_corrector(stage, P, f, f1)
-    if follows:
-        P1 = P1 + stage.g_g * (ratio * ratio * before.f)
+    P1 = velocity_corrector(stage, P, f, f1) + stage.g_g * (ratio * ratio * before.f)
     after.D = D
     after.P = P1 / ratio
     after.f = f1 / (ratio * ratio)
@@ -356,9 +340,6 @@ def account(
     scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
     newmark = scheme.table is None
-    lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN]
-    algorithmic = sums[ALGORITHMIC]
-    late = scheme.delta if newmark else 0.5
     for stage in body.passed:
         slide = opening.tangents @ (stage.after.D - stage.before.D) - stage.carried[0]
         add_contact_losses(
@@ -369,21 +350,14 @@ def account(
             stage.slipped,
             slide,
             stage.carried,
-            late,
+            scheme.delta if newmark else 0.5,
             scheme.step * stage.share,
             1.0,
             sums,
         )
-    discount = body.start_discount(part.begun == 0)
-    if discount == 1:
+    if body.start_discount(part.begun == 0) == 1:
         sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
-    if not newmark:  # the algorithm loses what the others leave of the balance
-        lost = sums[DAMPING] + sums[SWITCHING] + sums[FRICTION] - sums[GIVEN] - lost
-        released = sum(body.stored(state, discount)) - sum(body.stored(after))
-        for i in range(body.points):
-            released += spring_energy(body.law, shear_law, state.contacts, i)
-            released -= spring_energy(body.law, shear_law, after.contacts, i)
-        sums[ALGORITHMIC] = algorithmic + released - lost
+    if not newmark:
         return
     moved = after.D - state.D
     R0 = state.f / dt2
@@ -462,10 +436,9 @@ def solve_opening_system(
         return moved
 
     def balance() -> dict[str, Array]:
-        kinetic, strain, load = motion[:, requested + 2 + points :].T
-        springs = spring_energies(law, history.normal[1:], history.shear[1:])
-        stored = (kinetic, strain, springs, load - history.sums[1:, GIVEN])
-        return dict(zip(ENERGIES, (*stored, *history.sums[1:, :4].T), strict=True))
+        kinetic, strain, load = history.motion[:, requested + 2 + points :].T
+        springs = spring_energies(law, history.normal, history.shear)
+        return energies_of((kinetic, strain, springs, load), history.sums, scheme.table is not None)
 
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {body.find.how}: contact opens and closes"], (began, ready)),

@@ -125,21 +125,17 @@ class Stepper:
             P_0 = P
             f_0 = f
             force_0 = force
-            for number, solver in enumerate(self.stages):
+            for solver in self.stages:
                 stage = solver.stage
-                balance = predictor(stage, stage.d_u * P_0, f_0)
                 f_g = f
-                if number > 0:
-                    balance = balance + stage.d_g * P + stage.e_g * f_g
+                balance = predictor(stage, stage.d_u * P_0, f_0) + stage.d_g * P + stage.e_g * f_g
                 balance = balance + stage.alpha * inertia_force(stage, force, force_0, f_0)
                 dD, dmu = solver.increments(balance, next(pushes))
                 D = D + dD
                 mu = mu + dmu
                 force = F - (solver.k @ D + solver.Bt @ mu)
                 f = inertia_force(stage, force, force_0, f_0)
-                P = velocity_corrector(stage, P_0, f_0, f)
-                if number > 0:
-                    P = P + stage.g_g * f_g
+                P = velocity_corrector(stage, P_0, f_0, f) + stage.g_g * f_g
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 
