@@ -19,7 +19,7 @@ faster than any power of the number of modes, also for the modes far beyond the 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,8 +28,8 @@ from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.problem.bar import no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
-from fem_reference.scheme import modal as bar_scheme
-from fem_reference.scheme.staged import principal_first, weighted_response
+from fem_reference.scheme.modal import applicable as steppable
+from fem_reference.scheme.modal import ramped_response, roots, weighted_response
 
 FIRST = 256
 """Modes of the first attempt."""
@@ -111,13 +111,12 @@ class Bar:
         return shares(column, b, self.kappa)
 
     def modes(self, scheme: Scheme, count: int = 3) -> tuple[Mode, ...]:
-        """The lowest modes, with the eigenvalues of the scheme's step from trace and determinant."""
+        """The lowest modes, with the eigenvalues of the scheme's step."""
         b = wave_numbers(self.kappa, count)
         weight = shares("load", b, self.kappa)
         modes = []
         for i, w in enumerate(b / self.travel):
-            roots = principal_first(bar_scheme.roots(float(w) * scheme.step, scheme))
-            modes.append(Mode(float(w), float(weight[i]), np.resize(np.append(roots, 0.0), 3)))
+            modes.append(Mode(float(w), float(weight[i]), roots(float(w) * scheme.step, scheme)))
         return tuple(modes)
 
     def solve(
@@ -131,7 +130,7 @@ class Bar:
             If the scheme is not stable for every frequency, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
-        reason = bar_scheme.applicable(scheme)
+        reason = steppable(scheme)
         if reason is not None:
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
@@ -149,14 +148,11 @@ class Bar:
         weights = np.array([shares(name, b, self.kappa) for name in columns])
         cut = np.vstack([weights * cut_off(count, count), weights * cut_off(count, count // 2)])
         omega = b / self.travel * scheme.step
-        if self.ramp and scheme.table is not None:
+        if self.ramp:
             acting = np.minimum(scheme.stage_times(steps) / self.ramp, 1.0)
-            history = weighted_response(omega, cut, scheme, steps, acting)
-        elif self.ramp:
-            at_once = replace(scheme, start="zero")  # no load acts at t = 0
-            history = ramped(bar_scheme.weighted_response(omega, cut, at_once, steps), self.ramp / scheme.step)
+            history = ramped_response(omega, cut, scheme, steps, acting)
         else:
-            history = bar_scheme.weighted_response(omega, cut, scheme, steps)
+            history = weighted_response(omega, cut, scheme, steps)
         fine = history[: len(columns)]
         coarse = history[len(columns) :]
         error = np.abs(fine - coarse).max(axis=1, initial=0.0)
@@ -204,16 +200,6 @@ class Bar:
             stepping_seconds=time.perf_counter() - began,
             estimate=estimate,
         )
-
-
-def ramped(history: Array, steps: float) -> Array:
-    """Histories under a load that rises within so many steps, from those under one that acts from step 1 on.
-
-    The scheme is linear and the same in every step: the load min(1, n / steps) is a sum of constant ones, the first
-    from step 1 on, each as large as what the load rises by in its step.
-    """
-    shares = np.minimum(np.arange(np.ceil(steps) + 1) / steps, 1.0)
-    return np.array([np.convolve(row, np.diff(shares))[: len(row)] for row in history])
 
 
 def applicable(problem: Problem) -> str | None:

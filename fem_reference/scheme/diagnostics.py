@@ -21,7 +21,7 @@ class Diagnostics:
     condition_number: float  # of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices
     scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
     spectral_radius: float  # largest |lambda| seen: the code's own step applied to unit states of single modes [-]
-    predicted_radius: float  # largest |lambda| of the same modes from trace and determinant [-]
+    predicted_radius: float  # largest |lambda| of the same modes by the stages of one step [-]
     largest_omega: float  # largest w dt [-]
 
 

@@ -151,10 +151,9 @@ FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 BAR_WAVE_NUMBERS = Seam(exact_bar, exact_bar.wave_numbers)
 BAR_SHARES = Seam(exact_bar, exact_bar.shares)
 BAR_SUM = Seam(exact_bar.Bar, exact_bar.Bar._sum)
-BAR_TRACE = Seam(modal, modal.trace)
-BAR_SPECTRUM = Seam(modal, modal.spectrum)
-BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
-BAR_PAIR = Seam(modal, modal._pair)
+BAR_HISTORIES = Seam(exact_bar, exact_bar.weighted_response)
+BAR_ROOTS = Seam(exact_bar, exact_bar.roots)
+BAR_STEP = Seam(modal, modal.step_increment)
 BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens
