@@ -25,7 +25,7 @@ import numpy as np
 
 from fem_reference.exact import continuum, viscous
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
-from fem_reference.problem.bar import no_bar
+from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
 from fem_reference.scheme.modal import applicable as steppable
@@ -42,30 +42,16 @@ TARGET = 1e-11
 
 
 @dataclass(frozen=True)
-class Bar:
-    """An elastic bar on a spring under a step of pressure on its top.
+class Bar(BarProblem):
+    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls.
 
     Raises
     ------
     ValueError
-        If a dimension, the density, the modulus or the stiffness is not positive and finite.
+        For a value out of its range, naming field, rule and value.
     """
 
-    height: float  # length h of the bar [m]
-    width: float  # width W [m], unit thickness
-    density: float  # mass density rho [kg/m3]
-    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
-    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
-    pressure: float  # pressure q on the top [Pa], downwards; the load is q W
-    ramp: float = 0.0  # time in which it rises linearly from zero [s]
-
-    def __post_init__(self) -> None:
-        for name in ("height", "width", "density", "young", "base_stiffness"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name}: must be positive and finite, got {value!r}")
-        if not np.isfinite(self.pressure):
-            raise ValueError(f"pressure: must be a finite number, got {self.pressure!r}")
+    ramp: float = 0.0  # time in which the pressure rises linearly from zero [s]
 
     @classmethod
     def of(cls, problem: Problem) -> Bar:
@@ -80,17 +66,8 @@ class Bar:
         if reason is not None or problem.rectangle is None:
             raise ValueError(f"problem: must reduce to a bar, but {reason}")
         width, height = problem.rectangle
-        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, problem.pressure, problem.ramp)
-
-    @property
-    def kappa(self) -> float:
-        """Stiffness of the spring over that of the bar, k h / (E W) [-]."""
-        return self.base_stiffness / self.young * (self.height / self.width)
-
-    @property
-    def travel(self) -> float:
-        """Time h / c of the wave from top to base [s], c = sqrt(E / rho)."""
-        return self.height / float(np.sqrt(self.young / self.density))
+        data = problem.density, problem.young, 2 * problem.stiffness, problem.pressure
+        return cls(height, width, *data, ramp=problem.ramp)
 
     def static(self) -> dict[str, float]:
         """Static value of each column: -(q W / k + q h / (2 E)), q and zero."""
