@@ -246,10 +246,7 @@ class ContactStepper:
         free = model.free
         self.M, self.C, self.K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
         self.B = self._openings()
-        if scheme.staggered and ground.impedance is not None:
-            raise ValueError(
-                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
-            )
+        model.check_scheme(scheme)
         self.compliance = np.array([1 / contact.stiffness for contact in column.contacts])
         n = len(column.contacts)
         if column.law == "unilateral":

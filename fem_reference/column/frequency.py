@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse.linalg import eigsh
+from scipy.sparse import csr_array
 
 from fem_reference.column.mesh import line_mesh
 from fem_reference.column.problem import Ground
-
-SMALL = 40  # unknowns up to which a dense solver finds it
+from fem_reference.scheme.eigen import largest_frequency
 
 
 def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> float:
@@ -21,8 +19,5 @@ def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> f
     massless = mesh.M.diagonal()[mesh.base_node] == 0  # a joint lies on it
     if ground.impedance is None or massless:
         free = np.delete(free, mesh.base_node)
-    M, K = (matrix[free][:, free].tocsc() for matrix in (mesh.M, mesh.K))
-    if len(free) <= SMALL:
-        return math.sqrt(float(np.linalg.eigvals(np.linalg.solve(M.toarray(), K.toarray())).real.max()))
-    start = np.cos(np.pi * np.arange(len(free)))  # alike from run to run
-    return math.sqrt(float(eigsh(K, k=1, M=M, which="LM", v0=start, return_eigenvectors=False)[0]))
+    M, K = (csr_array(matrix[free][:, free]) for matrix in (mesh.M, mesh.K))
+    return largest_frequency(K, M)

@@ -1,12 +1,4 @@
-"""Histories of a meshed column by a scheme with damping.
-
-One stage of M A + C V + K D = F from (D, V, A) and the stage before, with its matrix factorised once and the numbers
-of `fem_reference.problem.stages`, gamma' = gamma (1 - af) / (1 - am)::
-
-    D* = D + dt (d_u u + d_g Vg) + dt^2 (e_0 A + e_g Ag),     V* = u + dt (g_0 A + g_g Ag),    u = gg V
-    (M + gamma' dt C + beta' dt^2 K) (D1 - D) = (M + gamma' dt C) (D* - D)
-                                                + b dt^2 (F* - am M A - (1 - af) C V* - af C u - K D)
-    A1 = (D1 - D*) / (beta dt^2),               V1 = V* + gamma dt A1
+"""Histories of a meshed column by a scheme, on a base with prescribed motion or on a half-space.
 
 A prescribed base enters the others' equations by its displacement and acceleration, a half-space by a dashpot of its
 impedance and the load 2 rho c v of the incident wave.
@@ -14,7 +6,7 @@ impedance and the load 2 rho c v of the incident wave.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
@@ -26,16 +18,7 @@ from fem_reference.column.mesh import LineMesh, line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground, check_columns
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result
-from fem_reference.scheme.newmark import (
-    State,
-    Work,
-    acceleration,
-    discount,
-    predictor,
-    stage_load,
-    start_velocity,
-    velocity_predictor,
-)
+from fem_reference.scheme.newmark import Stepper
 
 
 def solve_line(
@@ -71,20 +54,22 @@ def solve_line(
     mesh = line_mesh(ground, elements, degree)
     model = Model.of(mesh, ground.impedance)
     rows = [row_of(mesh, model, name, heights) for name in columns]
-    work = Work()
-    stepper = DampedStepper(model, scheme, work)
+    model.check_scheme(scheme)
+    free = model.free
+    M, C, K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
+    if scheme.start == "consistent" and np.any(M.diagonal() == 0):
+        raise ValueError("start: must be 'zero' where a joint lies between half-space and column, got 'consistent'")
+    stepper = Stepper(M, K, np.zeros(len(free)), scheme, C=None if ground.impedance is None else C)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        histories = stepper.run(excitation, rows)
+        columns_of_steps = histories(model, stepper, excitation, rows)
     ended = perf_counter()
-    steps = histories.shape[1]
+    steps = columns_of_steps.shape[1]
     return Result(
         time=scheme.step * np.arange(1.0, steps + 1),
-        columns=dict(zip(columns, histories, strict=True)),
-        unknowns=len(model.free),
-        nonzeros=work.nonzeros,
-        factorisations=work.factorisations,
-        solves=work.solves,
+        columns=dict(zip(columns, columns_of_steps, strict=True)),
+        unknowns=len(free),
+        **vars(stepper.work),
         notes=(),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
@@ -111,6 +96,19 @@ class Model:
         C = csr_array(coo_array(([impedance or 0.0], ([b], [b])), shape=(n, n)))
         free = np.flatnonzero(np.arange(n) != (b if impedance is None else n))
         return cls(mesh.M, C, mesh.K, free, b, mesh.top, impedance)
+
+    def check_scheme(self, scheme: Scheme) -> None:
+        """Raise for a scheme that has no velocity for the dashpot of a half-space.
+
+        Raises
+        ------
+        ValueError
+            If its velocity is that of half a step before.
+        """
+        if scheme.staggered and self.impedance is not None:
+            raise ValueError(
+                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
+            )
 
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
@@ -152,87 +150,21 @@ def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) ->
     return Observation(mesh.row(heights[int(number) - 1], stress=kind != DISPLACEMENT), none, none, parts)
 
 
-class DampedStepper:
-    """The scheme on a model with damping, its matrices of the free unknowns factorised once."""
-
-    def __init__(self, model: Model, scheme: Scheme, work: Work) -> None:
-        self.model = model
-        self.scheme = scheme
-        self.work = work
-        self.M, self.C, self.K = (matrix[model.free][:, model.free] for matrix in (model.M, model.C, model.K))
-        if scheme.staggered and model.impedance is not None:
-            raise ValueError(
-                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
-            )
-        self.carried: list[csr_array] = []
-        self.solves: list[Callable[[Array], Array]] = []
-        for stage, first in enumerate(scheme.stage_matrices):
-            if first < stage:
-                self.carried.append(self.carried[first])
-                self.solves.append(self.solves[first])
-                continue
-            numbers = scheme.stages[stage]
-            carried = csr_array(self.M + numbers.damping_weight * scheme.step * self.C)
-            self.carried.append(carried)
-            self.solves.append(work.factor(csr_array(carried + numbers.stiffness_weight * scheme.step**2 * self.K)))
-
-    def run(self, excitation: Excitation, rows: Sequence[Observation]) -> Array:
-        """Return the observed columns at every step, shape (columns, steps)."""
-        e = excitation
-        free = self.model.free
-        base = self.model.base
-        parts = np.column_stack([e.displacement, e.velocity, e.acceleration, e.pressure])
-        loads = parts @ self.model.loads().T
-        by_D, by_V, by_A = (np.array([getattr(row, part) for row in rows]) for part in "DVA")
-        excitation_weights = np.array([row.excitation for row in rows])
-        if self.model.impedance is None:
-            excitation_weights[:, 0] += by_D[:, base]
-            excitation_weights[:, 2] += by_A[:, base]
-        state = self.start(loads[0])
-        stages = len(self.scheme.stages)
-        histories = excitation_weights @ parts[stages::stages].T
-        for n in range(histories.shape[1]):
-            state = self.advance(state, list(loads[n * stages : (n + 1) * stages + 1]))
-            histories[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
-        return histories
-
-    def start(self, F: Array) -> State:
-        """State at t = 0: at rest, with the initial acceleration that the scheme asks for."""
-        zero = np.zeros_like(F)
-        if self.scheme.start != "consistent":
-            return State(zero, zero, zero)
-        if np.any(self.M.diagonal() == 0):
-            raise ValueError("start: must be 'zero' where a joint lies between half-space and column, got 'consistent'")
-        A = self.work.factor(csr_array(self.M))(F)
-        return State(zero, start_velocity(zero, A, self.scheme), A, undiscounted=self.scheme.staggered)
-
-    def advance(self, state: State, loads: Sequence[Array]) -> State:
-        """One step under the loads at its start and at the end of each stage."""
-        end = self._advance_stage(state, None, loads, 0)
-        for stage in range(1, len(self.solves)):
-            end = self._advance_stage(state, end, loads, stage)
-        return end
-
-    def _advance_stage(self, state: State, before: State | None, loads: Sequence[Array], stage: int) -> State:
-        s = self.scheme
-        numbers = s.stages[stage]
-        predicted = predictor(state, s, stage, before)
-        slowed = velocity_predictor(state, s, stage, before)
-        resisted = stage_load(loads, s, stage) - self.C @ self._mean_velocity(state, slowed, stage)
-        if numbers.am:
-            resisted = resisted - numbers.am * (self.M @ state.A)
-        if numbers.beta > 0:
-            weight = numbers.compliance * s.step**2
-            increment = self.carried[stage] @ (predicted - state.D) + weight * (resisted - self.K @ state.D)
-            D = state.D + self.solves[stage](increment)
-            A = acceleration(D, predicted, s, stage)
-        else:
-            D = predicted
-            strained = (1 - numbers.af) * D + numbers.af * state.D if numbers.af else D
-            A = self.solves[stage](resisted - self.K @ strained) / (1 - numbers.am)
-        return State(D, slowed + numbers.gamma * s.step * A, A)
-
-    def _mean_velocity(self, state: State, slowed: Array, stage: int) -> Array:
-        """(1 - af) V* + af u, which a dashpot feels before the new acceleration acts [m/s]."""
-        af = self.scheme.stages[stage].af
-        return (1 - af) * slowed + af * discount(state, self.scheme) * state.V if af else slowed
+def histories(model: Model, stepper: Stepper, excitation: Excitation, rows: Sequence[Observation]) -> Array:
+    """Return the observed columns at every step, shape (columns, steps)."""
+    e = excitation
+    free = model.free
+    parts = np.column_stack([e.displacement, e.velocity, e.acceleration, e.pressure])
+    loads = parts @ model.loads().T
+    by_D, by_V, by_A = (np.array([getattr(row, part) for row in rows]) for part in "DVA")
+    excitation_weights = np.array([row.excitation for row in rows])
+    if model.impedance is None:
+        excitation_weights[:, 0] += by_D[:, model.base]
+        excitation_weights[:, 2] += by_A[:, model.base]
+    state = stepper.start(loads[0])
+    stages = len(stepper.solves)
+    columns = excitation_weights @ parts[stages::stages].T
+    for n in range(columns.shape[1]):
+        state = stepper.advance(state, list(loads[n * stages : (n + 1) * stages + 1]))
+        columns[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
+    return columns

@@ -1,8 +1,8 @@
 r"""Response of a meshed column to a drive that vibrates, without a step.
 
 The equations of the scheme's stages (`fem_reference.scheme.harmonic`) say (K + S C - W2 M) D = F with V = S D and
-A = -W2 D where there is one stage. In the order of their heights the unknowns make a narrow band, eliminated for every
-frequency. A base with a prescribed motion has the acceleration -w^2 y.
+A = -W2 D where there is one stage, the stages of an unknown standing together. A base with a prescribed motion has the
+acceleration -w^2 y.
 """
 
 from __future__ import annotations
@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solve_banded
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse import csc_array, kron
+from scipy.sparse.linalg import splu
 
 from fem_reference.column.mesh import line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Ground, check_columns
@@ -79,25 +78,14 @@ def exact_system(w: Array, W2: Complex) -> StepSystem:
 
 def _solutions(model: Model, loads: Complex, system: StepSystem) -> Complex:
     """Free unknowns of all stages at every frequency, shape (unknowns, stages, frequencies)."""
-    M, C, K = (coo_array(part[model.free][:, model.free]) for part in (model.M, model.C, model.K))
-    order = reverse_cuthill_mckee((abs(M) + abs(K)).tocsr(), symmetric_mode=True)
-    place = np.argsort(order)
-    # at least one diagonal on each side, also of one unknown: older SciPy look for the main one in the second row
-    width = max(int(np.max(np.abs(place[part.row] - place[part.col]), initial=1)) for part in (M, K))
+    M, C, K = (part[model.free][:, model.free] for part in (model.M, model.C, model.K))
     stages = system.load.shape[1]
-    width = (width + 1) * stages - 1  # the stages of an unknown stand together
-    solutions = np.empty((len(order), stages, loads.shape[1]), complex)
+    solutions = np.empty((len(loads), stages, loads.shape[1]), complex)
     for i in range(loads.shape[1]):
-        band = np.zeros((2 * width + 1, len(order) * stages), complex)
-        for part, factors in ((K, system.stiffness[i]), (C, system.damping[i]), (M, system.inertia[i])):
-            for row_stage, col_stage in np.ndindex(stages, stages):
-                row = place[part.row] * stages + row_stage
-                col = place[part.col] * stages + col_stage
-                band[width + row - col, col] += factors[row_stage, col_stage] * part.data
-        right = loads[order, i, None] * system.load[i]
+        matrix = kron(K, system.stiffness[i]) + kron(C, system.damping[i]) + kron(M, system.inertia[i])
+        right = np.kron(loads[:, i], system.load[i])
         try:
-            solution = solve_banded((width, width), band, right.ravel(), check_finite=False)
-            solutions[order, :, i] = solution.reshape(right.shape)
-        except np.linalg.LinAlgError:  # a resonance that nothing damps
+            solutions[:, :, i] = splu(csc_array(matrix)).solve(right).reshape(-1, stages)
+        except RuntimeError:  # a resonance that nothing damps
             solutions[:, :, i] = np.inf
     return solutions

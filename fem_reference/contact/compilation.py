@@ -89,4 +89,4 @@ def _warm(march: Callable[..., Any]) -> None:
     )
     base = np.zeros((0, 1, 2))
     columns = np.zeros(1, dtype=np.int64)
-    march((block,), (law,), state, base, columns, True, True, np.zeros((0, 1)), np.zeros((0, 5, 1)), None)
+    march((block,), (law,), state, base, columns, True, True, np.zeros((0, 1)), None)

@@ -111,10 +111,6 @@ less back [m]; energies [J], of the loads -F'D less the work of a moving base; e
 where gained, by friction never; solutions of the open-close iteration and cuts of the step [-]."""
 
 
-POINTWISE = ("normal", "gap", "shear", "states", "slid")
-"""What is kept of every point where it is asked for."""
-
-
 class Block(NamedTuple):
     """The block in one stage of one length of step; operators are diagonals, or know products with vectors."""
 
@@ -214,7 +210,6 @@ def march(
     energies: bool,
     losses: bool,
     table: Array,
-    points: Array,
     fallback: Fallback | None = None,
 ) -> tuple[ContactState, int, int, int]:
     """Make as many steps as the table has rows, while they have a contact and finite numbers.
@@ -231,8 +226,6 @@ def march(
         Whether energies and losses are among them.
     table
         What is kept of each step (filled), shape (steps, columns).
-    points
-        What is kept of all points, `POINTWISE` (filled), shape (steps, 5, points) or (0, 5, points).
     fallback
         What finds the contact of a stage whose iteration does not end, `fall_back`; the march ends there if None.
 
@@ -253,13 +246,6 @@ def march(
             if not np.isfinite(table[n, i]):
                 return state, n, solves, OVERFLOW
         state = following
-        if len(points) > 0:
-            for i in range(len(state.gap)):
-                points[n, 0, i] = state.normal[i]
-                points[n, 1, i] = state.gap[i]
-                points[n, 2, i] = state.shear[i]
-                points[n, 3, i] = state.states[i]
-                points[n, 4, i] = state.slid[i]
     return state, len(table), solves, CONVERGED
 
 

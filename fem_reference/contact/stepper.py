@@ -34,7 +34,6 @@ KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
 DENSE = 256
 """Greatest number of forces whose responses are kept, eight bytes an unknown each."""
-NO_POINTS = np.empty((0, 5, 0))
 
 
 @dataclass(frozen=True)
@@ -152,9 +151,7 @@ class ContactStepper:
             totals=totals,
         )
 
-    def march(
-        self, state: ContactState, table: Array, points: Array = NO_POINTS, length: float | None = None
-    ) -> Marched:
+    def march(self, state: ContactState, table: Array, length: float | None = None) -> Marched:
         """Make as many steps as the table has rows, of a shorter `length` [s] where that is given.
 
         The rows of the completed steps are filled.
@@ -176,22 +173,20 @@ class ContactStepper:
         outcome = CONVERGED
         while completed < len(table) and outcome == CONVERGED:
             rest = slice(completed, None)
-            state, steps, solves, outcome = march(
-                blocks, laws, state, base[rest], *arguments, table[rest], points[rest], fallback
-            )
+            state, steps, solves, outcome = march(blocks, laws, state, base[rest], *arguments, table[rest], fallback)
             completed += steps
             if outcome == UNSETTLED:
                 # A fallback is rare, and not compiled.
                 one = slice(completed, completed + 1)
                 state, steps, solves, outcome = kernel.march(
-                    blocks, laws, state, base[one], *arguments, table[one], points[one], kernel.fall_back
+                    blocks, laws, state, base[one], *arguments, table[one], kernel.fall_back
                 )
                 completed += steps
         return Marched(state, completed, solves, outcome)
 
     def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Marched]:
         """One step; the state at its end, or None where it has no contact."""
-        marched = self.march(state, np.empty((1, len(self.columns))), length=length)
+        marched = self.march(state, np.empty((1, len(self.columns))), length)
         return marched.state if marched.steps else None, marched
 
     def _use_modes(self) -> None:

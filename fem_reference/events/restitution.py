@@ -19,7 +19,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fem_reference.problem.problem import Array
 
@@ -91,8 +90,8 @@ class Statistics:
     mean_square: float  # mean of e^2, the share of the energy that is left [-]
 
 
-def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
-    """Restitution by running the scheme.
+def restitution(scheme: ContactScheme, omega: float, theta: float) -> float:
+    """Restitution e of one overshoot of the predictor; 0 where the mass sticks.
 
     Parameters
     ----------
@@ -101,33 +100,16 @@ def restitution(scheme: ContactScheme, omega: float, theta: ArrayLike) -> Array:
     omega
         Omega = sqrt(k / m) dt, `math.inf` for a rigid contact.
     theta
-        Overshoots of the predictor from 0 to gg, shape (n,).
-
-    Returns
-    -------
-    Array
-        Restitution e, shape (n,); 0 where the mass sticks.
+        Overshoot of the predictor, from 0 to gg.
 
     Raises
     ------
     ValueError
-        If `omega` is not positive or a theta is not from 0 to gg.
+        If `omega` is not positive or theta is not from 0 to gg.
     """
-    overshoot = np.atleast_1d(np.asarray(theta, dtype=float))
-    if not np.all((overshoot >= 0) & (overshoot <= scheme.gg)):
+    if not 0 <= theta <= scheme.gg:
         raise ValueError(f"theta: must be from 0 to gg = {scheme.gg:g}, got {theta!r}")
-    step = scheme.step(omega)
-    restitutions = np.zeros_like(overshoot)
-    state = np.vstack([-overshoot, np.full_like(overshoot, -1.0), np.zeros_like(overshoot)])
-    inside = np.ones_like(overshoot, dtype=bool)
-    for _ in range(LIMIT):
-        state = step @ state
-        leaves = inside & (state[0] >= 0)
-        restitutions[leaves] = scheme.last @ state[:, leaves]
-        inside &= ~leaves & (np.abs(state[1:]).max(axis=0) >= REST)
-        if not inside.any():
-            break
-    return restitutions
+    return next(line(theta) for line in branches(scheme, omega) if theta <= line.high)
 
 
 def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:

@@ -19,17 +19,17 @@ faster than any power of the number of modes, also for the modes far beyond the 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.exact import continuum, viscous
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
-from fem_reference.problem.bar import no_bar
+from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode, Result, check_request
-from fem_reference.scheme import modal as bar_scheme
-from fem_reference.scheme.staged import principal_first, weighted_response
+from fem_reference.scheme.modal import applicable as steppable
+from fem_reference.scheme.modal import ramped_response, roots, weighted_response
 
 FIRST = 256
 """Modes of the first attempt."""
@@ -42,30 +42,16 @@ TARGET = 1e-11
 
 
 @dataclass(frozen=True)
-class Bar:
-    """An elastic bar on a spring under a step of pressure on its top.
+class Bar(BarProblem):
+    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls.
 
     Raises
     ------
     ValueError
-        If a dimension, the density, the modulus or the stiffness is not positive and finite.
+        For a value out of its range, naming field, rule and value.
     """
 
-    height: float  # length h of the bar [m]
-    width: float  # width W [m], unit thickness
-    density: float  # mass density rho [kg/m3]
-    young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
-    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
-    pressure: float  # pressure q on the top [Pa], downwards; the load is q W
-    ramp: float = 0.0  # time in which it rises linearly from zero [s]
-
-    def __post_init__(self) -> None:
-        for name in ("height", "width", "density", "young", "base_stiffness"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{name}: must be positive and finite, got {value!r}")
-        if not np.isfinite(self.pressure):
-            raise ValueError(f"pressure: must be a finite number, got {self.pressure!r}")
+    ramp: float = 0.0  # time in which the pressure rises linearly from zero [s]
 
     @classmethod
     def of(cls, problem: Problem) -> Bar:
@@ -80,17 +66,8 @@ class Bar:
         if reason is not None or problem.rectangle is None:
             raise ValueError(f"problem: must reduce to a bar, but {reason}")
         width, height = problem.rectangle
-        return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, problem.pressure, problem.ramp)
-
-    @property
-    def kappa(self) -> float:
-        """Stiffness of the spring over that of the bar, k h / (E W) [-]."""
-        return self.base_stiffness / self.young * (self.height / self.width)
-
-    @property
-    def travel(self) -> float:
-        """Time h / c of the wave from top to base [s], c = sqrt(E / rho)."""
-        return self.height / float(np.sqrt(self.young / self.density))
+        data = problem.density, problem.young, 2 * problem.stiffness, problem.pressure
+        return cls(height, width, *data, ramp=problem.ramp)
 
     def static(self) -> dict[str, float]:
         """Static value of each column: -(q W / k + q h / (2 E)), q and zero."""
@@ -111,13 +88,12 @@ class Bar:
         return shares(column, b, self.kappa)
 
     def modes(self, scheme: Scheme, count: int = 3) -> tuple[Mode, ...]:
-        """The lowest modes, with the eigenvalues of the scheme's step from trace and determinant."""
+        """The lowest modes, with the eigenvalues of the scheme's step."""
         b = wave_numbers(self.kappa, count)
         weight = shares("load", b, self.kappa)
         modes = []
         for i, w in enumerate(b / self.travel):
-            roots = principal_first(bar_scheme.roots(float(w) * scheme.step, scheme))
-            modes.append(Mode(float(w), float(weight[i]), np.resize(np.append(roots, 0.0), 3)))
+            modes.append(Mode(float(w), float(weight[i]), roots(float(w) * scheme.step, scheme)))
         return tuple(modes)
 
     def solve(
@@ -131,7 +107,7 @@ class Bar:
             If the scheme is not stable for every frequency, or `steps` or `columns` are not valid.
         """
         check_request(steps, tuple(columns))
-        reason = bar_scheme.applicable(scheme)
+        reason = steppable(scheme)
         if reason is not None:
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
@@ -149,14 +125,11 @@ class Bar:
         weights = np.array([shares(name, b, self.kappa) for name in columns])
         cut = np.vstack([weights * cut_off(count, count), weights * cut_off(count, count // 2)])
         omega = b / self.travel * scheme.step
-        if self.ramp and scheme.table is not None:
+        if self.ramp:
             acting = np.minimum(scheme.stage_times(steps) / self.ramp, 1.0)
-            history = weighted_response(omega, cut, scheme, steps, acting)
-        elif self.ramp:
-            at_once = replace(scheme, start="zero")  # no load acts at t = 0
-            history = ramped(bar_scheme.weighted_response(omega, cut, at_once, steps), self.ramp / scheme.step)
+            history = ramped_response(omega, cut, scheme, steps, acting)
         else:
-            history = bar_scheme.weighted_response(omega, cut, scheme, steps)
+            history = weighted_response(omega, cut, scheme, steps)
         fine = history[: len(columns)]
         coarse = history[len(columns) :]
         error = np.abs(fine - coarse).max(axis=1, initial=0.0)
@@ -204,16 +177,6 @@ class Bar:
             stepping_seconds=time.perf_counter() - began,
             estimate=estimate,
         )
-
-
-def ramped(history: Array, steps: float) -> Array:
-    """Histories under a load that rises within so many steps, from those under one that acts from step 1 on.
-
-    The scheme is linear and the same in every step: the load min(1, n / steps) is a sum of constant ones, the first
-    from step 1 on, each as large as what the load rises by in its step.
-    """
-    shares = np.minimum(np.arange(np.ceil(steps) + 1) / steps, 1.0)
-    return np.array([np.convolve(row, np.diff(shares))[: len(row)] for row in history])
 
 
 def applicable(problem: Problem) -> str | None:

@@ -183,8 +183,12 @@ def slowest(t: Array, w: float, a: float) -> Array:
     return np.asarray(y)
 
 
-def response(t: Array, w: Array, a: float) -> Array:
-    """Free response x(w, t) from x = 1 at rest, also overdamped and critical; `t` is a column."""
+def response(t: Array, w: Array, a: float | Array) -> Array:
+    """Free response x(w, t) from x = 1 at rest, also overdamped and critical; `t` is a column.
+
+    Half the damping rate a is one, or one for each mode.
+    """
+    a = np.broadcast_to(a, w.shape)
     square = (a - w) * (a + w)
     q = np.sqrt(np.abs(square))
     swing = np.where(square <= 0, q, 0.0) * t
@@ -192,7 +196,8 @@ def response(t: Array, w: Array, a: float) -> Array:
     over = square > 0
     if over.any():
         v = q[over]
-        slow = w[over] ** 2 / (a + q[over])
+        a = a[over]
+        slow = w[over] ** 2 / (a + v)
         # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
         fall = -np.expm1(-2 * v * t)
         x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))

@@ -71,11 +71,6 @@ class SlidingBlock:
         """Y = g cos(b) tan(phi) + C [m/s2]."""
         return self.gravity * math.cos(math.radians(self.slope)) * math.tan(math.radians(self.friction)) + self.cohesion
 
-    @property
-    def yield_acceleration(self) -> float:
-        """Acceleration of the base up the slope at which the mass begins to slide down, Y - g sin b [m/s2]."""
-        return self.resistance - self.driving
-
     def push(self, direction: int) -> float:
         """Acceleration towards +x of a mass that slides towards +x (1) or -x (-1) over a base at rest [m/s2]."""
         return self.driving - direction * self.resistance

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.exact.damped import response
 from fem_reference.problem.problem import Array
 
 FIRST = 256
@@ -49,7 +50,7 @@ def _summed(times: Array, kappa: float, rate: float, lag: float, columns: tuple[
     weights = np.array([shares(name, b, kappa) for name in columns]) * cut_off(count, count)
     half = (rate + lag * b * b) / 2
     parts = np.array_split(times, 1 + len(times) * count // BLOCK)
-    sums = [_sum(weights, gone(part, b, half).T) for part in parts]
+    sums = [_sum(weights, 1 - response(part[:, None], b, half).T) for part in parts]
     return np.concatenate(sums, axis=1)
 
 
@@ -57,16 +58,3 @@ def _sum(weights: Array, ways: Array) -> Array:
     """Sum over the modes; what only rounding leaves, before a wave has come, is nothing."""
     total = weights @ ways
     return np.where(np.abs(total) <= ROUNDING * (np.abs(weights) @ np.abs(ways)), 0.0, total)
-
-
-def gone(t: Array, w: Array, a: Array) -> Array:
-    """Way 1 - x(w, t) of modes with half the rates a, shape (times, modes), also overdamped."""
-    t = t[:, None]
-    q = np.sqrt(np.abs((a - w) * (a + w)))
-    turning = q * t
-    under = np.exp(-a * t) * (np.cos(turning) + a * t * np.sinc(turning / np.pi))
-    slow = w * w / (a + q)  # the roots are -slow and -(a + q)
-    fall = -np.expm1(-2 * turning)
-    share = np.where(turning > 0, fall / np.maximum(2 * turning, np.finfo(float).tiny), 1.0)
-    over = np.exp(-slow * t) * (1 - fall / 2 + a * t * share)
-    return np.asarray(1 - np.where(a > w, over, under))

@@ -3,8 +3,7 @@ r"""Histories of the block in a small space, a few matrix products instead of a 
 In the basis of a `KrylovSpace` the step's matrix S is 1 and the inertia T; turned to the eigenvectors
 of T the reduced block falls into single modes with inertia tau, stiffness kappa = 1 - tau (times
 alpha dt^2) and S = 1 again. A step is an affine map of (D, dt V, dt^2 A), made by applying the scheme's
-own step to unit states; the maps of 1, 2, 4, ... steps are squared in extended precision. Step
-jB + i is the product of a row of i steps and a column of jB steps.
+own step to unit states, whose powers give all steps (`fem_reference.scheme.modal`).
 
 The space is enlarged until the history no longer changes; the last change is the estimate of the error.
 """
@@ -15,15 +14,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
 from fem_reference.history.krylov import KrylovSpace
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.modal import applicable, roots
+from fem_reference.scheme.modal import Extended, applicable, power_histories, roots
 from fem_reference.scheme.newmark import State, Stepper, advance, initial_acceleration
-
-Extended = NDArray[np.longdouble]
 
 TOLERANCE = 3e-11
 """Change of the history, over its maximum, at which a space is large enough."""
@@ -42,8 +38,6 @@ SLOW = 0.1
 """kappa below which 1 - tau is formed again where digits count."""
 PAID = 4
 """Steps that a vector must save: it costs about a step and a half."""
-BLOCK = 256
-"""Greatest number of steps in a row."""
 
 
 @dataclass(frozen=True)
@@ -163,21 +157,11 @@ def _stiffness(stepper: Stepper, shapes: Array) -> Array:
 
 def history(modes: Modes, scheme: Scheme, steps: int) -> Array:
     """Columns of every step from rest, shape (columns, steps)."""
-    levels = (steps - 1).bit_length()
-    split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
-    one, start = _one_step(modes, replace(scheme, step=1.0))
-    maps = _squared(one, levels)
-    inner = _doubled(one[:, :1, :].astype(float), maps[:split])
-    outer = _doubled(start[:, None, :], [power.transpose(0, 2, 1) for power in maps[split:]])
-    columns = outer[:, : -(-steps >> split)].transpose(1, 0, 2).reshape(-1, 4 * len(one))
-    found = []
-    for weight in modes.observed * modes.load:
-        row = (weight[:, None, None] * inner).transpose(0, 2, 1).reshape(columns.shape[1], -1)
-        found.append((columns @ row).ravel()[:steps])
-    return np.array(found)
+    step, start = _one_step(modes, replace(scheme, step=1.0))
+    return power_histories(step, start, modes.observed * modes.load, steps)
 
 
-def _one_step(modes: Modes, scheme: Scheme) -> tuple[Any, Array]:
+def _one_step(modes: Modes, scheme: Scheme) -> tuple[Extended, Array]:
     """Map of one step of (D, V, A, 1) for unit loads, (modes, 4, 4), and the state at t = 0, (modes, 4)."""
     tau: Any = modes.inertia.astype(np.longdouble)  # any: the step is typed for doubles
     kappa: Any = modes.stiffness.astype(np.longdouble)
@@ -191,27 +175,10 @@ def _one_step(modes: Modes, scheme: Scheme) -> tuple[Any, Array]:
         state = State(*(x * one for x in unit))
         new = advance(state, loads, scheme, lambda x: tau * x, lambda x: K * x, solves)
         images.append(np.array([new.D, new.V, new.A]))
-    step: Any = np.zeros((len(tau), 4, 4), np.longdouble)
+    step: Extended = np.zeros((len(tau), 4, 4), np.longdouble)
     step[:, 3, 3] = 1
     step[:, :3, 3] = images[3].T
     for i in range(3):
         step[:, :3, i] = (images[i] - images[3]).T
     A0 = initial_acceleration(one, (lambda F: F / tau) if scheme.start == "consistent" else None)
     return step, np.array([zero, zero, A0, one], float).T
-
-
-def _squared(one: Extended, levels: int) -> list[Array]:
-    """Maps of 1, 2, 4, ... steps, rounded to doubles."""
-    maps = []
-    for _ in range(levels):
-        maps.append(one.astype(float))
-        one = one @ one
-    return maps
-
-
-def _doubled(start: Array, maps: list[Array]) -> Array:
-    """The start and its products with all maps made of those of 1, 2, 4, ... steps, along the second axis."""
-    powers = start
-    for power in maps:
-        powers = np.concatenate([powers, powers @ power], axis=1)
-    return powers

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,12 +14,11 @@ from fem_reference.contact.kernel import (
     COUNTS,
     LOSS_COLUMNS,
     OVERFLOW,
-    POINTWISE,
     UNILATERAL_COLUMNS,
     ContactState,
 )
-from fem_reference.contact.points import ContactModel, build
-from fem_reference.contact.stepper import NO_POINTS, ContactStepper, Friction, Marched
+from fem_reference.contact.points import build
+from fem_reference.contact.stepper import ContactStepper, Friction, Marched
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
@@ -79,11 +77,6 @@ class UnilateralResult:
     notes: tuple[str, ...]  # savings used and warnings, in words
     setup_seconds: float  # time for assembly, factorisation and the forces' responses [s]
     stepping_seconds: float  # time for the steps [s]
-    normal: Array | None = None  # normal force of each point at each step [N], shape (rows, points), where asked for
-    gap: Array | None = None  # gap of each point at each step [m], shape (rows, points), where asked for
-    shear: Array | None = None  # tangential force of each point at each step [N], where asked for
-    states: Array | None = None  # 0 open, 1 held, 2 or -2 sliding towards +x or -x, of each point, where asked for
-    slid: Array | None = None  # way that each point has slid while closed [m], where asked for
 
 
 def solve_unilateral(
@@ -92,7 +85,6 @@ def solve_unilateral(
     steps: int,
     contact: Unilateral | None = None,
     full: bool = False,
-    every_point: bool = False,
     columns: tuple[str, ...] = UNILATERAL_COLUMNS,
 ) -> UnilateralResult:
     """Integrate the block on a base that carries no tension, unstrained at t = 0 with all loads switched on.
@@ -107,8 +99,6 @@ def solve_unilateral(
         How the block stands on its base; touching, at rest and without friction if None.
     full
         Solve the whole block where one column of elements would do.
-    every_point
-        Keep forces, gap, state and sliding of every point.
     columns
         Columns of the history, among `fem_reference.UNILATERAL_COLUMNS`.
 
@@ -139,30 +129,23 @@ def solve_unilateral(
         compiled=compiled,
     )
     state = stepper.start(contact.gap, contact.velocity)
-    points = len(model.share)
     table = np.zeros((steps, len(stepper.columns)))
-    pointwise = np.zeros((steps if every_point else 0, len(POINTWISE), points))
     ready = time.perf_counter()
-    rows, outcome = _march(stepper, state, contact, table, pointwise)
+    rows, outcome = _march(stepper, state, contact, table)
     ended = time.perf_counter()
+    saving = ("one column of elements",) if model.kind == "column" else ()
     modes_note = (f"stepped in its {unknowns} natural modes",) if modal else ()
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, rows + 1), dtype=np.float64),
         columns=dict(zip(stepper.columns, table[:rows].T.copy(), strict=True)),
         outcome=outcome,
         unknowns=unknowns,
-        points=points,
+        points=len(model.share),
         **vars(stepper.work),
-        notes=(*_saving(model), *front(problem, scheme.step), *_ramp(problem), *modes_note, compiled_note),
+        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *modes_note, compiled_note),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
-        **_of_points(pointwise[:rows] if every_point else None),
     )
-
-
-def _of_points(pointwise: Array | None) -> dict[str, Any]:
-    """What is kept of every point, shape (rows, points) each."""
-    return {} if pointwise is None else {name: pointwise[:, i].copy() for i, name in enumerate(POINTWISE)}
 
 
 def _kept_columns(columns: tuple[str, ...]) -> tuple[str, ...]:
@@ -170,10 +153,6 @@ def _kept_columns(columns: tuple[str, ...]) -> tuple[str, ...]:
     motion = [name for name in dict.fromkeys(columns) if name not in (*LOSS_COLUMNS, *COUNTS)]
     losses = LOSS_COLUMNS if any(name in LOSS_COLUMNS for name in columns) else ()
     return (*motion, *losses, *(name for name in COUNTS if name in columns))
-
-
-def _saving(model: ContactModel) -> tuple[str, ...]:
-    return ("one column of elements",) if model.kind == "column" else ()
 
 
 def _ramp(problem: Problem) -> tuple[str, ...]:
@@ -189,20 +168,16 @@ def _ramp(problem: Problem) -> tuple[str, ...]:
     return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
 
 
-def _march(
-    stepper: ContactStepper, state: ContactState, contact: Unilateral, table: Array, points: Array
-) -> tuple[int, str]:
+def _march(stepper: ContactStepper, state: ContactState, contact: Unilateral, table: Array) -> tuple[int, str]:
     """Fill the rows of the steps; return how many are complete, and the outcome."""
     completed = 0
     # A scheme beyond its limit grows until it overflows; the outcome says so.
     with np.errstate(over="ignore", invalid="ignore"):
         while completed < len(table):
-            marched = stepper.march(state, table[completed:], points[completed:])
+            marched = stepper.march(state, table[completed:])
             completed += marched.steps
             if marched.outcome != CONVERGED and not stepper.scheme.staggered:
-                marched = cut_step(
-                    stepper, marched, contact, table[completed : completed + 1], points[completed : completed + 1]
-                )
+                marched = cut_step(stepper, marched, contact, table[completed : completed + 1])
                 completed += marched.outcome == CONVERGED
             if marched.outcome != CONVERGED:
                 return completed, OUTCOMES[marched.outcome]
@@ -210,9 +185,7 @@ def _march(
     return completed, OUTCOMES[CONVERGED]
 
 
-def cut_step(
-    stepper: ContactStepper, marched: Marched, contact: Unilateral, row: Array, points: Array = NO_POINTS
-) -> Marched:
+def cut_step(stepper: ContactStepper, marched: Marched, contact: Unilateral, row: Array) -> Marched:
     """Make a step without a contact in shorter pieces; a piece without one is repeated shorter, as are those after it.
 
     Parameters
@@ -223,8 +196,8 @@ def cut_step(
         How the step in one piece has failed, with the state before it.
     contact
         Factor and limit of the cuts.
-    row, points
-        What is kept of the step (filled), one row each.
+    row
+        What is kept of the step (filled), one row.
 
     Returns
     -------
@@ -241,7 +214,7 @@ def cut_step(
             if trial <= contact.shortest:
                 return marched
             trial = max(contact.cut * trial, contact.shortest)
-        marched = stepper.march(marched.state, row, points, stepper.scheme.step * trial)
+        marched = stepper.march(marched.state, row, stepper.scheme.step * trial)
         solves += marched.solves
         if marched.outcome == CONVERGED:
             # What rounding leaves over is no piece.

@@ -45,7 +45,7 @@ class BarProblem:
     @property
     def travel(self) -> float:
         """Time H / c of a wave from top to base [s]."""
-        return self.height * math.sqrt(self.density / self.young)
+        return self.height / math.sqrt(self.young / self.density)
 
     @property
     def kappa(self) -> float:

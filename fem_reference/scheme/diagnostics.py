@@ -11,7 +11,7 @@ from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.scheme.eigen import DENSE, eigenvalues, highest_frequency, lowest
 from fem_reference.scheme.modal import roots
-from fem_reference.scheme.newmark import Work, effective_matrix
+from fem_reference.scheme.newmark import Stepper
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Diagnostics:
     condition_number: float  # of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices
     scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
     spectral_radius: float  # largest |lambda| seen: the code's own step applied to unit states of single modes [-]
-    predicted_radius: float  # largest |lambda| of the same modes from trace and determinant [-]
+    predicted_radius: float  # largest |lambda| of the same modes by the stages of one step [-]
     largest_omega: float  # largest w dt [-]
 
 
@@ -29,9 +29,10 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Mod
     """Return conditioning, residual and spectral radius of the step."""
     model = build(problem, full) if model is None else model
     omegas = _frequencies(problem, model) * scheme.step
-    S = effective_matrix(model.M, model.K, scheme)
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    S = stepper.S
     b = scheme.step**2 * model.F
-    x = Work().factor(S)(b)
+    x = stepper.solve(b)
     residual = np.abs(S @ x - b) / (abs(S) @ np.abs(x) + np.abs(b) + np.finfo(float).tiny)
     small = len(model.F) <= DENSE
     return Diagnostics(

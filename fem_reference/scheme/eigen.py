@@ -11,8 +11,8 @@ from scipy.sparse.linalg import eigsh
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode
+from fem_reference.scheme.modal import principal_first
 from fem_reference.scheme.newmark import State, Stepper, Work
-from fem_reference.scheme.staged import principal_first
 
 DENSE = 400
 """Unknowns up to which all modes are found by a dense solver."""

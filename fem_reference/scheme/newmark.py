@@ -1,11 +1,12 @@
 r"""The step of a scheme, solved for the displacement, stage by stage (Newmark's: paper, equations (4) to (9)).
 
 With the numbers of a stage (`fem_reference.problem.stages`), u = gg V, b = beta / (1 - am), k = am / (1 - am) and
-S = M + beta' dt^2 K factorised once, a stage goes from (D, V, A) and the stage before (Dg, Vg, Ag) to (D1, V1, A1)::
+S = M + gamma' dt C + beta' dt^2 K factorised once, a stage of M A + C V + K D = F goes from (D, V, A) and the stage
+before (Dg, Vg, Ag) to (D1, V1, A1)::
 
-    D* = D + dt (d_u u + d_g Vg) + dt^2 (e_0 A + e_g Ag)
-    F* = (1 - af) F1 + af F0
-    D1 = D + S^-1 [M (D* - D - k beta dt^2 A) + b dt^2 (F* - K D)]
+    D* = D + dt (d_u u + d_g Vg) + dt^2 (e_0 A + e_g Ag),     V* = u + dt (g_0 A + g_g Ag)
+    F* = (1 - af) F1 + af F0 - C [(1 - af) V* + af u]
+    D1 = D + S^-1 [M (D* - D - k beta dt^2 A) + gamma' dt C (D* - D) + b dt^2 (F* - K D)]
     A1 = (D1 - D*) / (beta dt^2)        or from the equation of motion for beta = 0
     V1 = u + dt (g_0 A + g_g Ag + gamma A1)
 
@@ -58,15 +59,14 @@ class State:
     undiscounted: bool = False  # whether gg does not act on V: the first half step of a staggered scheme
 
 
-def effective_matrix(M: csr_array, K: csr_array, scheme: Scheme, stage: int = 0) -> csr_array:
-    """S = M + delta dt C + beta' dt^2 K of a stage, at C = 0 the paper's (9) times alpha dt^2."""
-    if scheme.damped:
-        a0 = scheme.mass_damping
-        a1 = scheme.stiffness_damping
-        dt = scheme.step
-        return (1 + scheme.delta * dt * a0) * M + (scheme.alpha * dt**2 + scheme.delta * dt * a1) * K
-    weight = scheme.stages[stage].stiffness_weight
-    return M + (weight * scheme.step**2) * K if weight > 0 else M
+def effective_matrix(
+    M: csr_array, K: csr_array, scheme: Scheme, stage: int = 0, C: csr_array | None = None
+) -> csr_array:
+    """S = M + gamma' dt C + beta' dt^2 K of a stage, at C = 0 the paper's (9) times alpha dt^2."""
+    numbers = scheme.stages[stage]
+    inertia = M if C is None else M + (numbers.damping_weight * scheme.step) * C
+    weight = numbers.stiffness_weight
+    return inertia + (weight * scheme.step**2) * K if weight > 0 else inertia
 
 
 def discount(state: State, scheme: Scheme) -> float:
@@ -145,14 +145,19 @@ Operator = Callable[[Array], Array]
 
 
 def advance(
-    state: State, loads: Sequence[Array], scheme: Scheme, M: Operator, K: Operator, solves: Sequence[Operator]
+    state: State,
+    loads: Sequence[Array],
+    scheme: Scheme,
+    M: Operator,
+    K: Operator,
+    solves: Sequence[Operator],
+    C: Operator | None = None,
 ) -> State:
     """One step under the loads at its start and at the end of each stage; `solves` are the solutions with each S."""
-    if scheme.damped:
-        return _advance_damped(state, predictor(state, scheme), loads[-1], scheme, M, K, solves[0])
-    end = _advance_stage(state, None, loads, scheme, 0, M, K, solves[0])
-    for stage in range(1, len(solves)):
-        end = _advance_stage(state, end, loads, scheme, stage, M, K, solves[stage])
+    end = state
+    for stage, solve in enumerate(solves):
+        before = end if stage else None
+        end = _advance_stage(state, before, loads, scheme, stage, M, K, C, solve)
     return end
 
 
@@ -164,64 +169,54 @@ def _advance_stage(
     stage: int,
     M: Operator,
     K: Operator,
+    C: Operator | None,
     solve: Operator,
 ) -> State:
     numbers = scheme.stages[stage]
     predicted = predictor(state, scheme, stage, before)
     F = stage_load(loads, scheme, stage)
+    if C is not None:
+        rate = velocity_predictor(state, scheme, stage, before)
+        if numbers.af:
+            rate = (1 - numbers.af) * rate + numbers.af * discount(state, scheme) * state.V
+        F = F - C(rate)
     if numbers.beta > 0:
-        D = state.D + solve(corrector(state, predicted, M, F - K(state.D), scheme, stage))
+        right = corrector(state, predicted, M, F - K(state.D), scheme, stage)
+        if C is not None:
+            right = right + numbers.damping_weight * scheme.step * C(predicted - state.D)
+        D = state.D + solve(right)
         A = acceleration(D, predicted, scheme, stage)
     else:
         D = predicted
         strained = (1 - numbers.af) * D + numbers.af * state.D if numbers.af else D
-        A = solve(F - K(strained))
+        right = F - K(strained)
         if numbers.am:
-            A = (A - numbers.am * state.A) / (1 - numbers.am)
+            right = right - numbers.am * M(state.A)
+        A = solve(right) / (1 - numbers.am)
     return State(D, velocity(state, A, scheme, stage, before), A)
-
-
-def _advance_damped(
-    state: State, predicted: Array, F: Array, scheme: Scheme, M: Operator, K: Operator, solve: Operator
-) -> State:
-    """One step of M A + C V + K D = F, C = a0 M + a1 K.
-
-    With V* = gg V + dt (1 - delta) A the part of the velocity that is known before::
-
-        (M + delta dt C + alpha dt^2 K) (D1 - D) = (M + delta dt C) (D* - D) + alpha dt^2 (F - C V* - K D)
-    """
-
-    def C(x: Array) -> Array:
-        return scheme.mass_damping * M(x) + scheme.stiffness_damping * K(x)
-
-    dt = scheme.step
-    displacement = predicted - state.D
-    slowed = scheme.gg * state.V + dt * (1 - scheme.delta) * state.A
-    resisted = F - C(slowed)
-    D = state.D + solve(
-        M(displacement) + scheme.delta * dt * C(displacement) + scheme.alpha * dt**2 * (resisted - K(state.D))
-    )
-    A = acceleration(D, predicted, scheme) if scheme.alpha > 0 else solve(resisted - K(D))
-    return State(D, velocity(state, A, scheme), A)
 
 
 @dataclass
 class Stepper:
-    """The scheme applied to M D'' + K D = F, with its factorisations made once."""
+    """The scheme applied to M D'' + C D' + K D = F, with its factorisations made once."""
 
     M: csr_array
     K: csr_array
     F: Array
     scheme: Scheme
     work: Work = field(default_factory=Work)
+    C: csr_array | None = None  # without it C = a0 M + a1 K of the scheme
 
     def __post_init__(self) -> None:
-        self.S = effective_matrix(self.M, self.K, self.scheme)
+        scheme = self.scheme
+        if self.C is None and scheme.damped:
+            self.C = scheme.mass_damping * self.M + scheme.stiffness_damping * self.K
+        self.S = effective_matrix(self.M, self.K, scheme, 0, self.C)
         self.solve = self.work.factor(self.S)
         solves: list[Operator] = [self.solve]
-        for stage, first in list(enumerate(self.scheme.stage_matrices))[1:]:
+        for stage, first in list(enumerate(scheme.stage_matrices))[1:]:
             same = first < stage
-            S = self.S if same else effective_matrix(self.M, self.K, self.scheme, stage)
+            S = self.S if same else effective_matrix(self.M, self.K, scheme, stage, self.C)
             solves.append(solves[first] if same else self.work.factor(S))
         self.solves = tuple(solves)
 
@@ -232,7 +227,8 @@ class Stepper:
         """
         mass = None
         if self.scheme.start == "consistent":
-            mass = self.solve if self.scheme.stages[0].stiffness_weight == 0 else self.work.factor(self.M)
+            is_mass = self.C is None and self.scheme.stages[0].stiffness_weight == 0
+            mass = self.solve if is_mass else self.work.factor(self.M)
         zero = np.zeros_like(self.F)
         A = initial_acceleration(self.F if F is None else F, mass)
         return State(zero, start_velocity(zero, A, self.scheme), A, undiscounted=self.scheme.staggered)
@@ -241,4 +237,13 @@ class Stepper:
         """One step, under the loads at its start and at the end of each stage where they are not the constant one."""
         if loads is None:
             loads = [self.F] * (len(self.solves) + 1)
-        return advance(state, loads, self.scheme, lambda x: self.M @ x, lambda x: self.K @ x, self.solves)
+        C = self.C
+        return advance(
+            state,
+            loads,
+            self.scheme,
+            lambda x: self.M @ x,
+            lambda x: self.K @ x,
+            self.solves,
+            None if C is None else lambda x: C @ x,
+        )

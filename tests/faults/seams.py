@@ -37,7 +37,6 @@ from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
-from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
@@ -143,7 +142,7 @@ FEM_ROTATION = Seam(elasticity, elasticity._rotation)
 FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
 FEM_COLUMN = Seam(fem_model, fem_model.column)
 FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
-FEM_FACTOR = Seam(fem_diagnostics.Work, fem_diagnostics.Work.factor)
+FEM_FACTOR = Seam(fem_newmark.Work, fem_newmark.Work.factor)
 FEM_OPENED_COLUMN = Seam(fem_points, fem_points.column)
 FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 
@@ -151,10 +150,9 @@ FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 BAR_WAVE_NUMBERS = Seam(exact_bar, exact_bar.wave_numbers)
 BAR_SHARES = Seam(exact_bar, exact_bar.shares)
 BAR_SUM = Seam(exact_bar.Bar, exact_bar.Bar._sum)
-BAR_TRACE = Seam(modal, modal.trace)
-BAR_SPECTRUM = Seam(modal, modal.spectrum)
-BAR_FIRST_STEPS = Seam(modal, modal.first_steps)
-BAR_PAIR = Seam(modal, modal._pair)
+BAR_HISTORIES = Seam(exact_bar, exact_bar.weighted_response)
+BAR_ROOTS = Seam(exact_bar, exact_bar.roots)
+BAR_STEP = Seam(modal, modal.step_increment)
 BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens
@@ -174,9 +172,8 @@ CONTACT_EQUATIONS = Seam(column_contacts, column_contacts.step_equations)
 CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_contact_column)
 EVENTS_COLUMN = Seam(column_events, column_events.solve)
 EVENTS_BARS = Seam(bars_events, bars_events.solve)
-LINE_VELOCITY = Seam(line_stepping, line_stepping.velocity_predictor)
 LINE_SPRINGS = Seam(line_mesh, line_mesh._springs)
-LINE_RUN = Seam(line_stepping.DampedStepper, line_stepping.DampedStepper.run)
+LINE_HISTORIES = Seam(line_stepping, line_stepping.histories)
 LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself

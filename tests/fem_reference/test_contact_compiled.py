@@ -39,8 +39,8 @@ def in_modes(monkeypatch, drawn):
     problem, scheme, contact = drawn
     with monkeypatch.context() as patch:
         patch.setattr(compilation, "compiled", lambda: (None, "plain"))
-        plain = solve_unilateral(problem, scheme, 50, contact, every_point=True)
-    return plain, solve_unilateral(problem, scheme, 50, contact, every_point=True)
+        plain = solve_unilateral(problem, scheme, 50, contact)
+    return plain, solve_unilateral(problem, scheme, 50, contact)
 
 
 @pytest.mark.long
@@ -57,9 +57,8 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
             assert compiled.outcome == plain.outcome
             continue
         assert off(compiled, plain) <= 1e-14
-        assert np.array_equal(compiled.states, plain.states)
         fallen_back += np.count_nonzero(plain.columns["solves"] > contact.limit)
-        switched += np.count_nonzero(np.diff(plain.states, axis=0))
+        switched += np.count_nonzero(np.diff(plain.columns["open_share"]))
     assert switched > 100 and fallen_back > 0
 
 
@@ -68,7 +67,7 @@ def test_one_compilation_serves_every_history(long):
     pytest.importorskip("numba")
     for seed in range(4):
         solve_unilateral(*random_contact.opening(seed)[:2], 5, random_contact.opening(seed)[2])
-        solve_unilateral(*random_contact.sliding(seed)[:2], 5, random_contact.sliding(seed)[2], every_point=True)
+        solve_unilateral(*random_contact.sliding(seed)[:2], 5, random_contact.sliding(seed)[2])
     assert len(compilation.compiled()[0].signatures) == 1
 
 

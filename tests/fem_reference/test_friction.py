@@ -11,7 +11,7 @@ from oracles.elements import make
 from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
 from fem_reference.contact.kernel import BASE, NONE, TIME
 from fem_reference.contact.points import build
-from fem_reference.contact.stepper import NO_POINTS, ContactStepper, Marched
+from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history.unilateral import cut_step
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 2e-4, "consistent")
@@ -189,11 +189,11 @@ def test_no_limit_glues_and_none_at_all_lets_go(foundation):
 class Refusing(ContactStepper):
     """A stepper that finds no contact in steps longer than 0.3 of its own."""
 
-    def march(self, state, table, points=NO_POINTS, length=None):
+    def march(self, state, table, length=None):
         if (length or self.scheme.step) > 0.3 * self.scheme.step * (1 + 1e-9):
             return Marched(state, 0, 3, NONE)
         self.lengths.append((length or self.scheme.step) / self.scheme.step)
-        return super().march(state, table, points, length)
+        return super().march(state, table, length)
 
     def __post_init__(self):
         super().__post_init__()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.elements import make
+from oracles.random_contact import at_every_point
 
 from fem_reference import Friction, Scheme, Unilateral, assemble, solve, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
@@ -189,8 +190,7 @@ def test_a_mirrored_load_mirrors_the_block(degree, shear):
     contact = Unilateral(shear=shear)
     # a hundred steps of the damped scheme: rounding is not multiplied by impacts
     right, left = (
-        solve_unilateral(problem, CONSTANT, 100, contact, every_point=True, columns=("rotation",))
-        for problem in (problem, replace(problem, eccentricity=-0.25))
+        at_every_point(problem, CONSTANT, 100, contact) for problem in (problem, replace(problem, eccentricity=-0.25))
     )
     assert right.gap.max() > 0 and np.abs(right.gap - right.gap[:, ::-1]).max() > 1e-5
     assert np.abs(right.gap - left.gap[:, ::-1]).max() <= 1e-10 * np.abs(right.gap).max()
@@ -256,7 +256,7 @@ def test_a_frictionless_base_in_pieces_does_not_cycle(n, degree):
 
 def test_columns_are_those_of_the_points():
     problem = make(elements=4, eccentricity=0.3, poisson=0.2)
-    run = solve_unilateral(problem, CONSTANT, 250, every_point=True)
+    run = at_every_point(problem, CONSTANT, 250, Unilateral())
     share = np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 24
     assert run.gap.shape == run.normal.shape == (250, 9)
     expected = {
@@ -269,8 +269,6 @@ def test_columns_are_those_of_the_points():
     for name, column in expected.items():
         assert np.allclose(run.columns[name], column, rtol=1e-12, atol=0), name
     assert 0 < np.median(run.columns["open_share"]) < 1
-    bare = solve_unilateral(problem, CONSTANT, 2)
-    assert bare.gap is None and bare.normal is None
 
 
 def test_a_nearly_rigid_base_keeps_its_digits():

@@ -157,11 +157,11 @@ class Refusing(ContactStepper):
         super().__post_init__()
         self.lengths = []  # of the accepted pieces over the step
 
-    def march(self, state, table, points=stepper.NO_POINTS, length=None):
+    def march(self, state, table, length=None):
         if (length or self.scheme.step) > self.longest * self.scheme.step * (1 + 1e-9):
             return Marched(state, 0, 3, NONE)
         self.lengths.append((length or self.scheme.step) / self.scheme.step)
-        return super().march(state, table, points, length)
+        return super().march(state, table, length)
 
 
 def refusing(longest, **more):

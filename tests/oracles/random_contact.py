@@ -1,11 +1,16 @@
 """Random blocks on bases that carry no tension, without friction and with it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 from oracles.elements import INCLINED, SQUARE, make
 
-from fem_reference import Friction, Motion, Scheme, Unilateral
+from fem_reference import UNILATERAL_COLUMNS, Friction, Motion, Scheme, Unilateral
+from fem_reference.contact import kernel
+from fem_reference.contact.points import build
+from fem_reference.contact.stepper import ContactStepper
+from fem_reference.history.unilateral import cut_step
 
 SCHEMES = ((0.5, 1.0), (0.5625, 1.0), (0.75, 1.0), (0.25, 0.5), (0.3025, 0.6))
 SHAKE = Motion((0.0, 0.004, 0.011, 0.02, 0.03), (0.0, 1e-3, -2e-3, 1e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0, 0.0))
@@ -47,3 +52,23 @@ def sliding(seed):
     friction = Friction(rng.uniform(5, 50), 0.0 if rng.random() < 0.5 else 10 ** rng.uniform(3, 6))
     contact = Unilateral(10 ** rng.uniform(-6, -4), -(10 ** rng.uniform(-2, 0)), "glued", rule=rule, friction=friction)
     return problem, scheme, contact
+
+
+def at_every_point(problem, scheme, steps, contact):
+    """A history step by step: its columns, and what every point does, shape (steps, points)."""
+    laws = (contact.shear, contact.limit, contact.rule, contact.friction)
+    stepper = ContactStepper(build(problem), scheme, *laws, columns=UNILATERAL_COLUMNS)
+    state, table, states = stepper.start(contact.gap, contact.velocity), np.zeros((steps, len(UNILATERAL_COLUMNS))), []
+    while len(states) < steps:
+        row = table[len(states) : len(states) + 1]
+        marched = stepper.march(state, row)
+        if marched.outcome != kernel.CONVERGED:
+            marched = cut_step(stepper, marched, contact, row)
+        if marched.outcome != kernel.CONVERGED:
+            break
+        state = marched.state
+        states.append(state)
+    names = ("normal", "gap", "shear", "states", "slid")
+    points = {name: np.array([getattr(state, name) for state in states]) for name in names}
+    columns = dict(zip(UNILATERAL_COLUMNS, table[: len(states)].T, strict=True))
+    return SimpleNamespace(columns=columns, time=scheme.step * np.arange(1, len(states) + 1), **points)

@@ -46,7 +46,7 @@ BITING = (  # enough to bite every gate of the other scenes
     "fem: foundation k/2",
     "fem: column's spring 1e-6 stiff",
     "bar: base spring k/2",
-    "bar: delta missing in the roots",
+    "bar: delta missing in the step",
 )
 
 FAULTS = [
@@ -77,12 +77,11 @@ FAULTS = [
     Fault("fem: mass 0.1 % heavy", ("fem", "fem:full"), seams.FEM_MASS, times(1.001)),
     Fault("bar: base spring k/2", ("bar",), seams.BAR_WAVE_NUMBERS, first_times(0.5)),
     Fault("bar: base spring 0.1 % stiff", ("bar",), seams.BAR_WAVE_NUMBERS, first_times(1.001)),
-    Fault("bar: gg missing in the trace", ("bar",), seams.BAR_TRACE, no_discount(1)),
-    Fault("bar: gg missing in the roots", ("bar",), seams.BAR_SPECTRUM, no_discount(1)),
-    Fault("bar: gg missing in the start", ("bar",), seams.BAR_FIRST_STEPS, no_discount(1)),
-    Fault("bar: delta missing in the roots", ("bar",), seams.BAR_PAIR, with_scheme(1, delta=no_damping)),
-    Fault("bar: other start", ("bar",), seams.BAR_FIRST_STEPS, with_scheme(1, start=swapped)),
-    Fault("bar: delta 0.1 % high", ("bar",), seams.BAR_SPECTRUM, with_scheme(1, delta=thousandth)),
+    Fault("bar: gg missing in the histories", ("bar",), seams.BAR_HISTORIES, no_discount(2)),
+    Fault("bar: gg missing in the roots", ("bar",), seams.BAR_ROOTS, no_discount(1)),
+    Fault("bar: delta missing in the step", ("bar",), seams.BAR_STEP, with_scheme(0, delta=no_damping)),
+    Fault("bar: other start", ("bar",), seams.BAR_HISTORIES, with_scheme(2, start=swapped)),
+    Fault("bar: delta 0.1 % high", ("bar",), seams.BAR_STEP, with_scheme(0, delta=thousandth)),
 ]
 
 

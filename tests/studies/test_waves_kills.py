@@ -47,10 +47,10 @@ FAULTS = [
     Fault("steps: gg in one formula of two", ("dda",), seams.COLUMN_PREDICTORS, slower),
     Fault("steps: one late", ("dda",), seams.COLUMN_RUN, late),
     Fault("steps: 2 % high", ("dda",), seams.COLUMN_RUN, times(1.02)),
-    Fault("fem: delta 0.1 % high", ("fem",), seams.LINE_VELOCITY, with_scheme(1, delta=thousandth)),
+    Fault("fem: delta 0.1 % high", ("fem",), seams.FEM_VELOCITY, with_scheme(2, delta=thousandth)),
     Fault("fem: joints 1e-6 stiff", ("fem",), seams.LINE_SPRINGS, times(1 + 1e-6)),
-    Fault("fem: one step late", ("fem",), seams.LINE_RUN, late),
-    Fault("fem: 2 % high", ("fem",), seams.LINE_RUN, times(1.02)),
+    Fault("fem: one step late", ("fem",), seams.LINE_HISTORIES, late),
+    Fault("fem: 2 % high", ("fem",), seams.LINE_HISTORIES, times(1.02)),
     Fault("layers: one per cent deep", ("layers",), seams.LAYERS_THROUGH, deeper),
 ]
 

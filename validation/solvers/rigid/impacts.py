@@ -31,4 +31,4 @@ def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phas
     """Return the restitution of one phase; see `impact_statistics`."""
     from fem_reference.events.restitution import ContactScheme, restitution
 
-    return float(restitution(ContactScheme(alpha, delta, gg), omega, phase)[0])
+    return restitution(ContactScheme(alpha, delta, gg), omega, phase)
