@@ -13,7 +13,7 @@ from validation.diagnosis import causes, evidence, families, schemes, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
@@ -413,7 +413,7 @@ def _answer_of_rival(
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
         first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
+    sentence = rival_sentence(verdict, ids, first_departure)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
         sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
@@ -433,6 +433,27 @@ def _answer_of_rival(
         evidence=tuple(stages),
         own_model=best.model == DDA,
     )
+
+
+def rival_sentence(verdict: RivalVerdict, ids: Sequence[str], departure: Departure | None) -> str:
+    """Return the first line of the answer where another solver explains the history best."""
+    best = verdict.best
+    scheme_of_best = sentences.scheme_words(best.alpha, best.delta, best.gg)
+    model = f"{best.model} ({MODEL_WORDS.get(best.model, best.model)})"
+    remainder = sentences.remaining(best.misfit)
+    if not verdict.explained:
+        return (
+            f"Departs, not explained: nearest is {model} with {scheme_of_best}, "
+            f"{sentences.per_cent(verdict.left, 2)} % of the difference left; {remainder}."
+        )
+    numbers = {name: f" ({value:.4g})" for name, value in verdict.values.items()}
+    faults = sentences.listed([CAUSES[name].words + numbers.get(name, "") for name in ids])
+    faults = f"; {faults}" if faults else ""
+    if departure is None:
+        return f"Same model as {model}, same scheme: {scheme_of_best}{faults}; {remainder}."
+    where = f"departs from step {departure.step} on, mainly in {departure.kind}"
+    scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(ids) else "same scheme"
+    return f"Closest match: {model}, {scheme}: {scheme_of_best}; {where}{faults}; {remainder}."
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
