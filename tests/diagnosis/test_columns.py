@@ -14,7 +14,7 @@ from oracles.column_histories import ALIKE, RIGHT, SILENT, WRONG, history, noisy
 from validation.diagnosis import columns
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
-from validation.diagnosis.columns import ColumnChange, ColumnHistory, ColumnSearch, of_scene
+from validation.diagnosis.columns import BONDED, ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import numbers, places
 from validation.diagnosis.reading import Foreign, steppings
@@ -110,12 +110,12 @@ def test_a_change_of_one_contact_alone_says_where() -> None:
 @pytest.mark.parametrize(
     ("scene", "change", "cause"),
     [
-        (SHEARED, ColumnChange(bonded=True), "no-slip"),
-        (DROPPED, ColumnChange(bonded=True), "contact-locked"),
-        (SHEARED, ColumnChange({"column.stiffness": math.inf}, bonded=True), "contact-welded"),
+        (SHEARED, {BONDED: True}, "no-slip"),
+        (DROPPED, {BONDED: True}, "contact-locked"),
+        (SHEARED, {"column.stiffness": math.inf, BONDED: True}, "contact-welded"),
     ],
 )
-def test_contacts_that_hold_are_named(scene: Scene, change: ColumnChange, cause: str) -> None:
+def test_contacts_that_hold_are_named(scene: Scene, change: dict[str, Any], cause: str) -> None:
     run = beside(scene, history(scene, {}, DIGITS)).run(change, scene.time.steps)
     assert run is not None
     time = scene.time.step * np.arange(1, scene.time.steps + 1)
@@ -139,9 +139,9 @@ def stated_strengths(scene: Scene) -> dict[str, float]:
     return {key: value for key, value in stated.items() if value is not None}
 
 
-def beside(scene: Scene, foreign: Foreign) -> ColumnHistory:
+def beside(scene: Scene, foreign: Foreign) -> ColumnSearch:
     reading = Reading(steppings(foreign, scene.time.step)[0], foreign.displacement, foreign.pressure, ())
-    return ColumnHistory(reading.scene_of(scene), reading)
+    return ColumnSearch(reading.scene_of(scene), reading)
 
 
 # ---- what is not -----------------------------------------------------------------------------------------------------
@@ -186,7 +186,7 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch)
     """With a shift of 1e-4 for 1e-12 the horizon lies inside the run; what comes behind it may be anything."""
     monkeypatch.setattr(columns, "SHIFT", 1e-4)
     foreign = history(DROPPED, {}, DIGITS)
-    search = ColumnSearch.of(beside(DROPPED, foreign))
+    search = beside(DROPPED, foreign)
     assert 0 < search.rows < DROPPED.time.steps
     foreign.displacement[search.rows :] *= 2.0
     answer = compare(DROPPED, foreign)

@@ -34,7 +34,7 @@ from validation.diagnosis.causes import (
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NAMED, Interval
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.judgement import MODEL_WORDS, compare
+from validation.diagnosis.judgement import compare, rival_sentence
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, rivals
 from validation.diagnosis.other_solvers import _causes as causes_of_rival
 from validation.diagnosis.reading import Foreign, Stepping
@@ -290,18 +290,18 @@ def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
     scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
     bar = "bar (the exact bar, which fine finite elements converge to)"
     found = rival("bar", 0.5, 1.0, 0.97, causes=["base-compliance"])
-    assert wording.rival_sentence(found, found.causes, None, MODEL_WORDS) == (
+    assert rival_sentence(found, found.causes, None) == (
         f"Same model as {bar}, same scheme: {scheme}; a slightly compliant base; the remaining difference is 1.2 %."
     )
     found = rival("bar", 0.5, 1.0, 0.97, causes=["scheme"])
-    assert wording.rival_sentence(found, found.causes, Departure(7, "phase"), MODEL_WORDS) == (
+    assert rival_sentence(found, found.causes, Departure(7, "phase")) == (
         f"Closest match: {bar}, a different scheme: {scheme}; departs from step 7 on, mainly in phase; "
         "a different scheme; the remaining difference is 1.2 %."
     )
     found = rival("continuum", causes=[])
-    assert "same scheme: exact in time; the" in wording.rival_sentence(found, [], None, MODEL_WORDS)
+    assert "same scheme: exact in time; the" in rival_sentence(found, [], None)
     found = rival("bar", 0.5, 1.0, 0.97, causes=["young-factor"], explained=False)
-    text = wording.rival_sentence(found, ["unexplained"], Departure(7, "phase"), MODEL_WORDS)
+    text = rival_sentence(found, ["unexplained"], Departure(7, "phase"))
     assert text.startswith("Departs, not explained: nearest is bar") and "25 % of the difference left" in text
 
 

@@ -96,12 +96,6 @@ def test_generalised_alpha_is_its_recursion_mode_by_mode(family: Any, number: fl
     assert math.isclose(variant.scheme[0], beta) and math.isclose(variant.scheme[1], gamma)
 
 
-def test_one_spring_lets_the_block_turn_and_fall() -> None:
-    displacement, _ = stepped(replace(OWN, one_spring=True))
-    assert np.all(np.diff(displacement) < 0)
-    assert displacement[-1] < 10 * BLOCK.static
-
-
 def test_a_variant_that_grows_beyond_any_double_is_far_away_and_says_nothing() -> None:
     """Central differences at a step beyond their limit: warnings are errors here, and the other variant stays."""
     steps = np.full(400, 0.05)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.diagnosis.fits.bar import significant
-from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, intervals
+from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, fit_one, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
@@ -164,7 +164,7 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
 
 def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
     """Return the penetrations between which a dead band gives the same rows: it lies between two that happened."""
-    least = fit(target, [(variant, ())])[0].misfit
+    least = fit_one(target, variant).misfit
 
     def same(bands: Sequence[float]) -> list[bool]:
         misfits = [one.misfit for one in fit(target, [(replace(variant, band=band), ()) for band in bands])]

@@ -14,9 +14,8 @@ are clearly beyond it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -26,17 +25,17 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm, significant
-from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.numbers import Values, contacts, layers, places
 from validation.diagnosis.one_change import (
     UNITS,
     CandidateChange,
     Fitted,
-    Residual,
     fitted,
+    fixed,
     nearest_start,
     of_discount,
     of_numbers,
+    of_schemes,
 )
 from validation.diagnosis.other_solvers import DISCOUNTS, STARTS, row_of
 from validation.diagnosis.reading import Foreign, Stepping, steppings
@@ -72,18 +71,10 @@ MOST_ALIKE = 6  # causes that are listed
 LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
 PARTS = (2, 4)  # steps of a program in one of the scene's
 NO_FRICTION = 1e-9  # of the strength: what slips all the time, which no scene can state
+BONDED = "bonded"  # among the values of a change, no key of scenes: contacts carry tension and never slip
 WOULD_TELL = "the rows up to the first switch with every step, or a run with one contact"
 
-
-@dataclass(frozen=True)
-class ColumnChange:
-    """What a candidate changes: keys of the scene, and whether contacts carry tension and never slip."""
-
-    values: Values = field(default_factory=dict)
-    bonded: bool = False
-
-
-Candidate: TypeAlias = CandidateChange[ColumnChange]
+Candidate: TypeAlias = CandidateChange[Values]
 
 
 # ---- candidates -----------------------------------------------------------------------------------------------------
@@ -91,34 +82,13 @@ Candidate: TypeAlias = CandidateChange[ColumnChange]
 
 def of_scene(scene: Scene) -> Iterator[Candidate]:
     """Yield everything that may be changed in a scene with such a column, one thing at a time."""
-    yield from schemes(scene)
-    yield from laws(scene)
-    for number in of_numbers(scene, STARTS, units=False):
-        starts = (*number.starts, *map(math.log, UNITS))
-        yield replace(number.giving(_changing(number.changed)), starts=starts)
-    discount = of_discount(scene, DISCOUNTS)
-    yield discount.giving(_changing(discount.changed))
-
-
-def _changing(values: Callable[[float], Values]) -> Callable[[float], ColumnChange]:
-    return lambda u: ColumnChange(values(u))
-
-
-def schemes(scene: Scene) -> Iterator[Candidate]:
-    """Yield the schemes by which programs step, with either start, and several steps in one of the scene's."""
-    t = scene.time
-    scene_pairs = [(t.alpha, t.delta)] if t.scheme == "newmark" else []
-    for alpha, delta in dict.fromkeys([*scene_pairs, *NAMED.values()]):
-        for start in dict.fromkeys([t.start, "zero", "consistent"]):
-            values = {"time.scheme": "newmark", "time.alpha": alpha, "time.delta": delta, "time.start": start}
-            if (alpha, delta) not in scene_pairs:
-                also = "" if start == t.start else f', the initial acceleration is "{start}"'
-                yield _plain("scheme", f"{sentences.scheme_words(alpha, delta, t.discount)}{also}", values)
-            elif start != t.start:
-                yield _plain("start", f'the initial acceleration is "{start}", not "{t.start}"', values)
+    yield from of_schemes(scene)
     for parts in PARTS:
         words = f"the program makes {parts} steps in one of the scene's"
-        yield _plain("substeps", words, {"time.step": t.step / parts}, float(parts))
+        yield fixed("substeps", words, {"time.step": scene.time.step / parts}, float(parts))
+    yield from laws(scene)
+    yield from of_numbers(scene, (*STARTS, *UNITS), units=False)
+    yield of_discount(scene, DISCOUNTS)
 
 
 def laws(scene: Scene) -> Iterator[Candidate]:
@@ -131,134 +101,36 @@ def laws(scene: Scene) -> Iterator[Candidate]:
         if column.settled:
             unloaded["column.settled"] = False
         if scene.stated_input is not None or has_velocity:
-            yield _plain("gravity-factor", "the weight is forgotten", unloaded, 0.0)
+            yield fixed("gravity-factor", "the weight is forgotten", unloaded, 0.0)
         if column.settled:
             words = "the column starts unstrained, its weight put on at once"
-            yield _plain("settled", words, {"column.settled": False})
+            yield fixed("settled", words, {"column.settled": False})
         elif column.base in ("rigid", "springs") and not any(contact.gap for contact in column.contacts):
             words = "the column starts at rest under its weight, not unstrained"
-            yield _plain("settled", words, {"column.settled": True})
+            yield fixed("settled", words, {"column.settled": True})
     for place, where in places(scene, "gap").items():
-        yield _plain("gap-factor", f"the gap of {where} is forgotten", contacts("gap", place)(scene, 0.0), 0.0)
+        yield fixed("gap-factor", f"the gap of {where} is forgotten", contacts("gap", place)(scene, 0.0), 0.0)
     if column.law == "unilateral":
-        yield _plain("contact-locked", "the contacts carry tension", {}, bonded=True)
+        yield fixed("contact-locked", "the contacts carry tension", {BONDED: True})
     elif any(math.isfinite(contact.strength) for contact in column.contacts):
-        yield _plain("no-slip", "the contacts do not slip", {}, bonded=True)
+        yield fixed("no-slip", "the contacts do not slip", {BONDED: True})
         free = contacts("strength")(scene, NO_FRICTION)
         free |= contacts("friction")(scene.with_values(free), NO_FRICTION)
-        yield _plain("no-friction", "there is no friction", free)
+        yield fixed("no-friction", "there is no friction", free)
     if any(math.isfinite(contact.stiffness) for contact in column.contacts):
         joints = stated["column"].get("joint", [])
-        rigid: Values = {"column.joint": [joint | {"stiffness": math.inf} for joint in joints]}
+        rigid: Values = {"column.joint": [joint | {"stiffness": math.inf} for joint in joints], BONDED: True}
         if column.stiffness is not None:
             rigid["column.stiffness"] = math.inf
-        yield _plain("contact-welded", "the contacts are welded: their faces move alike", rigid, bonded=True)
-    if scene.stated_input is not None:
-        sizes = {key: -stated["input"].get(key, 0.0) for key in ("velocity", "pressure")}
-        reversed_input: Values = {f"input.{key}": size for key, size in sizes.items() if size}
-        if reversed_input:
-            yield _plain("load-factor", "the input acts the other way", reversed_input, -1.0)
+        yield fixed("contact-welded", "the contacts are welded: their faces move alike", rigid)
+    given = stated["input"] if scene.stated_input is not None else {}
+    reversed_input = {f"input.{key}": -given[key] for key in ("velocity", "pressure") if given.get(key)}
+    if reversed_input:
+        yield fixed("load-factor", "the input acts the other way", reversed_input, -1.0)
     if has_velocity:
         for words, factor in (("reversed", -1.0), ("forgotten", 0.0)):
             changed = layers("velocity")(scene, factor)
-            yield _plain("velocity-factor", f"the starting velocity is {words}", changed, factor)
-
-
-def _plain(name: str, words: str, values: Values, number: float = math.nan, bonded: bool = False) -> Candidate:
-    """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
-    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: ColumnChange(values, bonded))
-
-
-# ---- runs -----------------------------------------------------------------------------------------------------------
-
-
-@dataclass(eq=False)
-class ColumnHistory:
-    """A history as it is read, beside runs of its scene by `dda`.
-
-    Attributes
-    ----------
-    scene
-        At the steps of the history, and without a limit of solves.
-    reading
-        The history.
-    """
-
-    scene: Scene
-    reading: Reading
-
-    def result(self, change: ColumnChange, steps: int, shift: float = 0.0) -> ColumnContactResult | None:
-        """Return what a change gives at the first steps of the history; None where there is no such run.
-
-        Parameters
-        ----------
-        shift
-            Relative change of all densities.
-        """
-        from dda.column.contacts import ColumnOptions, solve_contact_column
-        from dda.column.stepping import Drive
-        from validation.solvers.columns.blocks import dda_column
-        from validation.solvers.dda import scheme_of
-
-        try:
-            scene = self.scene.with_values(change.values)
-            if shift:
-                scene = scene.with_values(layers("density")(scene, 1 + shift))
-            section = column_of(scene)
-            column = dda_column(section)
-            if change.bonded:
-                column = replace(column, joints=[replace(joint, gap=0.0) for joint in column.joints])
-            steps *= round(self.scene.time.step / scene.time.step)
-            drive = Drive(**vars(motion_at(scene, scene.time.step * np.arange(steps + 1.0))))
-            options = ColumnOptions(None, section.settled, bonded=change.bonded, repeats=REPEATS)
-            result = solve_contact_column(column, scheme_of(scene), drive, [DISPLACEMENT, PRESSURE], (), options)
-        except (InputError, ArithmeticError, ValueError):
-            return None
-        return result if len(result.time) == steps else None
-
-    def run(self, change: ColumnChange, rows: int, shift: float = 0.0) -> Array | None:
-        """Return the columns of a change at the first rows, (columns, rows); None where there is no such run."""
-        ends = self.reading.stepping.rows[:rows] + 1
-        result = self.result(change, int(ends[-1]), shift)
-        if result is None:
-            return None
-        parts = len(result.time) // int(ends[-1])
-        names = (DISPLACEMENT, PRESSURE)[: len(self.recorded)]
-        return np.array([result.columns[name][ends * parts - 1] for name in names])
-
-    def spread(self, change: ColumnChange, run: Array) -> Array:
-        """Return what another correct code may leave of a run, infinite from its horizon on, (columns, rows)."""
-        denser_run = self.run(change, run.shape[1], SHIFT)
-        if denser_run is None:
-            return np.full(run.shape, np.inf)
-        apart = np.maximum.accumulate(np.abs(denser_run - run), axis=1)
-        beyond = np.any(apart > AGREED * np.max(np.abs(run), axis=1, keepdims=True), axis=0)
-        apart[:, beyond] = np.inf
-        return apart
-
-    @cached_property
-    def time(self) -> Array:
-        """Times of the rows [s]."""
-        stepping = self.reading.stepping
-        return np.asarray(np.cumsum(stepping.steps)[stepping.rows])
-
-    @cached_property
-    def recorded(self) -> Array:
-        """The columns of the file, (columns, rows)."""
-        columns = [self.reading.displacement]
-        if self.reading.pressure is not None:
-            columns.append(self.reading.pressure)
-        return np.array(columns)
-
-    def units(self, scene_run: Array) -> Array:
-        """Return the last digits of the file's rows, with half the digits of double precision, (columns, rows)."""
-        roundings = (self.reading.rounding, self.reading.pressure_rounding)
-        units = []
-        for values, run, rounding in zip(self.recorded, scene_run, roundings, strict=False):
-            size = max(largest(values), largest(run))
-            unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
-            units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
-        return np.array(units)
+            yield fixed("velocity-factor", f"the starting velocity is {words}", changed, factor)
 
 
 # ---- the search -----------------------------------------------------------------------------------------------------
@@ -266,24 +138,10 @@ class ColumnHistory:
 
 @dataclass(frozen=True, eq=False)
 class ColumnExplanation:
-    """A candidate at its best number, over all rows that can be judged.
+    """A candidate at its best number, with what it leaves over what may remain, in the worst row [1]."""
 
-    Attributes
-    ----------
-    candidate
-        With its number.
-    ratio
-        What it leaves over what may remain, in the worst row [1].
-    remainder
-        Root of the sum of squares of the same.
-    rows
-        That its own horizon leaves to be judged.
-    """
-
-    candidate: Fitted[ColumnChange]
+    candidate: Fitted[Values]
     ratio: float
-    remainder: float
-    rows: int
 
     @property
     def id(self) -> str:
@@ -297,7 +155,7 @@ class ColumnExplanation:
         return None if math.isnan(number) else significant(number, 6)
 
     @property
-    def change(self) -> ColumnChange:
+    def values(self) -> Values:
         """What it changes."""
         return self.candidate.change.changed(self.candidate.u)
 
@@ -321,57 +179,124 @@ def ratio_of(explanation: ColumnExplanation) -> float:
 
 @dataclass(eq=False)
 class ColumnSearch:
-    """The search for what gives a history back.
+    """The search for what gives a history back, beside runs of its scene by `dda`.
 
     Attributes
     ----------
-    history
-        Beside its scene.
+    scene
+        At the steps of the history.
+    reading
+        The history as it is read.
+    recorded
+        Its columns, (columns, rows).
     scene_run
         Columns of the scene's own run at all rows.
     allowed
         What may remain of each row, (columns, rows that can be judged).
+
+    Raises
+    ------
+    InputError
+        The scene does not run at the steps of the history.
     """
 
-    history: ColumnHistory
-    scene_run: Array
-    allowed: Array
+    scene: Scene
+    reading: Reading
+    recorded: Array = field(init=False)
+    scene_run: Array = field(init=False)
+    allowed: Array = field(init=False)
 
-    @classmethod
-    def of(cls, history: ColumnHistory) -> ColumnSearch:
-        """Begin with the scene's own run.
-
-        Raises
-        ------
-        InputError
-            The scene does not run at the steps of the history.
-        """
-        plain = ColumnChange()
-        scene_run = history.run(plain, len(history.reading.stepping.rows))
+    def __post_init__(self) -> None:
+        """Begin with the scene's own run."""
+        reading = self.reading
+        columns = [reading.displacement] if reading.pressure is None else [reading.displacement, reading.pressure]
+        self.recorded = np.array(columns)
+        scene_run = self.run({}, len(reading.stepping.rows))
         if scene_run is None:
-            raise InputError("dda cannot run it at the steps of the history", source=history.scene.name)
-        allowed = history.units(scene_run) + history.spread(plain, scene_run)
-        judged = np.all(np.isfinite(allowed), axis=0)
-        return cls(history, scene_run, allowed[:, judged])
+            raise InputError("dda cannot run it at the steps of the history", source=self.scene.name)
+        self.scene_run = scene_run
+        units = []
+        roundings = (reading.rounding, reading.pressure_rounding)
+        for values, run, rounding in zip(columns, scene_run, roundings, strict=False):
+            size = max(largest(values), largest(run))
+            unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
+            units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
+        allowed = np.array(units) + self.spread({}, scene_run)
+        self.allowed = allowed[:, np.all(np.isfinite(allowed), axis=0)]
 
     @property
     def rows(self) -> int:
         """Number of rows up to the horizon."""
         return int(self.allowed.shape[1])
 
-    def over(self, columns: Array | None, rows: int, spread: Array | None = None) -> Array:
+    @property
+    def time(self) -> Array:
+        """Times of the rows [s]."""
+        stepping = self.reading.stepping
+        return np.asarray(np.cumsum(stepping.steps)[stepping.rows])
+
+    def result(self, values: Values, steps: int, shift: float = 0.0) -> ColumnContactResult | None:
+        """Return what a change gives at the first steps of the history; None where there is no such run.
+
+        Parameters
+        ----------
+        shift
+            Relative change of all densities.
+        """
+        from dda.column.contacts import ColumnOptions, solve_contact_column
+        from dda.column.stepping import Drive
+        from validation.solvers.columns.blocks import dda_column
+        from validation.solvers.dda import scheme_of
+
+        is_bonded = BONDED in values
+        try:
+            scene = self.scene.with_values({key: value for key, value in values.items() if key != BONDED})
+            if shift:
+                scene = scene.with_values(layers("density")(scene, 1 + shift))
+            section = column_of(scene)
+            column = dda_column(section)
+            if is_bonded:
+                column = replace(column, joints=[replace(joint, gap=0.0) for joint in column.joints])
+            steps *= round(self.scene.time.step / scene.time.step)
+            drive = Drive(**vars(motion_at(scene, scene.time.step * np.arange(steps + 1.0))))
+            options = ColumnOptions(None, section.settled, bonded=is_bonded, repeats=REPEATS)
+            result = solve_contact_column(column, scheme_of(scene), drive, [DISPLACEMENT, PRESSURE], (), options)
+        except (InputError, ArithmeticError, ValueError):
+            return None
+        return result if len(result.time) == steps else None
+
+    def run(self, values: Values, rows: int, shift: float = 0.0) -> Array | None:
+        """Return the columns of a change at the first rows, (columns, rows); None where there is no such run."""
+        ends = self.reading.stepping.rows[:rows] + 1
+        result = self.result(values, int(ends[-1]), shift)
+        if result is None:
+            return None
+        parts = len(result.time) // int(ends[-1])
+        names = (DISPLACEMENT, PRESSURE)[: len(self.recorded)]
+        return np.array([result.columns[name][ends * parts - 1] for name in names])
+
+    def spread(self, values: Values, run: Array) -> Array:
+        """Return what another correct code may leave of a run, infinite from its horizon on, (columns, rows)."""
+        denser_run = self.run(values, run.shape[1], SHIFT)
+        if denser_run is None:
+            return np.full(run.shape, np.inf)
+        apart = np.maximum.accumulate(np.abs(denser_run - run), axis=1)
+        beyond = np.any(apart > AGREED * np.max(np.abs(run), axis=1, keepdims=True), axis=0)
+        apart[:, beyond] = np.inf
+        return apart
+
+    def over(self, columns: Array | None, rows: int, spread: Array | float = 0.0) -> Array:
         """Return what columns leave of the first rows over what may remain, (columns, rows)."""
         if columns is None:
             return np.full((len(self.allowed), rows), FARTHEST)
-        allowed = self.allowed[:, :rows] if spread is None else self.allowed[:, :rows] + spread
         with np.errstate(all="ignore"):
-            shares = (self.history.recorded[:, :rows] - columns) / allowed
+            shares = (self.recorded[:, :rows] - columns[:, :rows]) / (self.allowed[:, :rows] + spread)
         return np.nan_to_num(np.clip(shares, -FARTHEST, FARTHEST), nan=FARTHEST)
 
     @property
     def scene_shares(self) -> Array:
         """What the scene's own run leaves over what may remain, the worst column of each row."""
-        shares: Array = np.max(np.abs(self.over(self.scene_run[:, : self.rows], self.rows)), axis=0)
+        shares: Array = np.max(np.abs(self.over(self.scene_run, self.rows)), axis=0)
         return shares
 
     @property
@@ -387,21 +312,24 @@ class ColumnSearch:
 
     def misfits(self, columns: Array) -> list[float]:
         """Return the relative L2 difference of every column up to the horizon [-]."""
-        recorded = self.history.recorded[:, : self.rows]
+        recorded = self.recorded[:, : self.rows]
         sizes = np.maximum(np.linalg.norm(recorded, axis=1), np.linalg.norm(self.scene_run[:, : self.rows], axis=1))
         apart = np.linalg.norm(recorded - columns[:, : self.rows], axis=1)
         return [float(gap / size) if size else 0.0 for gap, size in zip(apart, sizes, strict=True)]
 
     def explanations(self) -> list[ColumnExplanation]:
         """Return all candidates that were pursued to the last row, the one that leaves least first."""
-        changes = list(of_scene(self.history.scene))
+        changes = list(of_scene(self.scene))
+        groups = [min(self.rows, int(self.departing[0]) + FIRST_ROWS)]  # of rows, twice as many from group to group
+        while groups[-1] < self.rows:
+            groups.append(min(self.rows, 2 * groups[-1]))
         candidates = [Fitted(change, 0.0, math.inf) for change in changes]
-        groups = self._groups_of_rows()
         for number, rows in enumerate(groups):
-            scene_remainder = norm(self.over(self.scene_run[:, :rows], rows))
-            candidates = [self._fitted(candidate, rows, number) for candidate in candidates]
+            # what remains of these rows if every one leaves as much as an explanation never may
+            near = APART * math.sqrt(rows * len(self.allowed))
+            candidates = [self._fitted(candidate, rows, number, near) for candidate in candidates]
             if number + 1 >= PATIENCE:
-                bar = max(NEAR * scene_remainder, self._near(rows))
+                bar = max(NEAR * norm(self.over(self.scene_run, rows)), near)
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
@@ -424,51 +352,34 @@ class ColumnSearch:
                 continue
             for power in POWERS:
                 u = power * explanations[0].candidate.u
-                shares = self.over(self.history.run(change.changed(u), rows), rows)
-                if largest(shares) <= APART:
+                if largest(self.over(self.run(change.changed(u), rows), rows)) <= APART:
                     further.append(self._judged(Fitted(change, u, 0.0)))
         return further
 
-    def _near(self, rows: int) -> float:
-        """Return the norm of what remains of the first rows if every row leaves as much as an explanation never may."""
-        return APART * math.sqrt(rows * len(self.allowed))
-
-    def _groups_of_rows(self) -> list[int]:
-        """Return numbers of rows from the start, from a few that depart up to all that can be judged."""
-        groups = [min(self.rows, int(self.departing[0]) + FIRST_ROWS)]
-        while groups[-1] < self.rows:
-            groups.append(min(self.rows, 2 * groups[-1]))
-        return groups
-
-    def _fitted(self, candidate: Fitted[ColumnChange], rows: int, number: int) -> Fitted[ColumnChange]:
+    def _fitted(self, candidate: Fitted[Values], rows: int, number: int, near: float) -> Fitted[Values]:
         """Return a candidate at the number that comes nearest in the first rows."""
         change = candidate.change
 
         def residual(u: float) -> Array:
-            return self.over(self.history.run(change.changed(u), rows), rows).ravel()
+            return self.over(self.run(change.changed(u), rows), rows).ravel()
 
         if not change.starts:
             return nearest_start(residual, change)
-        near = self._near(rows)
         if number:
-            best = self._refined(residual, candidate)
+            best = fitted(residual, candidate, ROUNDS, NUDGE, SETTLED)
             if best.remainder <= near or number >= PATIENCE:
                 return best
-        return self._refined(residual, nearest_start(residual, change))
+        return fitted(residual, nearest_start(residual, change), ROUNDS, NUDGE, SETTLED)
 
-    def _refined(self, residual: Residual, start: Fitted[ColumnChange]) -> Fitted[ColumnChange]:
-        return fitted(residual, start, ROUNDS, NUDGE, SETTLED)
-
-    def _judged(self, candidate: Fitted[ColumnChange]) -> ColumnExplanation:
+    def _judged(self, candidate: Fitted[Values]) -> ColumnExplanation:
         """Return a candidate with what it leaves of the rows up to its own horizon."""
-        change = candidate.change.changed(candidate.u)
-        columns = self.history.run(change, self.rows)
+        values = candidate.change.changed(candidate.u)
+        columns = self.run(values, self.rows)
         if columns is None:
-            return ColumnExplanation(candidate, FARTHEST, FARTHEST, 0)
-        spread = self.history.spread(change, columns)
+            return ColumnExplanation(candidate, FARTHEST)
+        spread = self.spread(values, columns)
         rows = int(np.count_nonzero(np.all(np.isfinite(spread), axis=0)))
-        shares = self.over(columns[:, :rows], rows, spread[:, :rows])
-        return ColumnExplanation(candidate, largest(shares), norm(shares), rows)
+        return ColumnExplanation(candidate, largest(self.over(columns, rows, spread[:, :rows])))
 
 
 # ---- the verdict ----------------------------------------------------------------------------------------------------
@@ -503,11 +414,6 @@ class ColumnVerdict:
         """What explains the history, where nothing else does."""
         return self.alike[0] if len(self.alike) == 1 and self.slipped is None else None
 
-    @property
-    def reading(self) -> Reading:
-        """The history as it is read."""
-        return self.search.history.reading
-
 
 def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     """Judge a history against a scene with a column whose contacts open or slip.
@@ -526,30 +432,28 @@ def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> An
     if not uniform:
         raise InputError("the times of the history are not uniform, which a column needs", source=scene.name)
     searches = [search for stepping in uniform for search in searches_of(scene, foreign, stepping)]
-    fewest = min(len(search.history.reading.corrected) for search in searches)
-    plain = [search for search in searches if len(search.history.reading.corrected) == fewest]
-    for search in plain:
-        if search.is_scene(tolerance):
-            return answer_of(scene, foreign, ColumnVerdict(search, is_scene=True))
-    slipped = [search for search in searches if search not in plain and search.is_scene(tolerance)]
+    fewest = min(len(search.reading.corrected) for search in searches)
+    plain = [search for search in searches if len(search.reading.corrected) == fewest]
+    own = [search for search in searches if search.is_scene(tolerance)]
+    as_read = next((search for search in own if search in plain), None)
+    if as_read is not None:
+        return answer_of(scene, foreign, ColumnVerdict(as_read, is_scene=True))
     verdicts = [verdict_of(search) for search in plain]
     verdict = next((verdict for verdict in verdicts if verdict.alike), verdicts[0])
-    if slipped and not verdict.alike:
-        verdict = ColumnVerdict(slipped[0], is_scene=True)
-    elif slipped:
-        verdict = replace(verdict, slipped=slipped[0])
+    if own and not verdict.alike:
+        verdict = ColumnVerdict(own[0], is_scene=True)
+    elif own:
+        verdict = replace(verdict, slipped=own[0])
     return answer_of(scene, foreign, verdict)
 
 
 def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[ColumnSearch]:
     """Return the ways to read signs and units, each beside the scene's own run."""
     reading = Reading(stepping, foreign.displacement, foreign.pressure, ())
-    run = ColumnHistory(reading.scene_of(scene), reading).result(ColumnChange(), len(stepping.steps))
-    if run is None:
-        raise InputError("dda cannot run it at the steps of the history", source=scene.name)
-    displacement, pressure = (run.columns[name][stepping.rows] for name in (DISPLACEMENT, PRESSURE))
-    readings = slips(foreign, stepping, displacement, pressure, furthest=math.inf)
-    return [ColumnSearch.of(ColumnHistory(reading.scene_of(scene), reading)) for reading in readings]
+    stepped = reading.scene_of(scene)
+    scene_run = ColumnSearch(stepped, reading).scene_run
+    readings = slips(foreign, stepping, scene_run[0], scene_run[-1], furthest=math.inf)
+    return [ColumnSearch(stepped, reading) for reading in readings]
 
 
 def verdict_of(search: ColumnSearch) -> ColumnVerdict:
@@ -570,7 +474,7 @@ def _is_same(first: ColumnExplanation, second: ColumnExplanation) -> bool:
     if first.id != second.id:
         return False
     if first.id == "scheme":
-        return all(first.change.values[key] == second.change.values[key] for key in ("time.alpha", "time.delta"))
+        return all(first.values[key] == second.values[key] for key in ("time.alpha", "time.delta"))
     if first.value is None or second.value is None or second.candidate.change.starts:
         return False
     return abs(first.value - second.value) <= SAME_NUMBER * max(1.0, abs(second.value))
@@ -582,36 +486,38 @@ def _is_same(first: ColumnExplanation, second: ColumnExplanation) -> bool:
 def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     """Return a verdict as the answer of `compare`."""
     search = verdict.search
-    reading = verdict.reading
+    reading = search.reading
     cause = verdict.cause
     ids = [*reading.slips, *([cause.id] if cause else [])]
     explained = verdict.is_scene or cause is not None
     best = cause or (verdict.ranked[0] if verdict.ranked else None)
-    time = search.history.time
-    columns = None if best is None else search.history.run(best.change, len(time))
+    columns = None if best is None else search.run(best.values, len(search.time))
     if columns is None:
         columns = search.scene_run
     scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
     unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
     departure = None if not ids and explained else _departure(search)
-    scene_variant = own_scheme(scene)
-    scheme = scheme_numbers(scene_variant)
+    own = own_scheme(scene)
+    scheme = scheme_numbers(own)
     words = words_of_slips(reading.corrected)
+    (judged_solver, *_) = by_role(Role.JUDGED)
+    alpha, delta = own.scheme[:2] if own.family == "newmark" else (None, None)
+    ranking = [row_of(judged_solver, alpha, delta, own.gg, scene_misfit, None)]
+    alike = [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if cause is not None:
-        values = cause.change.values
-        if "time.alpha" in values:
-            scheme = {"alpha": values["time.alpha"], "delta": values["time.delta"], "gg": scheme["gg"]}
-        if "time.gg" in values:
-            scheme["gg"] = values["time.gg"]
+        alike = []
+        if "time.alpha" in cause.values:
+            scheme = {"alpha": cause.values["time.alpha"], "delta": cause.values["time.delta"], "gg": scheme["gg"]}
+        scheme["gg"] = cause.values.get("time.gg", scheme["gg"])
         words[cause.id] = cause.words
         if cause.id == "scheme":
-            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(scene_variant)}"
-    alike = [] if cause or verdict.is_scene else [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
+            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(own)}"
+        ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     if verdict.slipped is not None:
-        slipped = list(verdict.slipped.history.reading.slips)
+        slipped = list(verdict.slipped.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
     subject = sentences.Subject(
-        cause.words if cause and cause.id == "scheme" else sentences.scheme_of(replace(scene_variant, gg=scheme["gg"])),
+        cause.words if cause and cause.id == "scheme" else sentences.scheme_of(replace(own, gg=scheme["gg"])),
         words,
         departure,
         sentences.remaining(misfit),
@@ -619,29 +525,23 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     )
     nearest: dict[str, Any] | None = None
     if not explained and not alike and best is not None:
-        nearest = {key: value for key, value in best.as_dict().items() if key != "further_scene"} | {
-            "left": unexplained
-        }
+        nearest = best.as_dict() | {"left": unexplained}
+        del nearest["further_scene"]
     stages = _stages(search)
     if explained:
         sentence = sentences.sentence(subject)
     else:
         sentence = f"{sentences.not_explained(subject, nearest, unexplained, stages)[:-1]}; {_first_rows(search)}."
-    (judged_solver, *_) = by_role(Role.JUDGED)
-    curves = {"the file": search.history.recorded, judged_solver: search.scene_run, "best": columns}
-    alpha, delta = (scene_variant.scheme[:2]) if scene_variant.family == "newmark" else (None, None)
-    ranking = [row_of(judged_solver, alpha, delta, scene_variant.gg, scene_misfit, None)]
-    if cause is not None:
-        ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
+    curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
     return Answer(
         sentence=sentence,
         causes=ids if explained else [UNEXPLAINED],
         scheme=scheme,
         departure=departure,
-        notes=(*foreign.notes, *_notes(search, scene)),
+        notes=(*foreign.notes, *_notes(search, scene, stages)),
         ranking=ranking,
         misfit=misfit,
-        curves={name: (time, run[0]) for name, run in curves.items()},
+        curves={name: (search.time, run[0]) for name, run in curves.items()},
         values={cause.id: cause.value} if cause and cause.value is not None else {},
         unexplained=unexplained,
         nearest=nearest,
@@ -657,11 +557,9 @@ def _departure(search: ColumnSearch) -> Departure | None:
     departing = search.departing
     if not len(departing):
         return None
-    rows = search.history.reading.stepping.rows[: search.rows]
-    recorded = search.history.recorded[0, : search.rows]
-    return replace(
-        evidence.measured(search.scene_run[0, : search.rows], recorded, rows, 0.0), step=int(rows[departing[0]]) + 1
-    )
+    rows = search.reading.stepping.rows[: search.rows]
+    departure = evidence.measured(search.scene_run[0, : search.rows], search.recorded[0, : search.rows], rows, 0.0)
+    return replace(departure, step=int(rows[departing[0]]) + 1)
 
 
 def _first_rows(search: ColumnSearch) -> str:
@@ -669,17 +567,14 @@ def _first_rows(search: ColumnSearch) -> str:
     row = search.departing[0] if len(search.departing) else search.rows
     agree = "no row agrees"
     if row:
-        agree = f"the first {row} rows agree, up to t = {search.history.time[row - 1]:.6g} s"
+        agree = f"the first {row} rows agree, up to t = {search.time[row - 1]:.6g} s"
     return f"{agree}; what would tell: {WOULD_TELL}"
 
 
 def _stages(search: ColumnSearch) -> list[Stage]:
     """Return what can be seen without a cause: how it reads, and each column alone."""
-    reading = search.history.reading
-    words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
-    note = reading.stepping.note
-    stages = [Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})]
-    shares = search.over(search.scene_run[:, : search.rows], search.rows)
+    stages = [evidence.reading_stage(search.reading.slips, search.reading.stepping.note)]
+    shares = search.over(search.scene_run, search.rows)
     for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.scene_run), shares, strict=False):
         beyond = np.flatnonzero(np.abs(share) > 1)
         of_column = f"the {name.replace('_', ' ')} alone "
@@ -687,22 +582,19 @@ def _stages(search: ColumnSearch) -> list[Stage]:
         first = float(beyond[0] + 1) if len(beyond) else None
         stages.append(Stage(name, not len(beyond), of_column + what, {"misfit": misfit, "first_row": first}))
     if search.rows < search.scene_run.shape[1]:
-        time = float(search.history.time[max(search.rows - 1, 0)])
+        time = float(search.time[max(search.rows - 1, 0)])
         words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
         stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))
     return stages
 
 
-def _notes(search: ColumnSearch, scene: Scene) -> tuple[str, ...]:
+def _notes(search: ColumnSearch, scene: Scene, stages: Sequence[Stage]) -> list[str]:
     """Return what there is to know beside the verdict: times, horizon, limits of solves."""
-    reading = search.history.reading
-    notes = [reading.stepping.note] if reading.stepping.note else []
-    notes += [slip.words for slip in reading.corrected]
-    notes += [stage.words for stage in _stages(search) if stage.name == "horizon"]
-    steps = len(reading.stepping.steps)
-    result = search.history.result(ColumnChange(), steps + 1)
+    notes = [*search.reading.notes, *(stage.words for stage in stages if stage.name == "horizon")]
+    steps = len(search.reading.stepping.steps)
+    result = search.result({}, steps + 1)
     if result is None:
-        return tuple(notes)
+        return notes
     limit = column_of(scene).solve_limit
     exceeding = np.flatnonzero(result.step_solves[:steps] > limit) if limit else np.zeros(0, int)
     if len(exceeding):
@@ -710,10 +602,10 @@ def _notes(search: ColumnSearch, scene: Scene) -> tuple[str, ...]:
         notes.append(f"the scene's own limit of {limit} solves ends its run at step {step}: it was left out")
     needed = int(result.step_solves[-1])
     is_first = needed > max(int(result.step_solves[:steps].max()), LEAST_LIMIT)
-    same_step = reading.stepping.steps[0] == scene.time.step
+    same_step = search.reading.stepping.steps[0] == scene.time.step
     if is_first and same_step and steps < scene.time.steps and not len(search.departing):
         notes.append(
             f"the file ends at step {steps} of {scene.time.steps}; the next step is the first that needs {needed} "
             f"solves of the open-close iteration: a limit of {needed - 1} ends a run there"
         )
-    return tuple(notes)
+    return notes

@@ -34,56 +34,49 @@ class Contact(NamedTuple):
     C_rate: Array  # C' [m/N]
 
 
-def linear_force(method: str, contact: Contact, rows: tuple[Array, Array, Array, Array]) -> Array:
-    """Return the force of locked contact as a row by the state, (variants, size).
+class Gaps(NamedTuple):
+    """Gaps and their rates [m], or the rows by which they follow from a state."""
 
-    Parameters
-    ----------
-    rows
-        Those of w0, w0', w_f and w_f', (variants, size) each.
-    """
-    k, c, C, C_rate = (values[:, None] for values in (contact.stiffness, contact.dashpot, contact.C, contact.C_rate))
-    start, _, free, free_rate = rows
-    if method == "dashpot":
-        return np.asarray(-(k * free + c * free_rate) / (1 + k * C + c * C_rate))
-    if method == "implicit":
-        return np.asarray(-k * free / (1 + k * C))
+    start: Array  # w0
+    start_rate: Array  # w0'
+    free: Array  # w_f
+    free_rate: Array  # w_f'
+
+
+def closed_force(method: str, contact: Contact, gaps: Gaps) -> Array:
+    """Return the force of contact that stays closed; of rows of the gaps the row of the force."""
+    k = contact.stiffness
+    C = contact.C
     if method == "energy-conserving":
-        return np.asarray(-k * (free + start) / (2 + k * C))
-    raise ValueError(f"{method} has no locked contact")
+        return np.asarray(-k * (gaps.free + gaps.start) / (2 + k * C))
+    if method == "rigid":
+        return np.asarray(-gaps.free / C)
+    c = contact.dashpot  # none of an implicit contact
+    return np.asarray(-(k * gaps.free + c * gaps.free_rate) / (1 + k * C + c * contact.C_rate))
 
 
-def force_of(method: str, contact: Contact, gaps: tuple[Array, Array, Array, Array]) -> tuple[Array, Flags]:
-    """Return the forces of contact that opens, and where it is closed at the end of the step.
-
-    Parameters
-    ----------
-    gaps
-        w0, w0', w_f and w_f' [m], (variants,) each.
-    """
-    k, C = contact.stiffness, contact.C
-    start, rate, free, free_rate = gaps
+def force_of(method: str, contact: Contact, gaps: Gaps) -> tuple[Array, Flags]:
+    """Return the forces of contact that opens, and where it is closed at the end of the step."""
     if method == "impact":
-        force = np.maximum(-(free_rate + contact.restitution * rate) / contact.C_rate, 0.0)
-        force = np.where(start + rate / 2 <= 0, force, 0.0)
+        force = np.maximum(-(gaps.free_rate + contact.restitution * gaps.start_rate) / contact.C_rate, 0.0)
+        force = np.where(gaps.start + gaps.start_rate / 2 <= 0, force, 0.0)
         return force, force > 0
-    closed = free < 0
+    force = closed_force(method, contact, gaps)
     if method == "energy-conserving":
-        force = _conserving(k, C, start, free)
-        return force, free + C * force < 0
-    if method == "dashpot":
-        force = -(k * free + contact.dashpot * free_rate) / (1 + k * C + contact.dashpot * contact.C_rate)
-        closed = closed & ((force > 0) | ~contact.clipped)
-    elif method == "implicit":
-        force = -k * free / (1 + k * C)
-    else:
-        force = -free / C
+        force = _conserving(contact.stiffness, contact.C, gaps.start, gaps.free, force)
+        return force, gaps.free + contact.C * force < 0
+    closed = (gaps.free < 0) & ((force > 0) | ~contact.clipped)
     return np.where(closed, force, 0.0), closed
 
 
-def _conserving(k: Array, C: Array, start: Array, free: Array) -> Array:
-    """Return the force of a spring that does exactly the work of its energy, by the signs of both gaps."""
-    pressed = -k * (free + start) / (2 + k * C)
+def _conserving(k: Array, C: Array, start: Array, free: Array, pressed: Array) -> Array:
+    """Return the force of a spring that does exactly the work of its energy, by the signs of both gaps.
+
+    Parameters
+    ----------
+    pressed
+        The force where both gaps are closed [N].
+    """
     # opening: C N^2 + (w_f - w0) N = k w0^2 / 2, the root that presses
     lifted = free - start
     opening = k * start**2 / (lifted + np.sqrt(lifted**2 + 2 * C * k * start**2))

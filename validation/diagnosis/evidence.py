@@ -144,6 +144,12 @@ def growth(values: Array, expected: Array) -> float | None:
     return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (len(values) / 3))
 
 
+def reading_stage(slips: Sequence[str], note: str) -> Stage:
+    """Return whether a history reads as the scene's, from its slips of sign and unit and what differs in its times."""
+    read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
+    return Stage("reading", not slips, read + (f"; {note}" if note else ""), {})
+
+
 def stages(
     target: Target, expected: Sequence[Array], slips: Sequence[str], note: str, factor: float | None
 ) -> list[Stage]:
@@ -162,10 +168,9 @@ def stages(
     factor
         Growth in a step, None if bounded.
     """
-    read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
     bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
     measured = [
-        Stage("reading", not slips, read + (f"; {note}" if note else ""), {}),
+        reading_stage(slips, note),
         Stage("bounded", factor is None, bounded, {"growth": factor}),
     ]
     if factor is not None:

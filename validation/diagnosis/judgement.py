@@ -13,9 +13,9 @@ from validation.diagnosis import causes, evidence, families, schemes, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
-from validation.diagnosis.evidence import Stage
+from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import significant
-from validation.diagnosis.fits.fit import fit, intervals, untold
+from validation.diagnosis.fits.fit import explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
@@ -261,7 +261,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     expected = evidence.expected(target, shown, scene_variant, ids)
     first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
     of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
-    refitted = fit(target, [(v, tuple(dict.fromkeys((*of_scheme, *shown.free))))])[0]
+    refitted = fit_one(target, v, tuple(dict.fromkeys((*of_scheme, *shown.free))))
     values = causes.values_of(target.column, ids, v)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     if "dead-band" in ends:
@@ -308,7 +308,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         causes=ids,
         opened=(steps[0], steps[-1]) if steps else None,
         sentence=sentence,
-        notes=_notes(case.foreign, case.reading),
+        notes=(*case.foreign.notes, *case.reading.notes),
         told=intervals(refitted) if verdict.explained else {},
         untold=untold(refitted) if verdict.explained else [],
         misfit=best_fit.misfit,
@@ -327,8 +327,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
 
 def _clipping(target: Target, v: Variant) -> str:
     """Return whether the dashpot pulls before the contact opens, if the rows tell."""
-    other = fit(target, [(replace(v, clipped=not v.clipped), ())])[0]
-    if target.explained(other.residual):
+    if explains(target, replace(v, clipped=not v.clipped)):
         return "; these rows do not tell whether it is clipped"
     return ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
 
@@ -336,8 +335,7 @@ def _clipping(target: Target, v: Variant) -> str:
 def _contact_form(target: Target, v: Variant) -> str:
     """Return of what the contact force of generalised alpha is a mean, if the rows tell."""
     is_of_gaps = v.contact == "mean gap"
-    other = fit(target, [(replace(v, contact="springs" if is_of_gaps else "mean gap"), ())])[0]
-    if target.explained(other.residual):
+    if explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
         return ""
     return f", the contact force {'that of the mean gap' if is_of_gaps else 'the mean of those at both ends'}"
 
@@ -347,7 +345,7 @@ def _has_second_split(target: Target, v: Variant) -> bool:
     other = schemes.companion_split(v)
     if abs(other - schemes.split_of(v)) < SAME_SPLIT:
         return False
-    return target.explained(fit(target, [(replace(v, split=other), ())])[0].residual)
+    return explains(target, replace(v, split=other))
 
 
 def _told_apart(target: Target, v: Variant) -> Variant:
@@ -356,7 +354,7 @@ def _told_apart(target: Target, v: Variant) -> Variant:
         return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
     if v.contact == "dashpot" and not v.clipped:
         clipped = replace(v, clipped=True)
-        return clipped if target.explained(fit(target, [(clipped, ())])[0].residual) else v
+        return clipped if explains(target, clipped) else v
     return v
 
 
@@ -386,17 +384,11 @@ def _diverged(case: Case, factor: float) -> Answer:
         departure=first_departure,
         causes=[DIVERGED],
         sentence=sentences.diverged(first_departure, factor),
-        notes=_notes(case.foreign, case.reading),
+        notes=(*case.foreign.notes, *case.reading.notes),
         curves={"the file": (case.time, target.displacement), DDA: (case.time, expected)},
         values={DIVERGED: significant(factor, 6)},
         evidence=tuple(stages),
     )
-
-
-def _notes(foreign: Foreign, reading: Reading) -> tuple[str, ...]:
-    of_times = (reading.stepping.note,) if reading.stepping.note else ()
-    slipped = tuple(slip.words for slip in reading.corrected)
-    return (*foreign.notes, *of_times, *slipped)
 
 
 def _answer_of_rival(
@@ -421,7 +413,7 @@ def _answer_of_rival(
     if any(not CAUSES[name].benign for name in ids):
         expected = own_run if without_scheme and own_run is not None else verdict.scene_run
         first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = sentences.rival_sentence(verdict, ids, first_departure, MODEL_WORDS)
+    sentence = rival_sentence(verdict, ids, first_departure)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
         sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
@@ -433,7 +425,7 @@ def _answer_of_rival(
         departure=first_departure,
         causes=ids,
         sentence=sentence,
-        notes=_notes(foreign, reading),
+        notes=(*foreign.notes, *reading.notes),
         misfit=best.misfit,
         curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
         values=verdict.values if verdict.explained else {},
@@ -441,6 +433,27 @@ def _answer_of_rival(
         evidence=tuple(stages),
         own_model=best.model == DDA,
     )
+
+
+def rival_sentence(verdict: RivalVerdict, ids: Sequence[str], departure: Departure | None) -> str:
+    """Return the first line of the answer where another solver explains the history best."""
+    best = verdict.best
+    scheme_of_best = sentences.scheme_words(best.alpha, best.delta, best.gg)
+    model = f"{best.model} ({MODEL_WORDS.get(best.model, best.model)})"
+    remainder = sentences.remaining(best.misfit)
+    if not verdict.explained:
+        return (
+            f"Departs, not explained: nearest is {model} with {scheme_of_best}, "
+            f"{sentences.per_cent(verdict.left, 2)} % of the difference left; {remainder}."
+        )
+    numbers = {name: f" ({value:.4g})" for name, value in verdict.values.items()}
+    faults = sentences.listed([CAUSES[name].words + numbers.get(name, "") for name in ids])
+    faults = f"; {faults}" if faults else ""
+    if departure is None:
+        return f"Same model as {model}, same scheme: {scheme_of_best}{faults}; {remainder}."
+    where = f"departs from step {departure.step} on, mainly in {departure.kind}"
+    scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(ids) else "same scheme"
+    return f"Closest match: {model}, {scheme}: {scheme_of_best}; {where}{faults}; {remainder}."
 
 
 def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:

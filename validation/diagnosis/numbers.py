@@ -7,14 +7,17 @@ keys and values that carry it, so that any solver runs it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+import tomllib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
 Values = dict[str, Any]
+TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 MORE_BLOCKS = 4
 EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's contacts
@@ -128,12 +131,11 @@ def numbers(scene: Scene) -> Iterator[Number]:
             yield Number("young-factor", OF_WAVES, layers("young"))
         yield Number("density-factor", "the density", layers("density"))
         yield from _of_contacts(scene)
-        yield from _plain(scene, INPUT)
+        yield from _plain(scene, "input")
         if scene.column.impedance is not None:
             yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
         return
-    turns = {"load.gravity": ("gravity-factor", TURNS)} if features.ROTATION in features.of(scene) else {}
-    yield from _plain(scene, BLOCK | turns)
+    yield from _plain(scene, "block", *(["turning"] if features.ROTATION in features.of(scene) else []))
     yield Number("width-factor", "the width", lambda s, f: sized(s, f, 1.0))
     yield Number("height-factor", "the height", lambda s, f: sized(s, 1.0, f))
     c = scene.contact
@@ -146,35 +148,7 @@ def numbers(scene: Scene) -> Iterator[Number]:
         yield Number("friction-factor", "tan(phi) of friction", friction)
 
 
-# What gives the same rows has one name, since a program may be wrong in either: a column knows the modulus of its waves
-# alone, and a rigid block turns by g m R / I, of which local damping takes a part.
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
-TURNS = "the moment over the inertia of the block that turns (gravity, size, moment of inertia, damping of its forces)"
-BLOCK = {
-    "block.density": ("density-factor", "the density"),
-    "block.young": ("young-factor", "Young's modulus"),
-    "block.velocity": ("velocity-factor", "the initial velocity"),
-    "block.tilt": ("tilt-factor", "the initial tilt"),
-    "contact.gap": ("gap-factor", "the gap"),
-    "load.pressure": ("load-factor", "the pressure"),
-    "load.gravity": ("gravity-factor", "gravity"),
-    "load.slope": ("slope-factor", "the slope"),
-}
-INPUT = {
-    "input.pressure": ("load-factor", "the pressure"),
-    "input.frequency": ("frequency-factor", "the input's frequency"),
-    "column.base_stiffness": ("base-springs-factor", "the stiffness of the base"),
-}
-OF_CONTACTS = {  # key of a column's contacts to the id of its factor, and its name
-    "stiffness": ("springs-factor", "the stiffness"),
-    "gap": ("gap-factor", "the gap"),
-    "strength": ("strength-factor", "the strength"),
-    "friction": ("friction-factor", "tan(phi) of friction, or the weight above,"),
-}
-INPUT_OF_CONTACTS = {  # what a bonded column shows as a factor of all its columns, or of their time
-    "input.velocity": ("load-factor", "the velocity of the input"),
-    "input.duration": ("duration-factor", "the input's duration"),
-}
 MOST_JOINTS = 8  # whose numbers are tried one by one: with more, hardly one stands out
 
 
@@ -188,8 +162,8 @@ def _of_contacts(scene: Scene) -> Iterator[Number]:
     if column.gravity and column.law == "unilateral":  # in shear gravity is in the strengths by friction alone
         gravity = column.gravity
         yield Number("gravity-factor", "gravity", lambda s, f: {"column.gravity": gravity * f})
-    yield from _plain(scene, INPUT_OF_CONTACTS)
-    for key, (cause, name) in OF_CONTACTS.items():
+    yield from _plain(scene, "input_of_contacts")
+    for key, (cause, name) in TABLE["contacts"].items():
         for place, words in places(scene, key).items():
             yield Number(cause, f"{name} of {words}", contacts(key, place))
 
@@ -198,11 +172,17 @@ def _is_number(value: float | None) -> bool:
     return bool(value) and math.isfinite(value or 0.0)
 
 
-def _plain(scene: Scene, keys: Mapping[str, tuple[str, str]]) -> Iterator[Number]:
-    data = scene.definition()
-    for key, (cause, name) in keys.items():
-        section, _, entry = key.partition(".")
-        value = data.get(section, {}).get(entry)
+def _stated(scene: Scene, key: str) -> Any:
+    """Return what a scene states of a key, ``block.density``; None where it has no such section or entry."""
+    section, _, entry = key.partition(".")
+    return scene.definition().get(section, {}).get(entry)
+
+
+def _plain(scene: Scene, *tables: str) -> Iterator[Number]:
+    """Yield what is larger by a factor of a key, of tables of keys; later tables have other names for them."""
+    rows = {key: row for table in tables for key, row in TABLE[table].items()}
+    for key, (cause, name) in rows.items():
+        value = _stated(scene, key)
         if isinstance(value, int | float) and value:
             yield Number(cause, name, lambda s, f, key=key, value=value: {key: value * f})  # type: ignore[misc]
 
@@ -222,14 +202,6 @@ class Law:
     values: dict[str, Any]
 
 
-FORGOTTEN = {
-    "load.gravity": ("the weight", {"load.gravity": 0.0, "load.slope": 0.0}),
-    "load.traction": ("the traction", {"load.traction": 0.0}),
-    "load.eccentricity": ("the eccentricity of the pressure", {"load.eccentricity": 0.0}),
-    "contact.gap": ("the gap", {"contact.gap": 0.0}),
-    "contact.cohesion": ("the cohesion", {"contact.cohesion": 0.0}),
-    "block.poisson": ("Poisson's ratio", {"block.poisson": 0.0}),
-}
 GLUED = 89.0  # deg: no block slips on such friction
 
 
@@ -237,11 +209,10 @@ def laws(scene: Scene) -> Iterator[Law]:
     """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
     if scene.column is not None or features.ROTATION in features.of(scene):
         return
-    data = scene.definition()
-    for key, (name, values) in FORGOTTEN.items():
-        section, _, entry = key.partition(".")
-        if data[section].get(entry):
-            yield Law(f"no-{entry}", f"{name} is forgotten", values)
+    for row in TABLE["forgotten"]:
+        if _stated(scene, row["key"]):
+            _, _, entry = row["key"].partition(".")
+            yield Law(f"no-{entry}", f"{row['name']} is forgotten", row["values"])
     if scene.contact.law == "locked":
         yield Law("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
     elif scene.contact.friction is None:

@@ -12,7 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from validation.diagnosis.fits.bar import norm
+from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.numbers import Values, numbers
+from validation.diagnosis.sentences import scheme_words
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -57,6 +59,25 @@ class CandidateChange(Generic[Change]):
     def giving(self, changed: Callable[[float], Any]) -> CandidateChange[Any]:
         """Return the same change with another thing that it gives."""
         return replace(self, changed=changed)
+
+
+def fixed(name: str, words: str, values: Values, number: float = math.nan) -> CandidateChange[Values]:
+    """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
+    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: values)
+
+
+def of_schemes(scene: Scene) -> Iterator[CandidateChange[Values]]:
+    """Yield the schemes by which programs step, with either start."""
+    t = scene.time
+    scene_pairs = [(t.alpha, t.delta)] if t.scheme == "newmark" else []
+    for alpha, delta in dict.fromkeys([*scene_pairs, *NAMED.values()]):
+        for start in dict.fromkeys([t.start, "zero", "consistent"]):
+            values: Values = {"time.scheme": "newmark", "time.alpha": alpha, "time.delta": delta, "time.start": start}
+            if (alpha, delta) not in scene_pairs:
+                also = "" if start == t.start else f', the initial acceleration is "{start}"'
+                yield fixed("scheme", f"{scheme_words(alpha, delta, t.discount)}{also}", values)
+            elif start != t.start:
+                yield fixed("start", f'the initial acceleration is "{start}", not "{t.start}"', values)
 
 
 def of_numbers(scene: Scene, factors: Sequence[float], units: bool = True) -> Iterator[CandidateChange[Values]]:

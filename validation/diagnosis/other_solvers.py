@@ -14,7 +14,7 @@ import numpy as np
 
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
 from validation.diagnosis.fits.bar import norm, significant
-from validation.diagnosis.fits.fit import NAMED, fit, named
+from validation.diagnosis.fits.fit import NAMED, fit, fit_one, named
 from validation.diagnosis.fits.target import Bar, Target, joined
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import CandidateChange, fitted, nearest_start, of_discount, of_numbers
@@ -245,7 +245,7 @@ def ranking(
     newmark = replace(best, family="newmark", spectral=0.0, split=0.0, contact=contact)
     fits = fit(target, [(replace(newmark, alpha=a, delta=d), free) for a, d in pairs])
     misfits = [each.misfit for each in fits]
-    own_misfit = fit(target, [(best, ())])[0].misfit
+    own_misfit = fit_one(target, best).misfit
     rows = []
     if is_newmark:
         misfits[0] = min(misfits[0], own_misfit)

@@ -106,6 +106,11 @@ class Reading:
         """Ids of the errors of sign and unit that were corrected, each once."""
         return tuple(sorted({slip.cause for slip in self.corrected}))
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What differs in the times, and what was corrected."""
+        return (*filter(None, [self.stepping.note]), *(slip.words for slip in self.corrected))
+
     def scene_of(self, scene: Scene) -> Scene:
         """Return the scene at the steps of the history, which are equal."""
         return scene.with_values(

@@ -16,10 +16,9 @@ import numpy as np
 
 from validation.diagnosis.causes import CONTACT_METHODS, LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
-from validation.diagnosis.fits.fit import Fit, changed, fit
+from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
-from validation.diagnosis.moves import fitted as fitted_move
 from validation.diagnosis.schemes import SHARED
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
@@ -90,10 +89,7 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     n = len(target.steps)
     steps = min(max(SHORTEST, math.ceil(PERIODS * _period(target) / float(np.mean(target.steps)))), COARSE)
     part = target.until(steps) if steps < n else target
-    explanations = _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)
-    if len(explanations) > MANY:
-        explanations = explanations[:MANY]
-    explanations = _further(part, explanations)
+    explanations = _further(part, _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)[:MANY])
     while steps < n:
         steps *= STRETCH
         part = target.until(min(steps, n))
@@ -118,14 +114,13 @@ def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Explanat
 def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Start]:
     """Return the best two starts of every combination."""
     every = [(i, v) for i, combo in enumerate(combos) for v in _starts(scene, combo)]
-    misfits: list[float] = []
-    goal = target.values
-    for i in range(0, len(every), CHUNK):
-        answers = target.responses([v for _, v in every[i : i + CHUNK]])
-        misfits += np.linalg.norm(answers - goal[:, None], axis=0).tolist()
     best: dict[int, list[tuple[float, Variant]]] = {}
-    for (i, v), misfit in zip(every, misfits, strict=True):
-        best.setdefault(i, []).append((misfit, v))
+    for first in range(0, len(every), CHUNK):
+        chunk = every[first : first + CHUNK]
+        answers = target.responses([v for _, v in chunk])
+        misfits = np.linalg.norm(answers - target.values[:, None], axis=0).tolist()
+        for (i, v), misfit in zip(chunk, misfits, strict=True):
+            best.setdefault(i, []).append((misfit, v))
     chosen = []
     for i, misfits_of_starts in best.items():
         free = tuple(name for move in combos[i] for name in move.free)
@@ -136,11 +131,8 @@ def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
 def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
     """Return the variants from which the fits of a combination may begin: one number at a time."""
     fixed = changed(scene, {name: value for move in combo for name, value in move.changes.items()})
-    if len(combo) == 1:
-        (move,) = combo
-        return [changed(fixed, {move.free[0]: value}) for value in move.starts] or [fixed]
     firsts = [changed(fixed, {move.free[0]: value}) for move in combo for value in move.starts]
-    return [fixed, *firsts]
+    return firsts if firsts and len(combo) == 1 else [fixed, *firsts]
 
 
 def _leading(explanations: Sequence[Explanation]) -> list[Explanation]:
@@ -333,7 +325,7 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
     if not (v.updated or base):
         return False
     without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
-    return fit(target, [(without, ())])[0].misfit > WITHOUT_IT * candidate.misfit
+    return fit_one(target, without).misfit > WITHOUT_IT * candidate.misfit
 
 
 def _nameable(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
@@ -403,7 +395,7 @@ def simple(target: Target, scene: Variant) -> Verdict:
     scene
         The scene's own scheme, nothing added.
     """
-    scene_fit = fit(target, [(scene, ())])[0]
+    scene_fit = fit_one(target, scene)
     nothing = Explanation((), scene_fit)
     if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
         return Verdict(scene_fit, nothing, True)
@@ -479,7 +471,7 @@ def _around(target: Target, scene: Variant) -> list[Explanation]:
 
 def _surroundings(target: Target, scene: Variant) -> list[Move]:
     plain = {move.id: move for move in moves(target, scene) if move.id in SURROUNDINGS}
-    plain["springs-factor"] = fitted_move("springs-factor", "softness", (0.0, 0.02))
+    plain["springs-factor"] = Move("springs-factor", {}, ("softness",), (0.0, 0.02))
     return [plain[name] for name in SURROUNDINGS]
 
 
@@ -502,7 +494,7 @@ def _without_excess(target: Target, scene_fit: Fit, explanation: Explanation) ->
         names = [*move.changes, *move.free, *(["base"] if "softness" in move.free else [])]
         back = changed(explanation.fit.variant, {name: getattr(plain, name) for name in names})
         free = tuple(name for name in explanation.fit.free if name not in names)
-        (less,) = fit(target, [(back, free)], rounds=12)
+        less = fit_one(target, back, free, rounds=12)
         fine = accepted(target, scene_fit, less) and less.misfit < max(2 * explanation.fit.misfit, AROUND / 10)
         if fine or score(target, less) <= score(target, explanation.fit):
             explanation = Explanation(rest, less)

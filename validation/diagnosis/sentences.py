@@ -15,7 +15,6 @@ from validation.gates.gate import ROUNDING
 if TYPE_CHECKING:
     from validation.diagnosis.evidence import Departure, Stage
     from validation.diagnosis.fits.fit import Interval
-    from validation.diagnosis.other_solvers import RivalVerdict
 
 NEAR = 0.5  # share of the difference: what leaves more is near to nothing
 
@@ -142,27 +141,6 @@ def diverged(departure: Departure, growth: float) -> str:
     )
 
 
-def rival_sentence(
-    verdict: RivalVerdict, causes: Sequence[str], departure: Departure | None, models: Mapping[str, str]
-) -> str:
-    """Return the first line where another solver explains the history best."""
-    best = verdict.best
-    scheme_of_best, model = scheme_words(best.alpha, best.delta, best.gg), models.get(best.model, best.model)
-    remainder = remaining(best.misfit)
-    if not verdict.explained:
-        return (
-            f"Departs, not explained: nearest is {best.model} ({model}) with {scheme_of_best}, "
-            f"{per_cent(verdict.left, 2)} % of the difference left; {remainder}."
-        )
-    parts = [f"{CAUSES[name].words}{_number(name, verdict.values)}" for name in causes]
-    faults = f"; {listed(parts)}" if parts else ""
-    if departure is None:
-        return f"Same model as {best.model} ({model}), same scheme: {scheme_of_best}{faults}; {remainder}."
-    where = f"departs from step {departure.step} on, mainly in {departure.kind}"
-    scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(causes) else "same scheme"
-    return f"Closest match: {best.model} ({model}), {scheme}: {scheme_of_best}; {where}{faults}; {remainder}."
-
-
 def told_lines(determined: Mapping[str, Interval], untold: Sequence[Mapping[str, float]]) -> list[str]:
     """Return the fitted numbers with their intervals, and the directions that the history does not determine."""
     lines = [f"fitted {name} = {_fitted(interval)} (95 %)" for name, interval in determined.items()]
@@ -194,10 +172,6 @@ def listed(parts: Sequence[str]) -> str:
 
 def _names(stages: Sequence[Stage], agrees: bool) -> str:
     return ", ".join(stage.name.replace("_", " ") for stage in stages if stage.agrees is agrees)
-
-
-def _number(name: str, values: Mapping[str, float]) -> str:
-    return f" ({values[name]:.4g})" if name in values else ""
 
 
 def _family(one: Mapping[str, Any]) -> str:

@@ -57,7 +57,6 @@ class Variant:
     band: float = 0.0  # penetration beyond which an open contact closes [m]
     reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
     reset: bool = False  # a closing contact is sheared from the start of the step on, not from where it touched
-    one_spring: bool = False  # the loop over the corners has gone through the first one only
     discounted: Literal["both", "velocity", "displacement"] = "both"  # formulas in which gg stands
     secant: bool = False  # the velocity at the end of a step is d/dt
     strain_load: float = 1.0  # share of the load in the row of ey [-]

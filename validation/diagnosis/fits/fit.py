@@ -9,8 +9,10 @@ residual has the lag-one correlation r count as n (1 - r) / (1 + r) independent 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,18 +33,9 @@ NAMED: dict[str, tuple[float, float]] = {
     "backward differences": (4 / 5, 3 / 2),
     "backward Euler": (1.0, 3 / 2),  # from rest with A0 = 0 row by row: M a1 + K x1 = F, v1 = v + dt a1, x1 = x + dt v1
 }
-# what counts as a change of a number, and the range within sense
-SPAN = {"alpha": 0.5, "delta": 1.0, "gg": 0.1, "softness": 0.1, "base": 10.0, "weight": 1.0, "load": 0.1,
-        "density": 0.1, "young": 0.1, "poisson": 0.1, "side": 0.1, "point": 0.1, "pressure_factor": 0.1,
-        "displacement_factor": 0.1, "tall": 0.1, "viscous": 1.0, "structural": 1e-4, "ramp": 1e-2, "spectral": 0.1,
-        "inertia": 0.1, "gravity": 0.1, "split": 0.1, "dashpot": 0.1, "restitution": 0.1}  # fmt: skip
-LOW = {"alpha": 0.0, "delta": 0.0, "gg": 0.0, "softness": -15.0, "base": 0.0, "weight": 0.0, "viscous": 0.0,
-       "structural": 0.0, "ramp": 0.0, "spectral": 0.0, "gravity": -50.0, "split": 0.05, "dashpot": 0.0,
-       "restitution": 0.0}  # fmt: skip
-HIGH = {"alpha": 5.0, "delta": 5.0, "gg": 1.0, "softness": 15.0, "base": 1e4, "weight": 1.1, "poisson": 0.49,
-        "point": 1.0, "viscous": 1e5, "structural": 1.0, "ramp": 1e3, "spectral": 1.0, "gravity": 50.0,
-        "split": 0.95, "dashpot": 100.0, "restitution": 1.0}  # fmt: skip
-LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of density, modulus, side, load and what is reported: other units
+NUMBERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+SPAN: dict[str, float] = {name: row["span"] for name, row in NUMBERS.items()}
+LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of what has no range of its own: other units
 DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
 UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
@@ -109,6 +102,16 @@ def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], round
     return best
 
 
+def fit_one(target: Target, variant: Variant, free: tuple[str, ...] = (), rounds: int = 8) -> Fit:
+    """Fit one variant with its free numbers."""
+    return fit(target, [(variant, free)], rounds)[0]
+
+
+def explains(target: Target, variant: Variant) -> bool:
+    """Whether a variant as it is leaves nothing but digits and noise."""
+    return target.explained(fit_one(target, variant).residual)
+
+
 def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], goal: Array) -> list[Fit]:
     """Return the fits where they stand, with their Jacobians."""
     requested = [v for variant, free in starts for v in (variant, *(_nudged(variant, name) for name in free))]
@@ -154,9 +157,7 @@ def bounds(name: str, variant: Variant) -> tuple[float, float]:
     """Return the range within sense of a free number of a variant."""
     if name == "spectral" and variant.family == "hht":
         return 0.0, LARGEST_ALPHA_F
-    if name in ("point", "poisson"):
-        return -HIGH[name], HIGH[name]
-    return LOW.get(name, LEAST_FACTOR), HIGH.get(name, LARGEST_FACTOR)
+    return NUMBERS[name].get("low", LEAST_FACTOR), NUMBERS[name].get("high", LARGEST_FACTOR)
 
 
 def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:

@@ -81,7 +81,8 @@ def judge(scene: Scene, place: Array, step: float, rounding: Array) -> ContactFi
     run = agreement(exact, place, rounding)
     by_forces, fitted = _by_laws(exact, place, rounding)
     if run.same and (run.until is None or by_forces.shares[scene.contact.rules] >= MOST_SLIPS):
-        return replace(by_forces, causes=(), values={}, explained=True, lagged=_lags(scene), first=None, run=run)
+        lags = scene.contact.rules == "lagged"
+        return replace(by_forces, causes=(), values={}, explained=True, lagged=lags, first=None, run=run)
     run = replace(run, same=False)
     scene_run = run
     if by_forces.explained and not set(by_forces.causes) <= SURROUNDINGS:
@@ -115,68 +116,99 @@ def _springs_or_base(result: ContactFinding, around: Surrounded, scene_run: Agre
     return replace(result, causes=causes, values=rest | {name: factor}, first=1, change=change, scene_run=scene_run)
 
 
-def _lags(scene: Scene) -> bool:
-    return scene.contact.rules == "lagged"
-
-
 def _by_laws(scene: Scene, place: Array, rounding: Array) -> tuple[ContactFinding, tuple[float, float]]:
     """Return what the forces of a motion show, and the fitted weight [-] and softness [ln]."""
-    time, plain = scene.time, body_of(scene)
+    time = scene.time
+    plain = body_of(scene)
     weight, softness = _fitted(plain, time, place[:FITTED])
     body = plain.heavier(weight).softer(softness)
     soft = _compliance(scene, softness)
     yields = replace(body, shear=body.shear * math.exp(-softness))  # along the base as across it
     bodies = [body, yields] if HARDER <= soft <= BENIGN else [yields]  # else springs of another stiffness, not a base
-    followed = [_FollowedBody.of(body, time, place, rounding) for body in bodies]
+    followed = [_FollowedBody(body, time, place, rounding) for body in bodies]
     chosen = max(followed, key=lambda each: max(each.shares.values()))
-    body, runs, right, tolerance = chosen.body, chosen.runs, chosen.right, chosen.tolerance
-    scene_rules = scene.contact.rules
-    telling = _telling(body, runs, tolerance)
-    best = _law(right, telling, scene_rules)
-    run = runs[best]
-    normal = float(np.linalg.norm((run.law_forces - run.motion_forces)[:, 1]) / np.linalg.norm(run.motion_forces[:, 1]))
-    band = _band(body, run)
+    best = _law(chosen.right, chosen.telling, scene.contact.rules)
+    run = chosen.runs[best]
+    right = chosen.right[best]
+    normal = norm((run.law_forces - run.motion_forces)[:, 1]) / norm(run.motion_forces[:, 1])
+    band = float(np.max(-run.gap[chosen.deep(run)])) if chosen.deep(run).sum() >= FEWEST else 0.0
     causes, values = _causes(scene, weight, softness, soft, best, band)
     if "springs-factor" in causes and not _along_too(yields, softness, time, place, best):
         causes[causes.index("springs-factor")] = "springs-factor?"
-    shares = chosen.shares
-    active = run.settled & np.logical_or(*(law_run.slips for law_run in runs.values()))
-    least = MOST if telling.sum() < MANY else MOST_OF_MANY
-    is_obeyed = shares[best] >= least and (not active.any() or float(np.mean(right[best][active])) >= MOST_SLIPS)
-    sound = normal <= NORMAL and is_obeyed and tolerance <= BLURRED and not any(name.endswith("?") for name in causes)
-    departing = np.flatnonzero(runs[scene_rules].settled & ~right[scene_rules])
-    deep = np.flatnonzero(_deep(body, run).any(axis=1)) if "dead-band" in causes else np.zeros(0, int)
-    firsts = [int(steps[0]) + 1 for steps in (departing if best != scene_rules else departing[:0], deep) if len(steps)]
+    telling = int(chosen.telling.sum())
+    active = run.settled & np.logical_or(*(law_run.slips for law_run in chosen.runs.values()))
+    least = MOST if telling < MANY else MOST_OF_MANY
+    is_obeyed = chosen.shares[best] >= least and (not active.any() or float(np.mean(right[active])) >= MOST_SLIPS)
+    certain = tuple(name for name in causes if not name.endswith("?"))
+    sound = normal <= NORMAL and is_obeyed and chosen.tolerance <= BLURRED and len(certain) == len(causes)
+    departing = np.zeros(len(place), dtype=bool)
+    if best != scene.contact.rules:
+        departing |= chosen.runs[scene.contact.rules].settled & ~chosen.right[scene.contact.rules]
+    if "dead-band" in causes:
+        departing |= chosen.deep(run).any(axis=1)
+    first = 1 if "springs-factor" in causes else None
+    if departing.any():
+        first = int(np.argmax(departing)) + 1
     both = np.flatnonzero(~run.closed.any(axis=1))
     opened = (int(both[0]) + 1, int(both[-1]) + 1) if len(both) else None
-    first = min(firsts, default=1 if "springs-factor" in causes else None)
-    certain = tuple(name for name in causes if not name.endswith("?"))
-    telling_steps = int(telling.sum())
     result = ContactFinding(
-        certain, values, sound, best == "lagged", shares, telling_steps, normal, tolerance, first, opened
+        causes=certain,
+        values=values,
+        explained=sound,
+        lagged=best == "lagged",
+        shares=chosen.shares,
+        telling=telling,
+        normal=normal,
+        tolerance=chosen.tolerance,
+        first=first,
+        opened=opened,
     )
     return result, (weight, softness)
 
 
-@dataclass(frozen=True, eq=False)
 class _FollowedBody:
     """A motion followed by both laws: the steps in which each holds, and how often."""
 
-    body: Body
-    runs: dict[str, Followed]
-    right: dict[str, np.ndarray]
-    shares: dict[str, float]
-    tolerance: float
-
-    @classmethod
-    def of(cls, body: Body, time: TimeSection, place: Array, rounding: Array) -> _FollowedBody:
-        """Follow it."""
+    def __init__(self, body: Body, time: TimeSection, place: Array, rounding: Array) -> None:
+        self.body = body
         motion = motion_of(place, time, body)
-        runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
-        tolerance = max(CLOSE, _digits(time, body, rounding, runs["consistent"]))
-        right = {name: _right(body, run, tolerance) for name, run in runs.items()}
-        shares = {name: float(np.mean(is_right[runs[name].settled])) for name, is_right in right.items()}
-        return cls(body, runs, right, shares, tolerance)
+        self.runs = {name: follow(body, motion, name == "lagged") for name in ("consistent", "lagged")}
+        (plain, _) = self.runs.values()
+        limit = body.coefficient * plain.scale + body.cohesion or 1.0
+        # what printed digits leave of a force: those of random ones
+        random = np.random.default_rng(0).uniform(-0.5, 0.5, rounding.shape) * rounding
+        shaken = motion_of(random, time, replace(body, load=np.zeros(2)))
+        self.tolerance = max(CLOSE, NOISE * body.mass * float(np.std(shaken.acceleration)) / limit)
+        # the limit at each step, of the larger resultant there or a step before, or of the mean
+        normal = plain.motion_forces[:, 1]
+        pressed = np.maximum(normal, np.concatenate(([0.0], normal[:-1])))
+        self.limits = body.coefficient * np.maximum(pressed, plain.scale) + body.cohesion
+        self.right = {
+            name: np.abs(run.law_forces - run.motion_forces)[:, 0] <= self.tolerance * self.limits
+            for name, run in self.runs.items()
+        }
+        self.shares = {name: float(np.mean(self.right[name][run.settled])) for name, run in self.runs.items()}
+
+    @property
+    def telling(self) -> np.ndarray:
+        """Steps in which the two laws ask for forces that digits tell apart."""
+        first, second = self.runs.values()
+        apart = np.abs(first.law_forces - second.law_forces)[:, 0] > 3 * self.tolerance * self.limits
+        return np.asarray(apart & first.settled & second.settled)
+
+    def deep(self, run: Followed) -> np.ndarray:
+        """Return the steps and corners that are open although the springs are pressed."""
+        pressed = run.scale / (2 * self.body.stiffness)
+        return np.asarray(~run.closed & (-run.gap > DEEP * pressed) & run.settled[:, None])
+
+
+def _law(right: dict[str, np.ndarray], telling: np.ndarray, scene_rules: str) -> str:
+    """Return the law that holds where two differ; the scene's own where nothing tells them apart."""
+    if telling.sum() < FEWEST:
+        return scene_rules
+    shares = {name: float(np.mean(is_right[telling])) for name, is_right in right.items()}
+    best = max(shares, key=lambda name: shares[name])
+    return best if min(shares.values()) <= FEW_RIGHT else scene_rules
 
 
 def _fitted(body: Body, time: TimeSection, place: Array) -> tuple[float, float]:
@@ -210,56 +242,6 @@ def _compliance(scene: Scene, softness: float) -> float:
     width, height = size(scene)
     springs, block = 1 / (2 * scene.contact.stiffness), height / (4 * moduli(scene)[0] * width)
     return springs * math.expm1(softness) / (springs + block)
-
-
-def _digits(time: TimeSection, body: Body, rounding: Array, run: Followed) -> float:
-    """Return what printed digits leave of a force, over the limit of friction: those of random ones."""
-    random = np.random.default_rng(0).uniform(-0.5, 0.5, rounding.shape) * rounding
-    shaken = motion_of(random, time, replace(body, load=np.zeros(2)))
-    return NOISE * body.mass * float(np.std(shaken.acceleration)) / _limit(body, run)
-
-
-def _limit(body: Body, run: Followed) -> float:
-    return body.coefficient * run.scale + body.cohesion or 1.0
-
-
-def _limits(body: Body, run: Followed) -> Array:
-    """Return the limit of friction at each step, of the larger resultant there or a step before, or of the mean [N]."""
-    pressed = np.maximum(run.motion_forces[:, 1], np.concatenate(([0.0], run.motion_forces[:-1, 1])))
-    return np.asarray(body.coefficient * np.maximum(pressed, run.scale) + body.cohesion)
-
-
-def _right(body: Body, run: Followed, tolerance: float) -> np.ndarray:
-    """Return the steps in which a law gives the force that the motion shows."""
-    return np.asarray(np.abs(run.law_forces - run.motion_forces)[:, 0] <= tolerance * _limits(body, run))
-
-
-def _telling(body: Body, runs: dict[str, Followed], tolerance: float) -> np.ndarray:
-    """Return the steps in which two laws ask for forces that digits tell apart."""
-    first, second = runs.values()
-    apart = np.abs(first.law_forces - second.law_forces)[:, 0] > 3 * tolerance * _limits(body, first)
-    return np.asarray(apart & first.settled & second.settled)
-
-
-def _law(right: dict[str, np.ndarray], telling: np.ndarray, scene_rules: str) -> str:
-    """Return the law that holds where two differ; the scene's own where nothing tells them apart."""
-    if telling.sum() < FEWEST:
-        return scene_rules
-    shares = {name: float(np.mean(is_right[telling])) for name, is_right in right.items()}
-    best = max(shares, key=lambda name: shares[name])
-    return best if min(shares.values()) <= FEW_RIGHT or best == scene_rules else scene_rules
-
-
-def _deep(body: Body, run: Followed) -> np.ndarray:
-    """Return the steps and corners that are open although the springs are pressed."""
-    pressed = run.scale / (2 * body.stiffness)
-    return np.asarray(~run.closed & (-run.gap > DEEP * pressed) & run.settled[:, None])
-
-
-def _band(body: Body, run: Followed) -> float:
-    """Return the penetration beyond which an open corner closes [m]; zero without a dead band."""
-    deep = _deep(body, run)
-    return float(np.max(-run.gap[deep])) if deep.sum() >= FEWEST else 0.0
 
 
 def _causes(

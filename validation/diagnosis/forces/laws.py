@@ -11,8 +11,9 @@ gaps and slides of both corners are known at every step, and with them the force
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,6 +55,10 @@ class Body:
     def heavier(self, weight: float) -> Body:
         """Return it under a share of its own weight as well, which acts across the base."""
         return replace(self, load=self.load - np.array([0.0, weight * STANDARD * self.mass]))
+
+    def limit(self, normal: float) -> float:
+        """Return the limit of friction of a corner under a normal force [N]."""
+        return self.coefficient * max(normal, 0.0) + self.cohesion
 
     def softer(self, softness: float) -> Body:
         """Return it on a base that lets the normal springs be stiff by exp(-softness) only."""
@@ -100,13 +105,14 @@ def motion_of(place: Array, time: TimeSection, body: Body) -> Motion:
     A1 = (D1 - D0 - gg dt V0 - dt^2 (1/2 - alpha) A0) / (alpha dt^2), from rest.
     """
     dt, gg, alpha, delta = time.step, time.discount, time.alpha, time.delta
-    D, V = np.zeros(2), np.zeros(2)
-    A = body.load / body.mass if time.start == "consistent" else np.zeros(2)
+    D = V = np.zeros(2)
+    A = body.load / body.mass * (time.start == "consistent")
     accelerations = np.empty_like(place)
     for n, there in enumerate(place):
         A1 = (there - D - gg * dt * V - dt**2 * (0.5 - alpha) * A) / (alpha * dt**2)
         V = gg * V + dt * ((1 - delta) * A + delta * A1)
-        D, A, accelerations[n] = there, A1, A1
+        D = there
+        A = accelerations[n] = A1
     return Motion(time, place, accelerations)
 
 
@@ -127,15 +133,7 @@ class Followed:
         return float(np.mean(np.abs(self.motion_forces[:, 1]))) or 1.0
 
 
-class _Corner:
-    """State, reference [m], and normal force [N], slide and gap [m] of the step before."""
-
-    def __init__(self) -> None:
-        self.state, self.reference, self.normal, self.slide, self.gap = STICK, 0.0, 0.0, 0.0, 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class _StepEnd:
+class _StepEnd(NamedTuple):
     """The end of a step: closed corners, their gaps and slides [m], normal forces [N], and the internal unknowns."""
 
     closed: Closed
@@ -146,44 +144,7 @@ class _StepEnd:
     acceleration: Array
 
 
-def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
-    """Follow a motion with a law of friction.
-
-    Parameters
-    ----------
-    lagged
-        Whether a slipping corner has the friction of the step before, and forgets its shear.
-    """
-    observer, corners = _Observer(body, motion), (_Corner(), _Corner())
-    resultants, rows, before = motion.forces(body), [], CLOSED[0]
-    for place, force in zip(motion.place, resultants, strict=True):
-        shears = tuple(_sliding_force(body, corner) for corner in corners)
-        for _ in range(TRIES):
-            end = observer.step(place, force, corners, shears, before)
-            responses = [_corner_response(body, corner, end, c, lagged) for c, corner in enumerate(corners)]
-            new_shears = tuple(response.slip_force for response in responses)
-            if lagged or new_shears == shears:
-                break
-            shears = new_shears
-        observer.accept(end)
-        unbalanced = force[0] - sum(response.force for response in responses)
-        sticks = [response for response in responses if response.force and response.slip_force is None]
-        for c, (corner, response) in enumerate(zip(corners, responses, strict=True)):
-            corner.state, corner.reference = response.state, response.reference
-            corner.normal, corner.slide, corner.gap = end.normal[c], end.slide[c], end.gap[c]
-            # what the law leaves is taken for a reference that is off
-            if response in sticks and response.state == STICK:
-                corner.reference += unbalanced / (body.shear * len(sticks))
-        springs = -body.stiffness * sum(end.gap[c] for c in (0, 1) if end.closed[c])
-        slips = any(response.slip_force is not None for response in responses)
-        rows.append((force[0] - unbalanced, springs, end.gap, end.closed, end.closed == before, slips))
-        before = end.closed
-    columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return Followed(resultants, np.column_stack(columns[:2]), *columns[2:])
-
-
-@dataclass(frozen=True)
-class _CornerResponse:
+class _Response(NamedTuple):
     """What a law asks of a corner: its shear force [N], `slip_force` where it slips, and its state after the step."""
 
     force: float
@@ -192,137 +153,175 @@ class _CornerResponse:
     reference: float  # m
 
 
-def _sliding_force(body: Body, corner: _Corner) -> float | None:
+def follow(body: Body, motion: Motion, lagged: bool) -> Followed:
+    """Follow a motion with a law of friction.
+
+    Parameters
+    ----------
+    lagged
+        Whether a slipping corner has the friction of the step before, and forgets its shear.
+    """
+    observer = _Observer(body, motion)
+    at_rest = _Response(0.0, None, STICK, 0.0)
+    corners = [at_rest, at_rest]
+    resultants = motion.forces(body)
+    rows = []
+    for place, force in zip(motion.place, resultants, strict=True):
+        before = observer.end
+        shears = [_sliding_force(body, corner.state, before.normal[c]) for c, corner in enumerate(corners)]
+        for _ in range(TRIES):
+            end = observer.step(place, force, corners, shears)
+            responses = [_response(body, corner, before, end, c, lagged) for c, corner in enumerate(corners)]
+            slip_forces = [response.slip_force for response in responses]
+            if lagged or slip_forces == shears:
+                break
+            shears = slip_forces
+        observer.accept(end)
+        unbalanced = force[0] - sum(response.force for response in responses)
+        sticks = [response for response in responses if response.force and response.slip_force is None]
+        corners = [
+            # what the law leaves is taken for a reference that is off
+            corner._replace(reference=corner.reference + unbalanced / (body.shear * len(sticks)))
+            if corner in sticks and corner.state == STICK
+            else corner
+            for corner in responses
+        ]
+        springs = -body.stiffness * sum(end.gap[c] for c in (0, 1) if end.closed[c])
+        slips = any(response.slip_force is not None for response in responses)
+        rows.append((force[0] - unbalanced, springs, end.gap, end.closed, end.closed == before.closed, slips))
+    columns = [np.array(column) for column in zip(*rows, strict=True)]
+    return Followed(resultants, np.column_stack(columns[:2]), *columns[2:])
+
+
+def _sliding_force(body: Body, state: int, normal: float) -> float | None:
     """Return the shear force of a corner that slips on as in the step before, None if it sticks or is open."""
-    if abs(corner.state) <= STICK:
+    if abs(state) <= STICK:
         return None
-    return math.copysign(body.coefficient * max(corner.normal, 0.0) + body.cohesion, corner.state)
+    return math.copysign(body.limit(normal), state)
 
 
-def _corner_response(body: Body, corner: _Corner, end: _StepEnd, c: int, lagged: bool) -> _CornerResponse:
+def _response(body: Body, corner: _Response, before: _StepEnd, end: _StepEnd, c: int, lagged: bool) -> _Response:
     """Return what a law asks of a corner at the end of a step."""
-    slide, gap = end.slide[c], end.gap[c]
+    slide = end.slide[c]
+    gap = end.gap[c]
     if not end.closed[c]:
-        return _CornerResponse(0.0, None, OPEN, slide)
-    state, reference = corner.state, corner.reference
+        return _Response(0.0, None, OPEN, slide)
+    state = corner.state
+    reference = corner.reference
     if state == OPEN:  # it has touched down where the gap was crossed
-        past = corner.gap / (corner.gap - gap) if corner.gap > 0 > gap else 0.0
-        state, reference = STICK, corner.slide + past * (slide - corner.slide)
+        past = before.gap[c] / (before.gap[c] - gap) if before.gap[c] > 0 > gap else 0.0
+        state = STICK
+        reference = before.slide[c] + past * (slide - before.slide[c])
+    if lagged and state != STICK:
+        late = _sliding_force(body, state, before.normal[c])
+        if state * (slide - before.slide[c]) > 0:  # it has turned round: it sticks from where the step began
+            return _Response(late or 0.0, late, STICK, before.slide[c])
+        return _Response(late or 0.0, late, state, slide)
     shear = -body.shear * (slide - reference)
-    limit = body.coefficient * max(end.normal[c], 0.0) + body.cohesion
-    if not lagged:
-        if abs(shear) <= limit:
-            return _CornerResponse(shear, None, STICK, reference)
-        slip_force = math.copysign(limit, shear)
-        return _CornerResponse(slip_force, slip_force, int(math.copysign(2, shear)), slide + slip_force / body.shear)
-    if state == STICK:
-        if abs(shear) <= limit:
-            return _CornerResponse(shear, None, STICK, reference)
-        return _CornerResponse(shear, None, int(math.copysign(2, shear)), slide)
-    late = _sliding_force(body, corner)
-    if state * (slide - corner.slide) <= 0:
-        return _CornerResponse(late or 0.0, late, state, slide)
-    return _CornerResponse(
-        late or 0.0, late, STICK, corner.slide
-    )  # it has turned round: it sticks from where the step began
+    limit = body.limit(end.normal[c])
+    if abs(shear) <= limit:
+        return _Response(shear, None, STICK, reference)
+    sliding = int(math.copysign(2, shear))
+    if lagged:
+        return _Response(shear, None, sliding, slide)
+    slip_force = math.copysign(limit, shear)
+    return _Response(slip_force, slip_force, sliding, slide + slip_force / body.shear)
 
 
 class _Observer:
     """Rotation and strains that a motion must have had, (r, ex, ey, gxy)."""
 
     def __init__(self, body: Body, motion: Motion) -> None:
-        self.body, self.time = body, motion.time
+        self.body = body
+        self.time = motion.time
         self.scale = float(np.mean(np.abs(motion.forces(body)[:, 1])))
         self.e = self.time.alpha * self.time.step**2
-        self.plain = body.inertia + self.e * body.elastic
-        self.x, self.V = np.zeros(4), np.zeros(4)
-        self.A = np.linalg.solve(body.inertia, body.internal) if self.time.start == "consistent" else np.zeros(4)
+        self.V = np.zeros(4)
+        A = np.asarray(
+            np.linalg.solve(body.inertia, body.internal) * (self.time.start == "consistent"), dtype=np.float64
+        )
+        self.end = _StepEnd(CLOSED[0], np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(4), A)
         self.inverses: dict[tuple[bool, ...], Array] = {}
 
     def step(
-        self, place: Array, force: Array, corners: Sequence[_Corner], shears: Sequence[float | None], before: Closed
+        self, place: Array, force: Array, corners: Sequence[_Response], shears: Sequence[float | None]
     ) -> _StepEnd:
         """Return the end of the next step.
 
         Those corners are closed whose springs come nearest to the normal resultant. The sum of the shear forces is
         known; `shears` says how corners share it that slip, the others follow their springs.
         """
-        t, dt, body = self.time, self.time.step, self.body
-        ahead = self.x + t.discount * dt * self.V + dt * dt * (0.5 - t.alpha) * self.A
+        t = self.time
+        body = self.body
+        before = self.end.closed
+        normal = force[1]
+        ahead = self.end.unknowns + t.discount * t.step * self.V + t.step**2 * (0.5 - t.alpha) * self.end.acceleration
         # resultants at the middle of the base
-        loads = body.internal + force[0] * body.along.mean(axis=0) + force[1] * body.across.mean(axis=0)
+        loads = body.internal + force[0] * body.along.mean(axis=0) + normal * body.across.mean(axis=0)
         right = body.inertia @ ahead + self.e * loads
-        closed, (x, gap) = before, self._end(right, before, place, force, corners, shears)
-        if self._off(before, gap, force[1]) > NEAR * self.scale:
-            ends = {closed: self._end(right, closed, place, force, corners, shears) for closed in CLOSED}
-            closed = self._nearest(ends, before, force[1])
-            x, gap = ends[closed]
-        A = (x - ahead) / self.e
-        if sum(closed) == 1:
-            x, gap = self._turned(closed.index(True), x, gap, place, force[1])
-        slide = place[0] + body.along @ x
-        return _StepEnd(closed, gap, slide, self._shared(closed, gap, force[1]), x, A)
 
-    def _nearest(self, ends: Mapping[Closed, tuple[Array, Array]], before: Closed, normal: float) -> Closed:
-        """Return the closed corners that fit the normal resultant; of two that do so alike, those nearer to before."""
-        off = {closed: self._off(closed, gap, normal) for closed, (_, gap) in ends.items()}
-        near = [closed for closed in CLOSED if off[closed] <= max(2 * min(off.values()), NEAR * self.scale)]
-        return min(near, key=lambda closed: (sum(a != b for a, b in zip(closed, before, strict=True)), off[closed]))
+        def end(closed: Closed) -> tuple[Array, Array, float]:
+            """Return unknowns, gaps, and how far the springs are from the normal resultant."""
+            x = self._unknowns(right, closed, place, normal, corners, shears)
+            gap = place[1] + body.across @ x
+            pulls = sum(max(gap[c], 0.0) for c in (0, 1) if closed[c])
+            springs = -sum(gap[c] for c in (0, 1) if closed[c])
+            return x, gap, float(abs(body.stiffness * springs - normal) + body.stiffness * pulls)
+
+        closed = before
+        x, gap, off = end(before)
+        if off > NEAR * self.scale:
+            ends = {corners_closed: end(corners_closed) for corners_closed in CLOSED}
+            least = min(off for _, _, off in ends.values())
+            near = [closed for closed, (_, _, off) in ends.items() if off <= max(2 * least, NEAR * self.scale)]
+            # of two that fit alike those nearer to what was closed before
+            closed = min(near, key=lambda one: (sum(a != b for a, b in zip(one, before, strict=True)), ends[one][2]))
+            x, gap, _ = ends[closed]
+        A: Array = (x - ahead) / self.e
+        if sum(closed) == 1:  # the block is turned to where its one spring gives the normal resultant
+            c = closed.index(True)
+            x += np.array([(-normal / body.stiffness - gap[c]) / body.x[c], 0.0, 0.0, 0.0])
+            gap = place[1] + body.across @ x
+        half = body.stiffness * (gap[1] - gap[0]) / 2
+        shared = np.where(closed, normal, 0.0)
+        if all(closed):
+            shared = np.array([normal / 2 + half, normal / 2 - half])
+        return _StepEnd(closed, gap, place[0] + body.along @ x, shared, x, A)
 
     def accept(self, end: _StepEnd) -> None:
         """Move to the end of a step."""
         t = self.time
-        self.V = t.discount * self.V + t.step * ((1 - t.delta) * self.A + t.delta * end.acceleration)
-        self.x, self.A = end.unknowns, end.acceleration
+        rate = (1 - t.delta) * self.end.acceleration + t.delta * end.acceleration
+        self.V = t.discount * self.V + t.step * rate
+        self.end = end
 
-    def _turned(self, c: int, x: Array, gap: Array, place: Array, normal: float) -> tuple[Array, Array]:
-        """Return unknowns and gaps once the block is turned to where its one spring gives the normal resultant."""
-        off = (-normal / self.body.stiffness - gap[c]) / self.body.x[c]
-        x = x + np.array([off, 0.0, 0.0, 0.0])
-        return x, place[1] + self.body.across @ x
-
-    def _off(self, closed: Closed, gap: Array, normal: float) -> float:
-        pulls = sum(max(gap[c], 0.0) for c in (0, 1) if closed[c])
-        springs = -sum(gap[c] for c in (0, 1) if closed[c])
-        return float(abs(self.body.stiffness * springs - normal) + self.body.stiffness * pulls)
-
-    def _end(
+    def _unknowns(
         self,
         right: Array,
         closed: Closed,
         place: Array,
-        force: Array,
-        corners: Sequence[_Corner],
+        normal: float,
+        corners: Sequence[_Response],
         shears: Sequence[float | None],
-    ) -> tuple[Array, Array]:
-        """Return the unknowns and the gaps at the end of a step for some closed corners."""
-        right, body = right.copy(), self.body
+    ) -> Array:
+        """Return the unknowns at the end of a step for some closed corners."""
+        right = right.copy()
+        body = self.body
         stuck = tuple(closed[c] and shears[c] is None for c in (0, 1))
         if sum(closed) == 1:
-            right += self.e * force[1] * body.x[closed.index(True)] * BOTH
+            right += self.e * normal * body.x[closed.index(True)] * BOTH
         for c, corner in enumerate(corners):
             if stuck[c]:
                 right[1] -= self.e * body.shear * body.x[c] * (place[0] - corner.reference)
             elif closed[c]:
                 right[1] += self.e * body.x[c] * (shears[c] or 0.0)
-        x = self._inverse(closed, stuck) @ right
-        return x, place[1] + self.body.across @ x
-
-    def _inverse(self, closed: Closed, stuck: tuple[bool, ...]) -> Array:
         key = (*closed, *stuck)
         if key not in self.inverses:
-            S, body = self.plain.copy(), self.body
+            S = body.inertia + self.e * body.elastic
             if all(closed):
                 S += self.e * body.stiffness * (body.x[1] - body.x[0]) ** 2 / 2 * np.outer(BOTH, BOTH)
             for c in (0, 1):
                 if stuck[c]:
                     S[1] += self.e * body.shear * body.x[c] * body.along[c]
             self.inverses[key] = np.asarray(np.linalg.inv(S), dtype=np.float64)
-        return self.inverses[key]
-
-    def _shared(self, closed: Closed, gap: Array, normal: float) -> Array:
-        """Return the normal forces of the corners [N]."""
-        if not all(closed):
-            return np.where(closed, normal, 0.0)
-        half = -self.body.stiffness * (gap[1] - gap[0]) / 2
-        return np.array([normal / 2 - half, normal / 2 + half])
+        return self.inverses[key] @ right

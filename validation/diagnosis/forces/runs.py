@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, significant, white
-from validation.diagnosis.fits.fit import NAMED, NORMAL_95
+from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import (
@@ -23,10 +23,12 @@ from validation.diagnosis.one_change import (
     Residual,
     alike,
     fitted,
+    fixed,
     nearest,
     nearest_start,
     of_discount,
     of_numbers,
+    of_schemes,
 )
 from validation.diagnosis.reading import SAME_STEP, SIDEWAYS
 from validation.errors import InputError
@@ -244,8 +246,9 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
         tuple(map(math.log, FACTORS)),
     )
     changes = [*of_numbers(scene, FACTORS), normal_springs, of_discount(scene, DISCOUNTS)]
-    width = body_of(scene).x[1] - body_of(scene).x[0]
-    limit = body_of(scene).coefficient * abs(float(body_of(scene).load[1])) / 2
+    body = body_of(scene)
+    width = body.x[1] - body.x[0]
+    limit = body.coefficient * abs(float(body.load[1])) / 2
     changes.append(
         CandidateChange(
             "cohesion",
@@ -255,28 +258,10 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
             tuple(math.log(share * limit / (width / 2)) for share in COHESIONS if limit > 0),
         )
     )
-    if scene.contact.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
-        lagged: Values = {"contact.rules": "lagged"}
-        changes.append(_fixed("lagged-friction", "friction lags", lagged))
-    return [*changes, *_schemes(scene)]
-
-
-def _schemes(scene: Scene) -> list[CandidateChange[Values]]:
-    """Return the other named schemes and starts, which have no number."""
-    t, schemes = scene.time, []
-    for name, (alpha, delta) in NAMED.items():
-        for start in ("zero", "consistent"):
-            same = (alpha, delta) == (t.alpha, t.delta)
-            if alpha == 0 or (same and start == t.start):
-                continue
-            values: Values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
-            words = f"the initial acceleration is {start}" if same else f"the scheme is {name}, start {start}"
-            schemes.append(_fixed("start" if same else "scheme", words, values))
-    return schemes
-
-
-def _fixed(name: str, words: str, values: Values) -> CandidateChange[Values]:
-    return CandidateChange(name, lambda _: words, float, lambda _: values)
+    if c.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
+        changes.append(fixed("lagged-friction", "friction lags", {"contact.rules": "lagged"}))
+    schemes = [scheme for scheme in of_schemes(scene) if scheme.changed(0.0)["time.alpha"]]
+    return [*changes, *schemes]
 
 
 def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange | None, list[OneChange]]:
@@ -289,7 +274,7 @@ def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange |
     place, rounding
         Displacements along and across the base at every step, and units of their last digits [m], (steps, 2).
     """
-    size = np.maximum(np.max(np.abs(place), axis=0), np.finfo(float).tiny)
+    size = _size(place)
 
     def residual_over(steps: int, change: CandidateChange[Values]) -> Residual:
         short = scene.with_values({"time.steps": steps})
