@@ -9,16 +9,16 @@ An entry ``[[gate]]`` says what is judged, by which band, and why::
     band = [0.0, 1e-9]                    # or the name of a function of the module
     reason = "why these edges"
 
-``cases`` in place of ``scenes`` names a function of the module that returns them, ``scene`` what is no case but the
-owner of a derived row. The function of a band takes the case, if there is one, and returns the edges, or edges by
+``cases`` in place of ``scenes`` names a function of the module that returns them, ``owners`` what are no cases but
+the owners of derived rows. The function of a band takes the case, if there is one, and returns the edges, or edges by
 metric, of which ``metrics`` picks some, or None where nothing is judged. ``value`` names a function whose value the
 reason holds, as ``{:.3g}``.
 
 Numbers that somebody printed stand by case and metric, ``numbers."CASE"."METRIC" = "1.250"``: a text is rounded in its
 last digit, half a unit of which is the half width of the band and the uncertainty of the reference; a number is exact.
-``scale`` multiplies both, ``start`` is added to the value, ``half`` is there in place of the last digit; ``rounding``
-times the value, and ``slack``, widen the band alone, ``above`` its upper edge. Scale, start, slack and above are
-numbers or functions of the case. All other keys are those of a `Gate`.
+``scale`` multiplies both, ``start`` is added to the value, ``half`` is there in place of the last digit, ``widen``
+multiplies it in the band; ``rounding`` times the value, and ``slack``, widen the band alone, ``above`` its upper edge.
+Scale, start, slack and above are numbers or functions of the case. All other keys are those of a `Gate`.
 
 An entry ``[[row]]`` is a row that a function of the module computes from each history of a solver.
 """
@@ -60,6 +60,7 @@ def _printed(entry: dict[str, Any], module: str) -> Iterator[dict[str, Any]]:
     numbers = entry.pop("numbers")
     given_half = entry.pop("half", None)
     rounding = entry.pop("rounding", 0.0)
+    widen = entry.pop("widen", 1.0)
     terms = {"scale": 1.0, "start": 0.0, "slack": 0.0, "above": 0.0}
     terms |= {name: entry.pop(name) for name in terms if name in entry}
     for scene, texts in numbers.items():
@@ -67,7 +68,7 @@ def _printed(entry: dict[str, Any], module: str) -> Iterator[dict[str, Any]]:
         for metric, text in texts.items():
             value = start + scale * float(text)
             half = scale * (half_unit(text) if given_half is None else given_half)
-            low, high = about(value, half + rounding * abs(value) + slack)
+            low, high = about(value, widen * half + rounding * abs(value) + slack)
             judged = {"scene": scene, "metric": metric, "low": low, "high": high + above}
             yield {"reference_kind": OTHER, "reference_uncertainty": half} | entry | judged
 
@@ -87,7 +88,8 @@ def _banded(entry: dict[str, Any], module: str) -> Iterator[dict[str, Any]]:
     value = entry.pop("value", None)
     formulas = vars(sys.modules[module])
     subjects: list[tuple[str, tuple[Scene, ...]]]
-    subjects = [(case.name, (case,)) for case in declared_cases(entry, module)] or [(entry["scene"], ())]
+    subjects = [(name, ()) for name in entry.pop("owners", ())]
+    subjects += [(case.name, (case,)) for case in declared_cases(entry, module)]
     for scene, case in subjects:
         edges = formulas[band](*case) if isinstance(band, str) else band
         if edges is None:
