@@ -13,10 +13,10 @@ from validation.gates.gate import Status
 from validation.problems.boxes import box_problems
 from validation.results import Results
 from validation.solvers import registry
-from validation.studies.engines import cells, predictions, programs, study
+from validation.studies.engines import cells, predictions, study
 from validation.studies.engines.cells import Point, finding, from_where
 from validation.studies.engines.table import EngineTable, read
-from validation.studies.field import programs as field_programs
+from validation.studies.field import programs
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS
 
 TOY = """
@@ -68,7 +68,7 @@ def brought(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "toys.py").write_text(TOY)
     monkeypatch.syspath_prepend(tmp_path)
     found = {"box2d": "toys:Toy", "box2d-default": "toys:Soft", "pymunk": "toys:Absent", "mine": "toys:Diverges"}
-    for room in (registry, field_programs, programs):
+    for room in (registry, programs):
         monkeypatch.setattr(room, "entry_points", lambda: found)
 
 
@@ -174,8 +174,8 @@ def test_a_program_that_falls_otherwise_than_its_integrator_is_seen(
     brought: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Both toys are symplectic Euler, and neither is Box2D, which makes four parts of a step."""
-    falls = [predictions.Fall(name, lead, "why") for name, lead in (("box2d", 1.0), ("box2d-default", 0.25))]
-    monkeypatch.setattr(predictions, "FALLS", (*falls, predictions.Fall("mujoco", 1.0, "why")))
+    falls = {"box2d": (1.0, "why"), "box2d-default": (0.25, "why"), "mujoco": (1.0, "why")}
+    monkeypatch.setattr(predictions, "FALLS", falls)
     gates, table = run(("bouncing",), tmp_path, monkeypatch)
     assert gates["rigid-bouncing box2d falls"] is Status.PASS
     assert gates["rigid-bouncing box2d-default falls"] is Status.FAIL

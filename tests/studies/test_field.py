@@ -14,7 +14,7 @@ from validation.problems.problem import PREFIX
 from validation.results import Results
 from validation.runs.run import Outcome
 from validation.solvers import registry
-from validation.studies.field import programs, scenes
+from validation.studies.field import answered, cells, programs, scenes
 from validation.studies.field import study as module
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, read
 
@@ -37,11 +37,8 @@ def brought(monkeypatch, tmp_path):
 
 def run(problems, tmp_path, monkeypatch):
     """Run the study over some problems."""
-    for room in (module, scenes, module.predictions):
+    for room in (module, scenes, cells):
         monkeypatch.setattr(room, "FIELD_PROBLEMS", problems)
-    from validation.studies.field import cells
-
-    monkeypatch.setattr(cells, "FIELD_PROBLEMS", problems)
     whole = module.study()
     gates = [gate for gate in whole.gates() if gate.scene in {f"field-{name}" for name in problems} | {"field"}]
     results = Results(tmp_path / "results")
@@ -70,14 +67,14 @@ def test_the_table_of_one_problem(brought, tmp_path, monkeypatch) -> None:
     assert cell["mine"].numbers[0].exact == pytest.approx(54.84, rel=1e-3)
 
 
-def answered(*runs: tuple[Outcome, str]):
+def counted(*runs: tuple[Outcome, str]):
     """Return the row on how many problems were answered, of runs that ended so."""
     rows = {}
-    for problem, (outcome, note) in zip(module.predictions.FIELD_PROBLEMS, runs, strict=False):
+    for problem, (outcome, note) in zip(module.FIELD_PROBLEMS, runs, strict=False):
         name = f"{PREFIX}{problem}"
         rows[name, "siconos-default"] = made_row("siconos-default", {}, name, outcome=outcome, notes=(note,))
-    compute = module.predictions._answered("siconos-default", "apt-get install python3-siconos")
-    return compute(Finished(rows, None))
+    program = programs.Program("siconos-default", "Siconos, as it comes", "apt-get install python3-siconos")
+    return answered.answered(program, [f"{PREFIX}{problem}" for problem in module.FIELD_PROBLEMS])(Finished(rows, None))
 
 
 def test_a_program_that_is_missing_behind_an_adapter_that_refuses_problems_is_not_run() -> None:
@@ -86,9 +83,9 @@ def test_a_program_that_is_missing_behind_an_adapter_that_refuses_problems_is_no
     missing = (Outcome.NOT_APPLICABLE, "Siconos is not installed: apt-get install python3-siconos")
     for runs in ((refused, missing, refused), (missing, missing)):
         with pytest.raises(NothingToDerive, match="not installed"):
-            answered(*runs)
-    assert answered(refused, (Outcome.RAISED, "it ended")) == {"problems answered": 0.0}
-    assert answered((Outcome.COMPLETED, ""), missing) == {"problems answered": 1.0}
+            counted(*runs)
+    assert counted(refused, (Outcome.RAISED, "it ended")) == {"problems answered": 0.0}
+    assert counted((Outcome.COMPLETED, ""), missing) == {"problems answered": 1.0}
 
 
 @pytest.mark.long

@@ -22,7 +22,8 @@ from validation.engine.measure import execute
 from validation.metrics.catalogue import pair
 from validation.runs.history import History
 from validation.scenes.scene import Scene
-from validation.studies.opening import OPENING, half_unit
+from validation.studies.bands import half_unit
+from validation.studies.opening import OPENING
 
 
 def pressed(found: Any) -> Any:
@@ -76,10 +77,11 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
 
 
 @pytest.mark.parametrize(
-    ("value", "half"), [(-0.04033057058886, 5e-15), (3514046.36162, 5e-6), (-0.0052, 0.0), (1e7, 0.0)]
+    ("printed", "half"),
+    [("-0.04033057058886", 5e-15), ("3514046.36162", 5e-6), ("-9.871e-3", 5e-7), ("41", 0.5), (1e7, 0.0)],
 )
-def test_the_uncertainty_of_a_printed_number_is_half_a_unit_of_its_last_digit(value: float, half: float) -> None:
-    assert half_unit(value) == pytest.approx(half, rel=1e-9)
+def test_the_uncertainty_of_a_printed_number_is_half_a_unit_of_its_last_digit(printed: str, half: float) -> None:
+    assert half_unit(printed) == pytest.approx(half, rel=1e-9)
 
 
 # ---- orders of the pairs beside those of the study's gates -----------------------------------------------------------

@@ -69,7 +69,7 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.gates(), FAULTS, tmp_path, finished_cases)
+    check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.STUDY.gates(), FAULTS, tmp_path, finished_cases)
 
 
 def test_the_record_of_the_shaking_is_its_formula() -> None:
@@ -92,6 +92,11 @@ def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Sta
     return {gate.id: evaluate(gate, derived).status for gate in gates}
 
 
+def gates_of(*scenes: str) -> list[Gate]:
+    """Return the gates of the study of creep on some scenes."""
+    return [gate for gate in creep.STUDY.gates() if gate.scene.partition("[")[0] in scenes]
+
+
 COARSE = "creep-steps[time.step=0.01"
 CREEP = [
     Fault("friction consistent", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "consistent")),
@@ -102,8 +107,7 @@ CREEP = [
 def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    gates = [g for g in creep.step_gates() if g.scene.startswith(COARSE)]
-    gates += [g for g in creep.lagged_gates() if g.pair[0] == "at 10 ms"]
+    gates = [g for g in gates_of(creep.STEPS, creep.LAGGED) if g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"]
     names = {creep.STEPS, creep.LAGGED}
     sound = judged(gates, names, tmp_path / "sound")
     assert set(sound.values()) == {Status.PASS}
@@ -119,7 +123,7 @@ def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
 
 @pytest.mark.long
 def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    exact = list(creep.exact_gates())
+    exact = gates_of(creep.EXACT)
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
     own = [case for case in creep.STUDY.cases() if case.scene.name.startswith(creep.EXACT)]
     check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
@@ -150,14 +154,14 @@ SPRINGS = [
 
 @pytest.mark.long
 def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    gates = list(creep.stiffness_gates())
+    gates = gates_of(creep.STIFFNESS, creep.DAMPED)
     own = [case for case in creep.STUDY.cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
     check_kill_matrix(creep.STUDY, own, gates, SPRINGS, tmp_path, finished_cases)
 
 
 @pytest.mark.long
 def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    gates = [*creep.step_gates(), *creep.lagged_gates(), *creep.order_gates()]
+    gates = gates_of(creep.STEPS, creep.LAGGED, *creep.REFINED)
     others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
     own = [case for case in creep.STUDY.cases() if not case.scene.name.startswith(others)]
     soft = next(fault for fault in SPRINGS if fault.name == "springs a thousandth soft")

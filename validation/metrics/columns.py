@@ -10,7 +10,6 @@ from validation.runs.history import PRESSURE, Array
 from validation.runs.row import Value
 
 SETTLED = 0.01  # of the static value
-FINELY = 1e-4  # of the static value: a contact that rings shows here, long after it has settled to one per cent
 NOISE = 1e-9  # of the largest pressure; less is rounding, not tension
 
 
@@ -33,35 +32,18 @@ def minimum(m: Measurable, column: str) -> Value:
     return NOT_REPORTED if x is None else float(np.min(x))
 
 
-def peak(m: Measurable, column: str) -> Value:
-    """Largest value of the first excursion beyond the static value."""
-    return _at_first_peak(m, column, m.history.columns.get(column))
-
-
-def peak_time(m: Measurable, column: str) -> Value:
-    """Time of the first peak [s]."""
-    return _at_first_peak(m, column, m.history.time)
-
-
-def _at_first_peak(m: Measurable, column: str, values: Array | None) -> Value:
+def peak(m: Measurable, column: str, of: str) -> Value:
+    """Return the largest value of the first excursion beyond the static value, or its time."""
     x = m.column(column)
-    if x is None or values is None:
+    if x is None:
         return NOT_REPORTED
     index = first_peak(x, m.static[column]) if column in m.static else None
+    values = m.history.time if of == "time" else x
     return UNDEFINED if index is None else float(values[index])
 
 
-def settling(m: Measurable, column: str) -> Value:
-    """First step from which the column stays within one per cent of its static value."""
-    return _settling(m, column, SETTLED)
-
-
-def fine_settling(m: Measurable, column: str) -> Value:
-    """First step from which the column stays within 1e-4 of its static value."""
-    return _settling(m, column, FINELY)
-
-
-def _settling(m: Measurable, column: str, tolerance: float) -> Value:
+def settling(m: Measurable, column: str, tolerance: float) -> Value:
+    """Return the first step from which the column stays within a tolerance of its static value."""
     x = m.column(column)
     if x is None or column not in m.static:
         return NOT_REPORTED

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable
 
 import numpy as np
 
@@ -51,24 +50,12 @@ def reported(m: Measurable, part: Part) -> Value:
     return NOT_REPORTED if m.contact is None or not len(m.contact.time) else part(m.contact)
 
 
-def impulse(record: ContactRecord) -> Value:
-    """Integral of the normal forces over the run."""
-    return float(record.impulse[-1])
-
-
-def peak_force(record: ContactRecord) -> Value:
-    """Largest sum of the normal forces on the block."""
-    return float(record.force.max())
-
-
-def penetration(record: ContactRecord) -> Value:
-    """Largest penetration of a corner."""
-    return float(record.penetration.max()) + 0.0
-
-
-def gap(record: ContactRecord) -> Value:
-    """Largest gap of a corner."""
-    return float(record.gap.max())
+def reduced(record: ContactRecord, column: str, how: str) -> Value:
+    """Return the last value of a column, or its largest, its mean or its sum."""
+    values: Array | None = getattr(record, column)
+    if values is None:
+        return NOT_REPORTED
+    return float(values[-1] if how == "last" else getattr(values, how)()) + 0.0
 
 
 def open_share(record: ContactRecord) -> Value:
@@ -76,26 +63,11 @@ def open_share(record: ContactRecord) -> Value:
     return float(np.average(record.open_share, weights=np.diff(record.time, prepend=0.0)))
 
 
-def mean_solves(record: ContactRecord) -> Value:
-    """Mean number of solves of the open-close iteration in a step."""
-    return NOT_REPORTED if record.solves is None else float(record.solves.mean())
-
-
 def rare_solves(record: ContactRecord) -> Value:
     """Solves of the open-close iteration that one step in a hundred exceeds."""
     if record.solves is None:
         return NOT_REPORTED
     return float(np.percentile(record.solves, 99, method="inverted_cdf"))
-
-
-def most_solves(record: ContactRecord) -> Value:
-    """Largest number of solves of the open-close iteration in a step."""
-    return NOT_REPORTED if record.solves is None else float(record.solves.max())
-
-
-def cuts(record: ContactRecord) -> Value:
-    """Number of times that a step was cut."""
-    return NOT_REPORTED if record.cuts is None else float(record.cuts.sum())
 
 
 def restitution(record: ContactRecord) -> Value:
@@ -121,17 +93,17 @@ def landing(record: ContactRecord) -> tuple[float, Array]:
     return before, record.velocity[first:][~pressed[first:]]
 
 
-def of_rebounds(record: ContactRecord, part: Callable[[Sequence[float]], float]) -> Value:
-    """Return a number of the restitutions of the single contacts, undefined where none begins and ends in the run."""
+def of_rebounds(record: ContactRecord, part: str) -> Value:
+    """Return the restitution of the first of the single contacts, their mean or the greatest one.
+
+    Undefined where none begins and ends in the run.
+    """
     if record.rebounds is None:
         return NOT_REPORTED
     restitutions = [rebound.restitution for rebound in record.rebounds if rebound.restitution is not None]
-    return float(part(restitutions)) if restitutions else UNDEFINED
-
-
-def slip(record: ContactRecord) -> Value:
-    """Way that a corner or point has slipped from its start at the end of the run; the largest of any."""
-    return NOT_REPORTED if record.slip is None else float(record.slip[-1])
+    if not restitutions:
+        return UNDEFINED
+    return {"first": restitutions[0], "mean": float(np.mean(restitutions)), "most": max(restitutions)}[part]
 
 
 def slip_rate(record: ContactRecord) -> Value:
@@ -210,43 +182,3 @@ def horizon(m: Measurable) -> Value:
             disagrees |= ~(np.abs(values[:n] - shadow.columns[name][:n]) <= AGREED * largest(values))
     agreed_steps = int(np.argmax(disagrees)) if disagrees.any() else n
     return float(m.history.time[agreed_steps - 1]) if agreed_steps > 0 else 0.0
-
-
-PARTS: tuple[tuple[str, str, Part], ...] = (
-    ("contact.impulse", "N s", impulse),
-    ("contact.peak_force", "N", peak_force),
-    ("contact.penetration", "m", penetration),
-    ("contact.gap", "m", gap),
-    ("contact.open_share", "1", open_share),
-    ("contact.mean_solves", "1", mean_solves),
-    ("contact.p99_solves", "1", rare_solves),
-    ("contact.most_solves", "1", most_solves),
-    ("contact.cuts", "1", cuts),
-    ("contact.slip", "m", slip),
-    ("contact.slip_rate", "m/s", slip_rate),
-    ("contact.landing_speed", "m/s", landing_speed),
-    ("contact.restitution", "1", restitution),
-    ("energy.given", "J", input_energy),
-    ("energy.rise", "1", rise),
-    ("energy.switching_gain", "1", switching),
-    ("energy.imbalance", "1", imbalance),
-)
-OF_CONTACTS: dict[str, tuple[str, Callable[[Sequence[float]], float]]] = {
-    "first": ("of the first contact", lambda values: values[0]),
-    "mean": ("mean over the contacts", lambda values: float(np.mean(values))),
-    "most": ("greatest of a contact", max),
-}
-
-
-def parts() -> Iterator[tuple[str, str, str, Part]]:
-    """Yield id, unit, meaning and function of every metric of a contact's record."""
-    for name, unit, function in PARTS:
-        yield name, unit, (function.__doc__ or "").partition("\n")[0].removesuffix("."), function
-    for part, (words, pick) in OF_CONTACTS.items():
-        says = f"rate at which the gap opens over that at which it closed: {words}"
-        yield f"contact.restitution_{part}", "1", says, partial(of_rebounds, part=pick)
-    for name in STORED:
-        yield f"energy.{name}", "J", f"energy at the last step: {name}", partial(stored, name=name)
-    for name in (*LOST, *LOST_AT_IMPACTS):
-        says = f"energy lost by then: {name} (negative: gained)"
-        yield f"energy.lost_{name.replace(' ', '_')}", "J", says, partial(stored, name=name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -38,13 +38,13 @@ def relative_max(value: Array, reference: Array) -> Value:
     return quotient(largest(value - reference), largest(reference))
 
 
-def compared(p: Pairing, quantity: str, function: Callable[[Array, Array], Value]) -> Value:
-    """Return a function of the columns of both."""
+def compared(p: Pairing, quantity: str, part: str) -> Value:
+    """Return the error of a column over that of the reference, its root mean square ("l2") or its maximum."""
     both = p.columns(QUANTITIES[quantity])
     if both is None:
         return NOT_REPORTED
     with np.errstate(all="ignore"):
-        return finite(function(*both))
+        return finite((relative_l2 if part == "l2" else relative_max)(*both))
 
 
 def scaled(p: Pairing, quantity: str) -> Value:
@@ -63,5 +63,5 @@ def scaled(p: Pairing, quantity: str) -> Value:
 
 def worst(p: Pairing) -> Value:
     """The larger of the maximum errors of displacement and pressure."""
-    both = [compared(p, name, relative_max) for name in ("displacement", "pressure")]
+    both = [compared(p, name, "max") for name in ("displacement", "pressure")]
     return next((value for value in both if not isinstance(value, float)), max(both, key=as_number))

@@ -18,7 +18,6 @@ QUANTITIES = {
     "horizontal": "horizontal_displacement",
     "rotation": "rotation",
 }
-UNITS = {"displacement": "m", "pressure": "Pa", "horizontal": "m", "rotation": "rad"}
 
 
 def largest(x: Array) -> float:

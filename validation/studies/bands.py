@@ -18,11 +18,11 @@ from validation.metrics.values import or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 
+Band = tuple[float, float]
+"""Lower and upper edge."""
 OTHER = "other code"  # the kind of a reference that an independent program computed
 OWN = "own last value"
 APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
-
-LAGS = "average acceleration lags by (w_n dt)^2 / 12 of the phase w_n t of the ringing; two programs always differ"
 
 
 def cases(*names: str) -> Iterator[Scene]:
@@ -36,12 +36,12 @@ def _expanded(name: str) -> tuple[Scene, ...]:
     return load_scene(name).expand()
 
 
-def about(value: float, half: float) -> tuple[float, float]:
+def about(value: float, half: float) -> Band:
     """Band of a half width about a value."""
     return value - half, value + half
 
 
-def near(value: float, relative: float) -> tuple[float, float]:
+def near(value: float, relative: float) -> Band:
     """Band of a relative half width about a value."""
     return about(value, abs(value) * relative)
 
@@ -82,17 +82,19 @@ def order_row(
     return Derived(name, "order", tuple(needs), compute)
 
 
-def decimals(value: float) -> float:
-    """Half a unit of the last printed digit of a number."""
-    digits = f"{value:g}".partition(".")[2]
-    return 0.5 * 10.0 ** -len(digits)
+def half_unit(printed: str | float) -> float:
+    """Return half a unit of the last digit of a number as it was printed, a text; a number is exact."""
+    if not isinstance(printed, str):
+        return 0.0
+    digits, _, exponent = printed.lower().partition("e")
+    return 0.5 * 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
 
 
 def gate(
     case: Scene | str,
     solvers: str | tuple[str, ...],
     metric: str,
-    band: tuple[float, float],
+    band: Band,
     reason: str,
     kind: str = "exact",
     uncertainty: float = 0.0,

@@ -10,29 +10,32 @@ import functools
 from collections.abc import Iterator, Mapping
 
 from validation.engine.finished import Derived, Finished
-from validation.gates.gate import Gate
-from validation.runs.case_name import scene_of
 from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import OWN, about, cases, gate
+from validation.studies.bands import Band, about, cases
 from validation.theory import spectra
 
 NAME = "damping"
 READS = tuple(f"mode1.{part}" for part in ("frequency", "spectral_radius", "damping", "measured_damping"))
 SOLVERS = ("dda", "fem", "bar")
 UNDAMPED = 1e-12
-# Damping ratio of DDA over that of the elements, minus one, where no closed form holds: case -> (value, half band).
-RATIOS = {
-    "poisson": (0.0467, 1e-4),
-    "poisson-statics[contact.stiffness=1e+09]": (0.0475, 2e-4),
-    "poisson-statics[contact.stiffness=1e+10]": (0.0973, 2e-4),
-    "poisson-statics[contact.stiffness=1e+11]": (0.1078, 2e-4),
-    "corner-springs[fem.elements=4]": (0.5084, 5e-4),
-    "corner-springs[fem.elements=8]": (0.6810, 5e-4),
-    "corner-springs[fem.elements=16]": (0.8308, 5e-4),
-    "corner-springs[fem.elements=32]": (0.9660, 5e-4),
-    "corner-springs[fem.elements=64]": (1.0908, 5e-4),
-}
+SCENES = (  # of the study
+    "figures-3-4",
+    "figures-5-6",
+    "figure-7",
+    "figure-8",
+    "figure-9",
+    "model-form",
+    "mesh-convergence",
+    "poisson",
+    "poisson-statics",
+    "corner-springs",
+)
+
+
+def compared_cases() -> Iterator[Scene]:
+    """Return the cases of the study."""
+    return cases(*SCENES)
 
 
 def solvers(scene: Scene) -> list[str]:
@@ -41,10 +44,10 @@ def solvers(scene: Scene) -> list[str]:
     return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
 
 
-def derived(scenes: tuple[str, ...]) -> tuple[Derived, ...]:
+def derived() -> tuple[Derived, ...]:
     """Return the derived row of every case."""
     rows = []
-    for scene in cases(*scenes):
+    for scene in compared_cases():
         needs = tuple((scene.name, solver) for solver in solvers(scene))
         rows.append(Derived(scene.name, NAME, needs, functools.partial(compare, scene=scene), READS))
     return tuple(rows)
@@ -83,37 +86,12 @@ def history_distance(row: Row) -> Value:
     return abs(measured - xi) if isinstance(measured, float) and isinstance(xi, float) else "undefined"
 
 
-def gates(scenes: tuple[str, ...]) -> Iterator[Gate]:
-    """Yield three gates a case: operator, history, and DDA against the elements."""
-    operator = (
-        "|lambda| and xi of each solver's own step against trace and determinant at its frequency; band: rounding"
-    )
-    history = "matrix pencil on each solver's displacement against its operator: the histories hold the mode to 1e-6"
-    for scene in cases(*scenes):
-        yield gate(scene, NAME, "operator", (0, 1e-12), operator)
-        yield gate(scene, NAME, "history", (0, 1e-6), history)
-        yield from ratio(scene)
-
-
-def ratio(scene: Scene) -> Iterator[Gate]:
-    """Yield the gate on the damping ratio of DDA over that of the elements, where they are damped."""
-    pair = ("dda", "fem")
-    metric = "mode1.damping"
-    name = scene.name if scene.name in RATIOS else scene_of(scene.name)
-    if name in RATIOS:
-        value, half = RATIOS[name]
-        why = "the mesh has no limit on point springs" if name.startswith("corner") else "the mesh error is below"
-        reason = (
-            "model form, physics: under (1/2, 1), w dt below 3.27, a stiffer block is damped more at the same dt; own "
-            f"value, {why}"
-        )
-        yield gate(scene, pair, metric, about(value, half), reason, OWN, half)
-        return
-    frequency = spectra.bar_frequency(scene)
-    error = spectra.mesh_frequency_error(scene)
-    dda = spectra.damping_ratio(scene, spectra.dda_frequency(scene))
-    fem = spectra.damping_ratio(scene, frequency * (1 + error))
+def ratio(case: Scene) -> Band | None:
+    """Damping ratio of DDA over that of the elements less one, where both are damped."""
+    frequency = spectra.bar_frequency(case)
+    error = spectra.mesh_frequency_error(case)
+    dda = spectra.damping_ratio(case, spectra.dda_frequency(case))
+    fem = spectra.damping_ratio(case, frequency * (1 + error))
     if min(abs(dda), abs(fem)) < UNDAMPED:
-        return
-    why = "model form, physics: closed form at the two first frequencies; band: the mesh's frequency error"
-    yield gate(scene, pair, metric, about(dda / fem - 1, 1e-9 + error), why)
+        return None
+    return about(dda / fem - 1, 1e-9 + error)

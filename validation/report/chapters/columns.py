@@ -29,7 +29,7 @@ from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
-from validation.studies.columns import known, study
+from validation.studies.columns import study
 from validation.theory import columns
 
 DDA = "dda"
@@ -44,10 +44,10 @@ DROP_CAPTION = (
     "A stack dropped on its base, contact by contact. Every band is a block, its colour the mean force of its two "
     "contacts, white a gap. Left: exact in time. Right: (1/2, 1) at dt = 0.08 ms."
 )
-DROPPED = (("columns-drop-average", known.EVENTS, "exact in time"), ("columns-drop-constant", DDA, "dda, (1/2, 1)"))
+DROPPED = (("columns-drop-average", study.EVENTS, "exact in time"), ("columns-drop-constant", DDA, "dda, (1/2, 1)"))
 OTHERS = (
-    ("columns-spall", known.BARS, "a pulse on elastic bars"),
-    ("columns-weight", known.EVENTS, "weight put on at once"),
+    ("columns-spall", study.BARS, "a pulse on elastic bars"),
+    ("columns-weight", study.EVENTS, "weight put on at once"),
 )
 TIME_CAPTION = (
     "Left: a pulse on six elastic bars; the uppermost takes nearly all of its momentum along. Right: ten rigid blocks "
@@ -192,7 +192,7 @@ def spall_figure(groups: Groups, rows: DerivedRows, directory: Path) -> FigureBl
 
 
 def _pieces(groups: Groups, rows: DerivedRows, delta: float) -> Iterator[ChartLine]:
-    bars = velocities(rows.get((study.SPALL_BARS, f"{known.BARS} {study.PIECES}"), {}))
+    bars = velocities(rows.get((study.SPALL_BARS, f"{study.BARS} {study.PIECES}"), {}))
     if bars:
         yield ChartLine("bars", np.arange(1.0, len(bars) + 1), np.array(bars), "black", width=1.6)
     for case in cases_of(groups, study.SPALL_BLOCKS):
@@ -211,9 +211,9 @@ def _pieces(groups: Groups, rows: DerivedRows, delta: float) -> Iterator[ChartLi
 def joint_table(rows: DerivedRows) -> Table:
     """Return what a rigid joint of fixed strength makes of a sine: closed form, bars, blocks."""
     lines = []
-    for strength, exact in known.SLIPPING_JOINT.items():
+    for strength, exact in study.exact_parts().items():
         of_solvers = [
-            rows.get((f"{study.JOINT}-{strength:g}", f"{name} {study.PARTS}"), {}) for name in (known.BARS, DDA)
+            rows.get((f"{study.JOINT}-{strength:g}", f"{name} {study.PARTS}"), {}) for name in (study.BARS, DDA)
         ]
         numbers: list[str] = []
         for part, value in zip(("transmitted", "reflected", "absorbed"), exact, strict=True):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,20 +30,14 @@ from validation.runs.history import History
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.studies.engines.programs import EXACT, BoxProgram, box_programs
-from validation.studies.field.table import FAIL, PARTIAL, PASS, WRONG
+from validation.studies.field.programs import BOXES, Program, programs
+from validation.studies.field.table import BESIDE, FAIL, PARTIAL, PASS, WRONG, cell_name, last_note
 
-JUDGED = "judged "  # before a program's name: the derived row that is its cell
-BESIDE = "error over band"
+EXACT = "rigid-exact"
 LEVELS = 4  # points that an order is fitted over, at least
 SETTLED = 0.05  # of the band: what measuring at rows adds, greatest for a time of contact between two of them
 FALLS = 1.2  # factor by which an error falls at every halving of the step that has an order
 SHRINKS = 0.7  # of the first error: what the last one is below of a curve that shrinks
-
-
-def cell_name(program: str) -> str:
-    """Return the name of the derived row of a program's cell."""
-    return JUDGED + program
 
 
 @dataclass(frozen=True)
@@ -70,21 +64,19 @@ def curve_scenes(name: str) -> tuple[Scene, ...]:
     problem = box_problems()[name]
     if problem.curve is None:
         return ()
-    most = max(program.halvings or 0 for program in box_programs())
+    most = max(program.halvings or 0 for program in programs(BOXES))
     return tuple(problem.curve_scene(refine) for refine in range(most + 1))
 
 
 def scenes() -> Iterator[Scene]:
     """Yield all scenes of the study, each with the solvers that are asked it."""
-    programs = [program for program in box_programs() if program.installed]
+    there = [program for program in programs(BOXES) if program.installed]
+    names = [program.name for program in there]
     for name in box_problems():
-        names = [program.name for program in programs]
         for _, scene in case_scenes(name):
             yield scene.with_values({"run.solvers": names}).model_copy(update={"name": scene.name})
         for refine, scene in enumerate(curve_scenes(name)):
-            refined = [
-                program.name for program in programs if program.halvings is not None and program.halvings >= refine
-            ]
+            refined = [program.name for program in there if program.halvings is not None and program.halvings >= refine]
             if refined:
                 yield scene.with_values({"run.solvers": refined}).model_copy(update={"name": scene.name})
 
@@ -92,20 +84,18 @@ def scenes() -> Iterator[Scene]:
 def derived() -> Iterator[Derived]:
     """Yield the rows that are the cells of the programs that are there."""
     for name, problem in box_problems().items():
-        for program in box_programs():
+        for program in programs(BOXES):
             if program.installed:
-                yield Derived(PREFIX + name, cell_name(program.name), (), _compute(problem, program))
+                compute = functools.partial(cell, problem, program)
+                yield Derived(PREFIX + name, cell_name(program.name), (), compute)
 
 
-def _compute(problem: BoxProblem, program: BoxProgram) -> Callable[[Finished], Mapping[str, Value]]:
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        answers = list(_answers(problem, program.name, finished))
-        if not any(answer.history is not None or _is_wrong(answer) for answer in answers):
-            raise NothingToDerive(f"{program.name} answers no case")
-        points = list(_points(problem, program, finished))
-        return metrics_of(problem, answers, points)
-
-    return compute
+def cell(problem: BoxProblem, program: Program, finished: Finished) -> Mapping[str, Value]:
+    """Return a program's answers to a problem, judged."""
+    answers = list(_answers(problem, program.name, finished))
+    if not any(answer.history is not None or _is_wrong(answer) for answer in answers):
+        raise NothingToDerive(f"{program.name} answers no case")
+    return metrics_of(problem, answers, list(_points(problem, program, finished)))
 
 
 def _answers(problem: BoxProblem, program: str, finished: Finished) -> Iterator[Answer]:
@@ -133,7 +123,7 @@ class Point:
     outcome: str
 
 
-def _points(problem: BoxProblem, program: BoxProgram, finished: Finished) -> Iterator[Point]:
+def _points(problem: BoxProblem, program: Program, finished: Finished) -> Iterator[Point]:
     if program.halvings is None:
         return
     for refine, scene in enumerate(curve_scenes(problem.name)[: program.halvings + 1]):
@@ -293,7 +283,7 @@ def _reason(missing: Sequence[Answer], ended_wrong: Sequence[Answer]) -> str:
         row = answer.row
         why = "was not run"
         if row is not None:
-            why = row.notes[-1] if row.notes else row.outcome.sentence
+            why = last_note(row)
         reasons.setdefault(why, []).append(answer.case.label or "the problem's own case")
     return "; ".join(f"{', '.join(labels)}: {why}" for why, labels in reasons.items())
 
@@ -322,6 +312,3 @@ def finding(points: Sequence[Point]) -> str:
     if errors[-1] < SHRINKS * errors[0]:
         return f"the error falls unevenly, from {first} to {last} of its band in {count} halvings of the step"
     return f"the error does not shrink with the step: {first} of its band at first, {last} after {count} halvings"
-
-
-EXACT_CELL = cell_name(EXACT)

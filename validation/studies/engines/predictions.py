@@ -6,13 +6,15 @@ its contact's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+import functools
+from collections.abc import Iterator, Mapping
 
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.problems.boxes import box_problems, boxes_of
 from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.studies.bands import about, gate
 
 LEAD = "lead of a free fall"
 FALLEN = 24  # rows: 0.4 s of the 0.45 s that the first fall of the problem lasts
@@ -22,39 +24,24 @@ BAND = 0.01
 VELOCITY_FIRST = "it updates the velocity before the position: symplectic Euler falls g t dt / 2 too far"
 
 
-@dataclass(frozen=True)
-class Fall:
-    """How a program falls.
-
-    Attributes
-    ----------
-    program
-        Its name.
-    lead
-        How much further than the exact motion it has fallen after a time t, over g t dt / 2.
-    why
-        The formulas that say so.
-    """
-
-    program: str
-    lead: float
-    why: str
-
-
+IN_PARTS = f"{VELOCITY_FIRST}, in each of four parts of a step"
+POSITION_FIRST = "it updates the position before the velocity: it falls g t dt / 2 too little"
+SECOND_ORDER = "an implicit rule of second order is exact under constant acceleration"
+# Of a program: how much further than the exact motion it has fallen after a time t, over g t dt / 2, and why.
 # Not among them: bullet-default, whose air slows a fall (0.04 |v| + 0.04 v^2), and what documents no integrator.
-FALLS = (
-    Fall("mujoco", 1.0, VELOCITY_FIRST),
-    Fall("mujoco-default", 1.0, VELOCITY_FIRST),
-    Fall("dart", 1.0, VELOCITY_FIRST),
-    Fall("dart-default", 1.0, VELOCITY_FIRST),
-    Fall("bullet", 1.0, VELOCITY_FIRST),
-    Fall("box2d", 0.25, f"{VELOCITY_FIRST}, in each of four parts of a step"),
-    Fall("box2d-default", 0.25, f"{VELOCITY_FIRST}, in each of four parts of a step"),
-    Fall("pymunk", -1.0, "it updates the position before the velocity: it falls g t dt / 2 too little"),
-    Fall("pymunk-default", -1.0, "it updates the position before the velocity: it falls g t dt / 2 too little"),
-    Fall("exudyn", 0.0, "an implicit rule of second order is exact under constant acceleration"),
-    Fall("exudyn-default", 0.0, "an implicit rule of second order is exact under constant acceleration"),
-)
+FALLS = {
+    "mujoco": (1.0, VELOCITY_FIRST),
+    "mujoco-default": (1.0, VELOCITY_FIRST),
+    "dart": (1.0, VELOCITY_FIRST),
+    "dart-default": (1.0, VELOCITY_FIRST),
+    "bullet": (1.0, VELOCITY_FIRST),
+    "box2d": (0.25, IN_PARTS),
+    "box2d-default": (0.25, IN_PARTS),
+    "pymunk": (-1.0, POSITION_FIRST),
+    "pymunk-default": (-1.0, POSITION_FIRST),
+    "exudyn": (0.0, SECOND_ORDER),
+    "exudyn-default": (0.0, SECOND_ORDER),
+}
 
 
 def falls_name(program: str) -> str:
@@ -64,29 +51,26 @@ def falls_name(program: str) -> str:
 
 def derived() -> Iterator[Derived]:
     """Yield how the programs fall that are there."""
-    scene = box_problems()[PROBLEM].scene().name
-    for fall in FALLS:
-        yield Derived(scene, falls_name(fall.program), ((scene, fall.program),), _lead(scene, fall.program))
+    scene = box_problems()[PROBLEM].scene()
+    for program in FALLS:
+        compute = functools.partial(lead, scene, program)
+        yield Derived(scene.name, falls_name(program), ((scene.name, program),), compute)
 
 
-def _lead(scene_name: str, program: str) -> Callable[[Finished], Mapping[str, Value]]:
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        scene = box_problems()[PROBLEM].scene()
-        rigid = boxes_of(scene)
-        history = finished.needed_history(scene_name, program)
-        steps = finished.rows[scene_name, program].work["steps"]
-        step = scene.time.duration / steps
-        time = float(history.time[FALLEN - 1])
-        exact = rigid.starts[0][1] - rigid.gravity * time**2 / 2
-        lead = exact - float(history.columns["y_1"][FALLEN - 1])
-        return {LEAD: lead / (rigid.gravity * time * step / 2)}
-
-    return compute
+def lead(scene: Scene, program: str, finished: Finished) -> Mapping[str, Value]:
+    """Return how much further than the exact motion a program has fallen, over g t dt / 2."""
+    rigid = boxes_of(scene)
+    history = finished.needed_history(scene.name, program)
+    step = scene.time.duration / finished.rows[scene.name, program].work["steps"]
+    time = float(history.time[FALLEN - 1])
+    exact = rigid.starts[0][1] - rigid.gravity * time**2 / 2
+    further = exact - float(history.columns["y_1"][FALLEN - 1])
+    return {LEAD: further / (rigid.gravity * time * step / 2)}
 
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on these falls."""
-    scene = box_problems()[PROBLEM].scene().name
-    for fall in FALLS:
-        why = f"{fall.why}; band: single precision of positions"
-        yield Gate(scene, (falls_name(fall.program),), LEAD, fall.lead - BAND, fall.lead + BAND, why)
+    scene = box_problems()[PROBLEM].scene()
+    for program, (expected, formulas) in FALLS.items():
+        why = f"{formulas}; band: single precision of positions"
+        yield gate(scene, falls_name(program), LEAD, about(expected, BAND), why)

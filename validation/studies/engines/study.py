@@ -7,59 +7,40 @@ integrator is known falls as that integrator does, which says that its adapter s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from validation.engine.finished import Derived, Finished, NothingToDerive
+from validation.engine.finished import Derived
+from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.problems.boxes import ASKS, PREFIX, box_problems
-from validation.runs.records import Annotations
-from validation.runs.row import Value
-from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
-from validation.studies.declaration import Study
 from validation.studies.engines import cells, predictions
-from validation.studies.engines.cells import BESIDE, case_scenes, curve_scenes
-from validation.studies.engines.programs import BoxProgram, about, box_programs
+from validation.studies.engines.cells import case_scenes, curve_scenes
 from validation.studies.engines.table import STUDY
-from validation.studies.field.table import is_absent
+from validation.studies.field import answered
+from validation.studies.field.programs import BOXES, Program, known, line, programs
+from validation.studies.field.table import BESIDE, cell_name
 
-ENDS = tuple(o for o in Outcome if o not in (Outcome.COMPLETED, Outcome.NOT_RUN, Outcome.NOT_APPLICABLE))
-ANSWERED = "problems answered"
+
+def asked_programs() -> list[Program]:
+    """Return the programs that have to answer."""
+    return list(known(BOXES))
 
 
 def gates() -> Iterator[Gate]:
     """Yield the gates on this suite's own answers, and that programs which are there answer."""
     for name in box_problems():
         why = "it is the exact motion; what is left is what measuring at the rows adds"
-        yield Gate(PREFIX + name, (cells.EXACT_CELL,), BESIDE, 0.0, cells.SETTLED, why)
+        yield Gate(PREFIX + name, (cell_name(cells.EXACT),), BESIDE, 0.0, cells.SETTLED, why)
     yield from predictions.gates()
-    for program in box_programs():
-        if program.kind in ("chosen", "default"):
-            why = "a program that is installed answers a problem at least; there are no more than all"
-            yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(box_problems())), why)
+    yield from answered.gates(STUDY, asked_programs(), len(box_problems()))
 
 
 def derived() -> Iterator[Derived]:
     """Yield the cells, and how many problems each program answers."""
     yield from cells.derived()
     yield from predictions.derived()
-    for program in box_programs():
-        if program.kind in ("chosen", "default"):
-            yield Derived(STUDY, program.name, (), _answered(program))
-
-
-def _answered(program: BoxProgram) -> Callable[[Finished], Mapping[str, Value]]:
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        own_scenes = [case_scenes(name)[0][1].name for name in box_problems()]
-        rows = [finished.rows.get((scene, program.name)) for scene in own_scenes]
-        present = [row for row in rows if row is not None]
-        endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in present]
-        if not present or is_absent(endings):
-            raise NothingToDerive(f"not installed: {program.recipe}")
-        return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in present))}
-
-    return compute
+    yield from answered.rows(STUDY, asked_programs(), [case_scenes(name)[0][1].name for name in box_problems()])
 
 
 def data() -> Mapping[str, Any]:
@@ -76,18 +57,8 @@ def data() -> Mapping[str, Any]:
         "problems": problems,
         "cases": cases,
         "curves": curves,
-        "programs": [_program(program) for program in box_programs()],
+        "programs": [line(program, "family") for program in programs(BOXES)],
     }
-
-
-def _program(program: BoxProgram) -> dict[str, Any]:
-    names = ("name", "title", "recipe", "kind", "family", "installed")
-    return {name: getattr(program, name) for name in names} | {"about": about(program)}
-
-
-def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
-    """Return no alarms and no budgets: what a program does is what its cells say."""
-    return {"alarms": [], "budgets": []}
 
 
 def study() -> Study:
@@ -102,7 +73,6 @@ def study() -> Study:
         data=data,
         measures=(),
         pairs=(),
-        annotate=nothing,
-        expects=ENDS,
+        expects=answered.ENDS,
         long=True,
     )

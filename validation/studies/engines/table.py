@@ -10,13 +10,17 @@ from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.studies.field.table import (
-    MISSING,
-    NOT_APPLICABLE,
+    BESIDE,
     NOT_RUN,
+    KeptField,
     ProblemLine,
     ProgramLine,
     Table,
+    cell_name,
     is_absent,
+    kept_field,
+    number,
+    unanswered,
 )
 
 STUDY = "engines"
@@ -119,42 +123,34 @@ def read(results: Results) -> EngineTable | None:
     InputError
         The results are damaged.
     """
-    manifest = results.manifest(STUDY)
-    data = manifest.get("data", {})
-    if "programs" not in data:
+    kept = kept_field(results, STUDY)
+    if kept is None:
         return None
-    problems = tuple(ProblemLine(**line) for line in data["problems"])
-    programs = tuple(ProgramLine(**line) for line in data["programs"])
-    rows = results.rows()
-    row_by_case: dict[tuple[str, str], Row] = {}
-    for case in manifest.get("cases", []):
-        if case["key"] in rows:
-            row_by_case[case["scene"], case["solver"]] = rows[case["key"]]
-
-    def seconds_of(scene: str, program: str) -> float | None:
-        row = row_by_case.get((scene, program))
-        return sum(row.seconds.values()) if row is not None and row.outcome is Outcome.COMPLETED else None
-
-    metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
     cells = {}
-    for program in programs:
-        program_rows = [row for (_, solver), row in row_by_case.items() if solver == program.name]
-        endings = [(row.outcome is Outcome.NOT_APPLICABLE, " ".join(row.notes)) for row in program_rows]
+    for program in kept.programs:
+        own_rows = [row for (_, solver), row in kept.rows.items() if solver == program.name]
+        endings = [(row.outcome is Outcome.NOT_APPLICABLE, " ".join(row.notes)) for row in own_rows]
         absent = not program.installed or is_absent(endings)
-        for problem in problems:
-            metrics = metrics_by_cell.get((problem.scene, f"judged {program.name}"), {})
-            if absent:
-                reason = f"not installed: {program.recipe}"
-                cell = EngineCell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=reason)
-            elif metrics:
-                curve = [seconds_of(name, program.name) for name in data["curves"][problem.name]]
-                own_seconds = seconds_of(data["cases"][problem.name][0], program.name)
-                cell = _judged(problem.name, program.name, metrics, own_seconds, curve)
-            else:
-                own_rows = [row_by_case.get((name, program.name)) for name in data["cases"][problem.name]]
-                cell = _unanswered(problem.name, program.name, [row for row in own_rows if row is not None])
+        for problem in kept.problems:
+            cell = EngineCell(problem.name, program.name, NOT_RUN, NOT_RUN, reason=f"not installed: {program.recipe}")
+            if not absent:
+                cell = _cell(problem, program, kept)
             cells[problem.name, program.name] = cell
-    return Table(problems, programs, cells)
+    return Table(kept.problems, kept.programs, cells)
+
+
+def _cell(problem: ProblemLine, program: ProgramLine, kept: KeptField) -> EngineCell:
+    metrics = kept.metrics.get((problem.scene, cell_name(program.name)))
+    cases = [kept.rows.get((name, program.name)) for name in kept.data["cases"][problem.name]]
+    if metrics:
+        curve = [kept.rows.get((name, program.name)) for name in kept.data["curves"][problem.name]]
+        return _judged(problem.name, program.name, metrics, _seconds(cases[0]), [_seconds(row) for row in curve])
+    word, note = next((unanswered(row) for row in cases if row is not None), (NOT_RUN, "was not run"))
+    return EngineCell(problem.name, program.name, word, word, reason=note)
+
+
+def _seconds(row: Row | None) -> float | None:
+    return sum(row.seconds.values()) if row is not None and row.outcome is Outcome.COMPLETED else None
 
 
 def _judged(
@@ -163,26 +159,21 @@ def _judged(
     """Return the cell of a derived row; seconds are those of the runs, of the problem's own case and of its curve."""
     quantities = []
     for entry in _numbered(metrics, "number"):
-        band = (_number(entry["low"]) or 0.0, _number(entry["high"]) or 0.0)
-        name = str(entry["name"])
-        unit = str(entry["unit"])
-        label = str(entry["case"] or "")
-        exact = _number(entry["exact"]) or 0.0
-        reason = str(entry["reason"] or "")
-        quantities.append(Quantity(name, unit, label, _number(entry["value"]), exact, band, str(entry["word"]), reason))
+        texts = {name: str(entry[name] or "") for name in ("name", "unit", "case", "word", "reason")}
+        exact, low, high = (number(entry[name]) or 0.0 for name in ("exact", "low", "high"))
+        quantities.append(Quantity(value=number(entry["value"]), exact=exact, band=(low, high), **texts))
     points = []
     for entry in _numbered(metrics, "point"):
-        counts = [int(_number(entry[name]) or 0) for name in ("refine", "steps")]
-        step = _number(entry["step"]) or math.nan
-        points.append(
-            WorkPoint(counts[0], step, counts[1], curve[counts[0]], _number(entry["error"]), str(entry["outcome"]))
-        )
+        refine, steps = (int(number(entry[name]) or 0) for name in ("refine", "steps"))
+        step = number(entry["step"]) or math.nan
+        outcome = str(entry["outcome"])
+        points.append(WorkPoint(refine, step, steps, curve[refine], number(entry["error"]), outcome))
     texts_of_cell = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "finding", "reason")}
     return EngineCell(
         problem,
         program,
         **texts_of_cell,
-        error=_number(metrics.get("error over band")),
+        error=number(metrics.get(BESIDE)),
         seconds=seconds,
         quantities=tuple(quantities),
         points=tuple(points),
@@ -198,18 +189,3 @@ def _numbered(metrics: Mapping[str, Value], kind: str) -> list[dict[str, Value]]
         if word == kind and number.isdigit():
             groups.setdefault(int(number), {})[name] = value
     return [groups[number] for number in sorted(groups)]
-
-
-def _unanswered(problem: str, program: str, rows: Sequence[Row]) -> EngineCell:
-    """Return the cell of a problem of which no case was answered."""
-    if not rows:
-        return EngineCell(problem, program, NOT_RUN, NOT_RUN, reason="was not run")
-    row = rows[0]
-    note = row.notes[-1] if row.notes else row.outcome.sentence
-    absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
-    word = NOT_RUN if absent else NOT_APPLICABLE
-    return EngineCell(problem, program, word, word, reason=note)
-
-
-def _number(value: Value) -> float | None:
-    return float(value) if isinstance(value, int | float) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 
 from validation.engine.finished import Derived, Finished
@@ -24,61 +25,36 @@ from validation.studies.field.scenes import (
     scene_of,
     with_elements,
 )
+from validation.studies.field.table import BESIDE, cell_name
 
-JUDGED = "judged "  # before a program's name: the derived row that is its cell
 OF_MODEL = "another model: the block strains from point to point, where DDA's has one strain"
-BESIDE = "error over band"
 
 
-def cell_name(program: str) -> str:
-    """Return the name of the derived row of a program's cell."""
-    return JUDGED + program
+def derived() -> Iterator[Derived]:
+    """Yield a derived row for every case that is judged."""
+    for name in FIELD_PROBLEMS:
+        elements = (ELEMENTS,) if with_elements(scene_of(name)) else ()
+        for program in (HABIT, FINE, *elements, *installed()):
+            needs = [case_of(name, program)]
+            if kept_exact(scene_of(name)):
+                needs += [(PREFIX + name, EXACT), *((scene.name, EXACT) for scene in changed(name).values())]
+            compute = functools.partial(cell, name, program)
+            yield Derived(PREFIX + name, cell_name(program), tuple(needs), compute)
 
 
-class Cells:
-    """The cells of one study; each is computed once for the finished cases that it is asked of."""
-
-    def __init__(self) -> None:
-        self._standards: dict[str, tuple[Finished, Standard]] = {}
-        self._found: dict[tuple[str, str], tuple[Finished, Mapping[str, Value]]] = {}
-
-    def derived(self) -> Iterator[Derived]:
-        """Yield a derived row for every case that is judged."""
-        for name in FIELD_PROBLEMS:
-            elements = (ELEMENTS,) if with_elements(scene_of(name)) else ()
-            for program in (HABIT, FINE, *elements, *installed()):
-                yield self._row(name, program)
-
-    def _row(self, name: str, program: str) -> Derived:
-        def compute(finished: Finished) -> Mapping[str, Value]:
-            cached = self._found.get((name, program))
-            if cached is None or cached[0] is not finished:
-                cached = self._found[name, program] = finished, self._cell(name, program, finished)
-            return cached[1]
-
-        needs = [case_of(name, program)]
-        if kept_exact(scene_of(name)):
-            needs += [(PREFIX + name, EXACT), *((scene.name, EXACT) for scene in changed(name).values())]
-        return Derived(PREFIX + name, cell_name(program), tuple(needs), compute)
-
-    def _cell(self, name: str, program: str, finished: Finished) -> Mapping[str, Value]:
-        answer = finished.history(*case_of(name, program))
-        if answer is None:
-            return {}
-        history = sampled(name, program, answer)
-        bands = self._standard(name, finished)
-        problem = problem_named(name)
-        judgement = judge(problem, history, bands)
-        why = ""
-        if judgement.word is Word.FAIL:
-            why = OF_MODEL if program == ELEMENTS else cause(problem, history, bands).sentence
-        return metrics_of(judgement, why)
-
-    def _standard(self, name: str, finished: Finished) -> Standard:
-        cached = self._standards.get(name)
-        if cached is None or cached[0] is not finished:
-            cached = self._standards[name] = finished, standard_in(name, finished)
-        return cached[1]
+def cell(name: str, program: str, finished: Finished) -> Mapping[str, Value]:
+    """Return a program's answer to a problem, judged."""
+    answer = finished.history(*case_of(name, program))
+    if answer is None:
+        return {}
+    history = sampled(name, program, answer)
+    bands = standard_in(name, finished)
+    problem = problem_named(name)
+    judgement = judge(problem, history, bands)
+    why = ""
+    if judgement.word is Word.FAIL:
+        why = OF_MODEL if program == ELEMENTS else cause(problem, history, bands).sentence
+    return metrics_of(judgement, why)
 
 
 def case_of(name: str, program: str) -> tuple[str, str]:
@@ -104,15 +80,20 @@ def standard_in(name: str, finished: Finished) -> Standard:
     ValueError
         A kept motion is lost.
     """
-    problem = problem_named(name)
-    if not kept_exact(problem.scene):
-        return standard(problem)
+    if not kept_exact(problem_named(name).scene):
+        return computed_standard(name)
     exact = finished.history(PREFIX + name, EXACT)
     others = {datum: finished.history(scene.name, EXACT) for datum, scene in changed(name).items()}
     changed_motions = {datum: history for datum, history in others.items() if history is not None}
     if exact is None or len(changed_motions) < len(others):
         raise ValueError(f"{name}: an exact motion is lost")
     return standard_of(exact, changed_motions)
+
+
+@functools.cache
+def computed_standard(name: str) -> Standard:
+    """Return the standard of a problem whose exact motions take no time."""
+    return standard(problem_named(name))
 
 
 def metrics_of(judgement: Judgement, why: str) -> dict[str, Value]:

@@ -1,4 +1,4 @@
-"""What theory predicts of programs as they come, and whether a program answers at all.
+"""What theory predicts of programs as they come.
 
 A program whose default integrator is known answers, on the model of the problem, what this suite's DDA answers under
 the same formulas: two independent programs. Where they agree, the adapter states the problem rightly, and the program's
@@ -7,24 +7,22 @@ failure is its scheme's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import functools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from validation.engine.finished import Derived, Finished, NothingToDerive
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
 from validation.problems.problem import PREFIX
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Value
-from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.studies.field.programs import HABIT, known
-from validation.studies.field.scenes import FIELD_PROBLEMS, scene_of
-from validation.studies.field.table import STUDY, is_absent
+from validation.studies.field.programs import HABIT
+from validation.studies.field.scenes import scene_of
 
 APART = "difference from its integrator"
-ANSWERED = "problems answered"
 
 
 @dataclass(frozen=True)
@@ -77,41 +75,22 @@ def scenes() -> Iterator[Scene]:
 
 
 def derived() -> Iterator[Derived]:
-    """Yield the differences from what is predicted, and how many problems each program answers."""
+    """Yield the differences from what is predicted."""
     for prediction in PREDICTIONS:
-        scene = prediction.scene.name
-        needs = (PREFIX + prediction.problem, prediction.program), (scene, HABIT)
-        yield Derived(PREFIX + prediction.problem, prediction.name, needs, _difference(needs))
-    for program in known():
-        yield Derived(STUDY, program.name, (), _answered(program.name, program.recipe))
+        needs = (PREFIX + prediction.problem, prediction.program), (prediction.scene.name, HABIT)
+        compute = functools.partial(difference, needs)
+        yield Derived(PREFIX + prediction.problem, prediction.name, needs, compute)
 
 
-def _difference(needs: tuple[tuple[str, str], tuple[str, str]]) -> Callable[[Finished], Mapping[str, Value]]:
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        answer, expected = (finished.history(*need) for need in needs)
-        if answer is None or expected is None:
-            return {}
-        return {APART: relative_l2(answer.columns[DISPLACEMENT], expected.columns[DISPLACEMENT])}
-
-    return compute
-
-
-def _answered(program: str, recipe: str) -> Callable[[Finished], Mapping[str, Value]]:
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        rows = [finished.rows.get((PREFIX + name, program)) for name in FIELD_PROBLEMS]
-        present = [row for row in rows if row is not None]
-        endings = [(row.outcome is Outcome.NOT_APPLICABLE, "; ".join(row.notes)) for row in present]
-        if not present or is_absent(endings):
-            raise NothingToDerive(f"not installed: {recipe}")
-        return {ANSWERED: float(sum(row.outcome is Outcome.COMPLETED for row in present))}
-
-    return compute
+def difference(needs: tuple[tuple[str, str], ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the difference of an answer from the predicted one."""
+    answer, expected = (finished.history(*need) for need in needs)
+    if answer is None or expected is None:
+        return {}
+    return {APART: relative_l2(answer.columns[DISPLACEMENT], expected.columns[DISPLACEMENT])}
 
 
 def gates() -> Iterator[Gate]:
-    """Yield the gates on predictions, and that a program which is installed answers."""
+    """Yield the gates on predictions."""
     for prediction in PREDICTIONS:
         yield Gate(PREFIX + prediction.problem, (prediction.name,), APART, 0.0, prediction.band, prediction.why)
-    for program in known():
-        why = "a program that is installed answers a problem at least; there are no more than all"
-        yield Gate(STUDY, (program.name,), ANSWERED, 1.0, float(len(FIELD_PROBLEMS)), why)

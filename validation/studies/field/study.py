@@ -8,24 +8,19 @@ predicts of its integrator, which says that its adapter states the problem right
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from validation.engine.finished import Finished
+from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.problems.problem import ASKS, PREFIX
-from validation.runs.records import Annotations
-from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
-from validation.studies.declaration import Study
-from validation.studies.field import predictions, programs, scenes
-from validation.studies.field.cells import BESIDE, Cells, case_of, cell_name
+from validation.studies.field import answered, cells, predictions, programs, scenes
+from validation.studies.field.cells import case_of
 from validation.studies.field.scenes import FIELD_PROBLEMS
-from validation.studies.field.table import STUDY
+from validation.studies.field.table import BESIDE, STUDY, cell_name
 
 DAMPED = ("locked", "opening", "rebound")
 FAR = 1e3  # errors are below a thousand bands: what is further off is no damped motion but a blunder
-ENDS = tuple(o for o in Outcome if o not in (Outcome.COMPLETED, Outcome.NOT_RUN, Outcome.NOT_APPLICABLE))
 
 
 def gates() -> Iterator[Gate]:
@@ -40,7 +35,7 @@ def gates() -> Iterator[Gate]:
 
 def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which run each cell is of."""
-    columns = programs.programs()
+    columns = programs.programs(programs.SPRINGS)
     runs = {}
     for name, program in itertools.product(FIELD_PROBLEMS, columns):
         runs[f"{name} {program.name}"] = [list(case_of(name, program.name)), cell_name(program.name)]
@@ -49,41 +44,29 @@ def data() -> Mapping[str, Any]:
             {"name": name, "scene": PREFIX + name, "title": scenes.scene_of(name).title, "asks": ASKS[name]}
             for name in FIELD_PROBLEMS
         ],
-        "programs": [_program(program) for program in columns],
+        "programs": [programs.line(program) for program in columns],
         "runs": runs,
     }
 
 
-def _program(program: programs.Program) -> dict[str, Any]:
-    return {
-        "name": program.name,
-        "title": program.title,
-        "recipe": program.recipe,
-        "kind": program.kind,
-        "installed": program.installed,
-        "about": programs.about(program),
-    }
-
-
-def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
-    """Return no alarms and no budgets: what DDA's habit does is what the cells say."""
-    return {"alarms": [], "budgets": []}
-
-
 def study() -> Study:
     """Return the study over the programs that are installed now."""
-    cells = Cells()
+    known = tuple(programs.known())
+    problems = [PREFIX + name for name in FIELD_PROBLEMS]
     return Study(
         name=STUDY,
         title="The judged field",
         purpose="Other people's block codes on the same problems: which of them give the exact motion, and why not.",
         scenes=[*scenes.scenes(), *predictions.scenes()],
-        gates=lambda: (*gates(), *predictions.gates()),
-        derived=lambda: (*cells.derived(), *predictions.derived()),
+        gates=lambda: (*gates(), *predictions.gates(), *answered.gates(STUDY, known, len(problems))),
+        derived=lambda: (
+            *cells.derived(),
+            *predictions.derived(),
+            *answered.rows(STUDY, known, problems),
+        ),
         data=data,
         measures=(),
         pairs=(),
-        annotate=nothing,
-        expects=ENDS,
+        expects=answered.ENDS,
         long=True,
     )

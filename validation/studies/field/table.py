@@ -6,6 +6,7 @@ programs and the problems. `read` puts them together.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
@@ -15,6 +16,7 @@ from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 
 STUDY = "field"
+BESIDE = "error over band"
 PASS = "PASS"
 PARTIAL = "PARTIAL"
 FAIL = "FAIL"
@@ -24,6 +26,11 @@ JUDGED = (PASS, PARTIAL, FAIL)
 # A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
 WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
 MISSING = "is not installed"  # what an adapter says where its program is absent
+
+
+def cell_name(program: str) -> str:
+    """Return the name of the derived row that is a program's cell."""
+    return f"judged {program}"
 
 
 def is_absent(endings: Collection[tuple[bool, str]]) -> bool:
@@ -160,6 +167,40 @@ class Table(Generic[CellT]):
 FieldTable = Table[Cell]
 
 
+@dataclass(frozen=True)
+class KeptField:
+    """What a results directory holds of a field."""
+
+    problems: tuple[ProblemLine, ...]
+    programs: tuple[ProgramLine, ...]
+    data: Mapping[str, Any]
+    rows: Mapping[tuple[str, str], Row]  # by scene and solver
+    metrics: Mapping[tuple[str, str], Mapping[str, Value]]  # of derived rows, by scene and name
+
+
+def kept_field(results: Results, study: str) -> KeptField | None:
+    """Return what is kept of a field, None where its study was not run.
+
+    Raises
+    ------
+    InputError
+        The results are damaged.
+    """
+    manifest = results.manifest(study)
+    data = manifest.get("data", {})
+    if "programs" not in data:
+        return None
+    rows = results.rows()
+    cases = [case for case in manifest.get("cases", []) if case["key"] in rows]
+    return KeptField(
+        tuple(ProblemLine(**line) for line in data["problems"]),
+        tuple(ProgramLine(**line) for line in data["programs"]),
+        data,
+        {(case["scene"], case["solver"]): rows[case["key"]] for case in cases},
+        {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])},
+    )
+
+
 def read(results: Results) -> FieldTable | None:
     """Return the field of a results directory, None where the study was not run.
 
@@ -168,23 +209,15 @@ def read(results: Results) -> FieldTable | None:
     InputError
         The results are damaged.
     """
-    manifest = results.manifest(STUDY)
-    data = manifest.get("data", {})
-    if "programs" not in data:
+    kept = kept_field(results, STUDY)
+    if kept is None:
         return None
-    problems = tuple(ProblemLine(**line) for line in data["problems"])
-    programs = tuple(ProgramLine(**line) for line in data["programs"])
-    rows = results.rows()
-    keys = {(case["scene"], case["solver"]): case["key"] for case in manifest.get("cases", [])}
-    metrics_by_cell = {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
     cells = {}
-    for problem in problems:
-        for program in programs:
-            case, name = data["runs"].get(f"{problem.name} {program.name}", (("", ""), ""))
-            row = rows.get(keys.get(tuple(case), ""))
-            metrics = metrics_by_cell.get((problem.scene, name), {})
-            cells[problem.name, program.name] = _cell(problem, program, row, metrics)
-    return Table(problems, programs, cells)
+    for problem, program in itertools.product(kept.problems, kept.programs):
+        case, name = kept.data["runs"].get(f"{problem.name} {program.name}", (("", ""), ""))
+        metrics = kept.metrics.get((problem.scene, name), {})
+        cells[problem.name, program.name] = _cell(problem, program, kept.rows.get(tuple(case)), metrics)
+    return Table(kept.problems, kept.programs, cells)
 
 
 def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: Mapping[str, Value]) -> Cell:
@@ -196,15 +229,14 @@ def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: 
     if row.outcome is not Outcome.COMPLETED or not metrics:
         return _ended(problem, program, row)
     texts = {name: str(metrics.get(name) or "") for name in ("verdict", "says", "cause", "column", "reason")}
-    seconds = sum(row.seconds.values()) if row.seconds else None
     return Cell(
         problem.name,
         program.name,
         **texts,
-        error=_number(metrics.get("error")),
-        band=_number(metrics.get("band")),
-        within=_number(metrics.get("within")),
-        seconds=seconds,
+        error=number(metrics.get("error")),
+        band=number(metrics.get("band")),
+        within=number(metrics.get("within")),
+        seconds=sum(row.seconds.values()) if row.seconds else None,
         columns=_columns(metrics),
         numbers=_numbers(metrics),
         key=row.key,
@@ -213,14 +245,24 @@ def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: 
 
 def _ended(problem: ProblemLine, program: ProgramLine, row: Row) -> Cell:
     """Return the cell of a run that did not complete, or that could not be judged."""
-    note = row.notes[-1] if row.notes else row.outcome.sentence
+    word, note = unanswered(row)
     if row.outcome in WRONG:
         sentence = row.outcome.sentence[0].lower() + row.outcome.sentence[1:].rstrip(".")
         why = note if row.outcome is Outcome.WRONG_UNITS else f"{sentence} ({note})"
         return Cell(problem.name, program.name, FAIL, FAIL, cause=why, reason=row.outcome.sentence, key=row.key)
-    absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
-    word = NOT_RUN if absent else NOT_APPLICABLE
     return Cell(problem.name, program.name, word, word, reason=note, key=row.key)
+
+
+def last_note(row: Row) -> str:
+    """Return what a run said at its end."""
+    return row.notes[-1] if row.notes else row.outcome.sentence
+
+
+def unanswered(row: Row) -> tuple[str, str]:
+    """Return NOT RUN or not applicable for a run without an answer, and why."""
+    note = last_note(row)
+    absent = row.outcome is not Outcome.NOT_APPLICABLE or MISSING in note
+    return NOT_RUN if absent else NOT_APPLICABLE, note
 
 
 def _columns(metrics: Mapping[str, Value]) -> tuple[ColumnCell, ...]:
@@ -229,9 +271,9 @@ def _columns(metrics: Mapping[str, Value]) -> tuple[ColumnCell, ...]:
         ColumnCell(
             name,
             str(metrics[f"{name}: word"]),
-            _number(metrics.get(f"{name}: error")),
-            _number(metrics.get(f"{name}: band")),
-            _number(metrics.get(f"{name}: until")) or 0.0,
+            number(metrics.get(f"{name}: error")),
+            number(metrics.get(f"{name}: band")),
+            number(metrics.get(f"{name}: until")) or 0.0,
             str(metrics.get(f"{name}: reason") or ""),
         )
         for name in names
@@ -244,10 +286,11 @@ def _numbers(metrics: Mapping[str, Value]) -> tuple[Number, ...]:
         if key.startswith("told value: "):
             name = key.removeprefix("told value: ")
             quantity, _, unit = name.rpartition(" [")
-            exact = _number(metrics.get(f"told exact: {name}"))
-            numbers.append(Number(quantity, unit.removesuffix("]"), _number(metrics[key]), exact))
+            exact = number(metrics.get(f"told exact: {name}"))
+            numbers.append(Number(quantity, unit.removesuffix("]"), number(metrics[key]), exact))
     return tuple(numbers)
 
 
-def _number(value: Any) -> float | None:
+def number(value: Any) -> float | None:
+    """Return a metric that is a number, or None."""
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None

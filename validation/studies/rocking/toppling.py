@@ -7,27 +7,20 @@ the friction that it needs, and as a tower whose centroid stands beyond its lowe
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, from_history
-from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.bands import about, cases, gate
+from validation.studies import tables
+from validation.studies.bands import Band, about
 from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, increments, rectangle, settlement
 from validation.theory.friction import coefficient, sliding_acceleration
 
-STATIC = "toppling-static"
-SLIDE = "toppling-slide"
-FROM_REST = ("toppling-tower", "toppling-threshold")  # on their base
-LET_GO = ("toppling-fall", "toppling-growth")  # on their lower corner
-ROW = "trajectory"  # derived row
 TURN = 0.5  # by which falling blocks are timed [rad]
-ROUNDING = 1e-9  # of identities over some hundred steps
 
 
 def beyond(scene: Scene) -> float:
@@ -75,55 +68,21 @@ def fall(scene: Scene, history: History) -> Mapping[str, Value]:
     return values
 
 
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that are computed from finished cases."""
-    computed_rows = ((STATIC, static), (SLIDE, slide), *((name, fall) for name in (*FROM_REST, *LET_GO)))
-    rows = []
-    for name, compute in computed_rows:
-        for case in cases(name):
-            rows.append(from_history(case, "dda", ROW, compute))
-    return tuple(rows)
+def run_out(case: Scene) -> Band:
+    """Return the run-out of a block that slides, over that of a rigid block."""
+    sliding_distance = sliding_acceleration(case) * case.time.duration**2 / 2
+    return 1.0, 1 + coefficient(case) * settlement(case) / sliding_distance
 
 
-def gates() -> tuple[Gate, ...]:
-    """Return all gates of the study."""
-    return (*sliding_gates(), *toppling_gates(), *falling_gates())
+def standing(case: Scene) -> Band:
+    """Return the turn of a tower that stands when gravity begins to act [rad]."""
+    return 0.0, 2 * settlement(case) / rectangle(case).width
 
 
-def sliding_gates() -> Iterator[Gate]:
-    """Yield the gates on a block that stands or slides."""
-    stands = "friction above the slope: a block without velocities comes to rest; band: rounding"
-    slips = "friction below the slope: dt^2 / 2 g (sin b - tan(phi) cos b) a step; band: what is left of settling"
-    for case in cases(STATIC):
-        if sliding_acceleration(case) > 0:
-            yield gate(case, ROW, "moved", about(1.0, 1e-6), slips)
-        else:
-            yield gate(case, ROW, "moved", about(0.0, ROUNDING), stands)
-    for case in cases(SLIDE):
-        sliding_distance = sliding_acceleration(case) * case.time.duration**2 / 2
-        offset = coefficient(case) * settlement(case) / sliding_distance
-        why = "both corners slip: the free motion of the scheme, exact for constant acceleration; band: rounding"
-        yield gate(case, ROW, "identity", (0.0, ROUNDING), why)
-        why = "rigid block; above: tan(phi) times the settlement, twice that of both corners at rest"
-        yield gate(case, ROW, "run-out", (1.0, 1 + offset), why)
-
-
-def toppling_gates() -> Iterator[Gate]:
-    """Yield the gates on towers that stand on a slope when gravity begins to act."""
-    why = (
-        "rigid block about its lower corner, by quadrature; below: the impulse of the upper corner before it lifts, "
-        "m g cos b pi sqrt(m / 2 p) at most; above: a straight line within a step"
-    )
-    stands = "tan b < a/h: the tower stands; twice the turn m g / (p a) by which its corners settle"
-    for case in cases(*FROM_REST):
-        block = rectangle(case)
-        if beyond(case) < 0:
-            yield gate(case, ROW, "turned", (0.0, 2 * settlement(case) / block.width), stands)
-            continue
-        exact = block.fall_time(beyond(case), TURN)
-        low = 1 - lifted(case) / exact
-        high = 1 + straight(case)
-        yield gate(case, ROW, "time", (low, high), why)
+def from_rest(case: Scene) -> Band:
+    """Return the time in which a tower falls, over that of a rigid block."""
+    exact = rectangle(case).fall_time(beyond(case), TURN)
+    return 1 - lifted(case) / exact, 1 + straight(case)
 
 
 def lifted(scene: Scene) -> float:
@@ -144,26 +103,19 @@ def straight(scene: Scene) -> float:
     return (scene.time.step / rectangle(scene).fall_time(beyond(scene), TURN)) ** 2
 
 
-def falling_gates() -> Iterator[Gate]:
-    """Yield the gates on towers released on their lower corner, by exact and by first-order rotation."""
-    timed = "rigid block about its lower corner, by quadrature; the corner settles by up to 2 m g / p, seen from psi"
-    exact_reason = "exact rotation keeps the outline; band: the strain of four times the weight"
-    product = "a step's first-order rotation multiplies the area by 1 + r^2; band: the strain of four times the weight"
-    growing = (
-        "dt times the integral of the squared rate of a rigid block; band: twice what the growth g itself changes, "
-        "P T g / 2 by P^2 ~ 1/R and 3 g / 4 by the centroid, which gets further from the corner and is sped up by it"
-    )
-    for case in cases(*LET_GO):
-        block = rectangle(case)
-        grown = growth(case)
-        exact = case.run.rotation == "exact"
-        strain = 4 * case.block.density * block.gravity * block.height / case.block.young
-        slack = 2 * settlement(case) / block.width / beyond(case) + (0.0 if exact else grown) + straight(case)
-        yield gate(case, ROW, "time", about(1.0, slack), timed)
-        why = exact_reason if exact else product
-        yield gate(case, ROW, "area", about(1.0, strain), why)
-        if not exact:
-            yield gate(case, ROW, "growth", about(grown, 2 * slowed(case) * grown**2 + strain), growing)
+def let_go(case: Scene) -> dict[str, Band]:
+    """Return time, area and growth of a tower that is released on its lower corner, by its kind of rotation."""
+    block = rectangle(case)
+    grown = growth(case)
+    strain = 4 * case.block.density * block.gravity * block.height / case.block.young
+    slack = 2 * settlement(case) / block.width / beyond(case) + straight(case)
+    if case.run.rotation == "first-order":
+        slack += grown
+    return {
+        "time": about(1.0, slack),
+        "area": about(1.0, strain),
+        "growth": about(grown, 2 * slowed(case) * grown**2 + strain),
+    }
 
 
 def slowed(scene: Scene) -> float:
@@ -181,9 +133,16 @@ STUDY = Study(
     title="Blocks on slopes that stand, slide and topple",
     purpose="The cases by which manuals of block codes show that a block stands, slides or topples, as numbers: "
     "does DDA do so at the right slope, along the right trajectory, and with the outline that it began with?",
-    scenes=(STATIC, SLIDE, *FROM_REST, *LET_GO),
-    gates=gates,
-    derived=derived,
+    scenes=(
+        "toppling-static",
+        "toppling-slide",
+        "toppling-tower",
+        "toppling-threshold",
+        "toppling-fall",
+        "toppling-growth",
+    ),
+    gates=lambda: tables.gates(__name__),
+    derived=lambda: tables.rows(__name__),
     measures=(),  # all gates are on the rows above
     pairs=(),
 )
