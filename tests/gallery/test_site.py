@@ -14,9 +14,8 @@ from conftest import SCENE, refused
 
 from validation.engine import run_study
 from validation.errors import InputError
-from validation.gallery import site
+from validation.gallery import pages, site
 from validation.gallery.cases import readable
-from validation.gallery.chapters import DrawnChapter
 from validation.gallery.pages import Pages
 from validation.report.blocks import Block, PageBreak
 from validation.results import Results
@@ -76,17 +75,6 @@ def test_a_page_for_each_study_scene_and_calculator(gallery: dict[str, str]) -> 
         for address in re.findall(r'(?:href|src)="([^"#]+)"', text) if name.endswith(".html") else ():
             assert address in gallery or address == "data:,", (name, address)
     assert "article 7480937" in gallery["index.html"] and 'id="feng2017"' in gallery["references.html"]
-
-
-def test_the_first_page_has_a_picture_of_each_scene_and_study(gallery: dict[str, str], results: Results) -> None:
-    pictures = re.findall(r'<svg class="thumbnail".*?</svg>', gallery["index.html"], re.S)
-    assert len(pictures) == 4
-    for picture in pictures:
-        lines = re.findall(r'points="([^"]+)"', picture)
-        places = [tuple(map(float, place.split(","))) for line in lines for place in line.split()]
-        assert len(lines) == 2  # dda and bar
-        assert all(0 <= x <= 120 and 0 <= y <= 48 for x, y in places)
-        assert {min(y for _, y in places), max(y for _, y in places)} == {3.0, 45.0}  # as high as the picture
 
 
 def test_pages_lead_to_the_documentation_where_it_lies_beside_them(results: Results) -> None:
@@ -153,11 +141,13 @@ def test_the_same_results_give_the_same_bytes(gallery: dict[str, str], results: 
 def test_an_earlier_gallery_is_replaced_as_a_whole(
     results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(site, "chapter_for", lambda *_: DrawnChapter((), {}))
+    monkeypatch.setattr(pages, "page_blocks", lambda *_: [])
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / site.NOTICE).write_text("an earlier gallery")
     (tmp_path / "out" / "scene-old.html").write_text("gone")
-    site.build(results, tmp_path / "out")
+    told: list[tuple[int, int]] = []
+    site.build(results, tmp_path / "out", lambda done, total, label: told.append((done, total)))
+    assert told == [(0, 4), (1, 4), (2, 4), (3, 4)]
     assert "scene-old.html" not in files(tmp_path / "out") and "uPlot" in files(tmp_path / "out")[site.NOTICE]
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
@@ -170,7 +160,7 @@ def test_an_earlier_gallery_stays_where_the_new_one_fails(
 
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / site.NOTICE).write_text("an earlier gallery")
-    monkeypatch.setattr(site, "chapter_for", lambda *_: fail())
+    monkeypatch.setattr(pages, "page_blocks", lambda *_: fail())
     with pytest.raises(InputError, match="cannot be written: No space left"):
         site.build(results, tmp_path / "out")
     assert files(tmp_path / "out") == {site.NOTICE: "an earlier gallery"}
@@ -188,13 +178,6 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     ):
         assert said in refused("gallery", "--out", out, "--results", "nothing", cwd=tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"file", "mine"}
-
-
-def test_progress_is_told_page_by_page(results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(site, "chapter_for", lambda *_: DrawnChapter((), {}))
-    told: list[tuple[int, int]] = []
-    site.build(results, tmp_path / "out", lambda done, total, label: told.append((done, total)))
-    assert told == [(0, 4), (1, 4), (2, 4), (3, 4)]
 
 
 def test_every_kind_of_block_has_its_form(results: Results) -> None:
@@ -220,9 +203,10 @@ def test_what_is_shipped_is_in_the_wheel_and_named_with_its_licence() -> None:
 
 
 def test_figures_are_well_formed_and_their_letters_drawn(gallery: dict[str, str]) -> None:
-    figures = re.findall(r"<svg.*?</svg>", gallery["scene-passing.html"], re.S)
+    assert 'Histories to zoom: <a href="scene-passing.html">' in gallery["study-passing.html"]
+    figures = re.findall(r"<svg.*?</svg>", gallery["study-passing.html"], re.S)
     assert figures
-    named = set(re.findall(r' id="([^"]+)"', gallery["scene-passing.html"]))
+    named = set(re.findall(r' id="([^"]+)"', gallery["study-passing.html"]))
     for text in figures:
         ET.fromstring(text)
         assert set(re.findall(r'href="#([^"]+)"', text)) | set(re.findall(r"url\(#([^)]+)\)", text)) <= named

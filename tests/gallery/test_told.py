@@ -14,7 +14,7 @@ from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.errors import InputError
 from validation.gallery import cases as cases_of_gallery
-from validation.gallery import chapters, judged, scene_data, verdicts, work
+from validation.gallery import chapters, judged, scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import GalleryScene, GalleryStudy, studies_and_scenes
 from validation.gallery.histories import Sampling
@@ -23,12 +23,10 @@ from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
 from validation.report.blocks import Table, TableColumn
 from validation.report.chapters.data import CaseResults
-from validation.report.names import escaped
 from validation.runs import files
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
-from validation.studies.work.points import Point
 
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
 
@@ -123,20 +121,12 @@ def scene_named(name: str) -> GalleryScene:
     return GalleryScene(name, name, f"{name}.html", (), (), ())
 
 
-def test_a_figure_leads_to_the_scene_that_it_shows() -> None:
-    scenes = [scene_named(name) for name in ("rocking", "rocking-pulse", "$lope")]
-    for shown, name in (("rocking-pulse", "rocking-pulse"), ("rocking", "rocking"), (escaped("$lope"), "$lope")):
-        found = chapters.scene_of_figure(chapters.Drawing("history.svg", "", "", shown), scenes)
-        assert found is not None and found.name == name
-    assert chapters.scene_of_figure(chapters.Drawing("rocking-first.svg", "", "", ""), scenes) is None
-
-
 def test_a_chapter_that_cannot_be_drawn_says_why(tmp_path: Any) -> None:
     study = GalleryStudy("lost", "study-lost.html", {"study": "lost"}, (), ())
     results = Results(tmp_path)
     results.write_json("studies/lost.json", {"study": "another"})
-    (said,) = chapters.chapter_for(results, study).blocks
-    assert "The chapter cannot be drawn from these results" in said.text and "another" in said.text  # type: ignore[union-attr]
+    (said,) = chapters.page_blocks(results, study)
+    assert "The chapter cannot be drawn from these results" in said["text"] and "another" in said["text"]
 
 
 def page_of(*words: tuple[str, int]) -> Pages:
@@ -160,7 +150,7 @@ def test_the_first_page_lists_what_fails_with_value_before_band_and_counts_by_wo
 def test_the_page_of_a_scene_names_its_own_studies_and_the_cases_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     pages = page_of()
     monkeypatch.setattr(scene_data, "drawn", lambda scene, most: list(scene.cases[:2]))
-    text = pages.scene(pages._scenes[0], ())
+    text = pages.scene(pages._scenes[0])
     assert 'href="study-a.html"' in text and 'href="study-b.html"' not in text and "of the study" in text
     assert "2 of 3 cases are drawn" in text
 
@@ -215,19 +205,6 @@ def test_the_earlier_gallery_returns_where_the_new_one_cannot_take_its_place(
 
 
 # ---- error against cost, calculators --------------------------------------------------------------------------------
-
-
-def test_a_run_has_its_label_its_costs_and_its_errors_by_quantity_and_reference() -> None:
-    errors = {("displacement", "bar"): 0.25, ("displacement", "continuum"): 0.5, ("contact pressure", "bar"): 0.0}
-    cost = {"work": {"unknowns": 6, "steps": 40}, "seconds": {"setup": 0.25, "stepping": 0.5}}
-    run = Point("fem, linear", CASE, made_row("fem", **cost), errors)
-    found = work._plot([run])
-    assert found["references"] == ["continuum", "bar"]
-    assert found["quantities"][:2] == ["displacement", "contact pressure"]
-    (one,) = found["runs"]
-    assert one["label"] == f"dt = 2 ms, {CASE.fem.per_side} elements a side"
-    assert one["errors"][:2] == [[0.5, 0.25], [None, None]]
-    assert dict(zip(found["costs"], one["costs"], strict=True))["seconds"] == 0.75 and 240.0 in one["costs"]
 
 
 def test_the_calculators_begin_with_the_papers_block() -> None:

@@ -10,10 +10,10 @@ from pathlib import Path
 import matplotlib.colors
 from oracles.made_engines import PROBLEMS, PROGRAMS, curve, table
 
-from validation.gallery.engines import program_blocks
-from validation.report.blocks import FigureBlock, Heading, Paragraph, Table
+from validation.report.blocks import FigureBlock, Table
 from validation.report.chapters import engines
 from validation.report.chapters.data import spoken_of
+from validation.report.chapters.programs import absent_of
 from validation.report.figures.curves import _ENGINE_COLORS, style_of
 from validation.report.figures.engines import BACKGROUND, LARGEST, LEAST, engine_figure
 from validation.studies.engines.best import best_of_family, reached
@@ -207,7 +207,7 @@ def test_a_number_of_the_problem_and_of_other_cases_names_them_all() -> None:
 
 
 def test_what_has_no_verdict_says_why() -> None:
-    rows = engines.absent(ENGINES).rows
+    rows = absent_of(ENGINES, engines.installed_programs(ENGINES)).rows
     assert ("Newton XPBD", "restitution", "it has no restitution") in rows
     assert ("", "pile", "no answer: Stopped: no memory") in rows
     assert not any("Drake" in row[0] for row in rows)
@@ -268,24 +268,3 @@ def test_no_word_is_of_a_failed_answer_alone() -> None:
     assert rows_of(engines.side_by_side(wrong, PROBLEMS[0]))["Box2D"][0] == "FAIL overflow"
     assert dict(itertools.pairwise(rows_of(engines.overview(wrong))["Box2D"]))["chosen"] == "FAIL"
     assert NOT_RUN not in itertools.chain(*engines.overview(wrong).rows)
-
-
-def test_a_program_has_a_section_of_its_own_in_the_gallery() -> None:
-    blocks = program_blocks(ENGINES)
-    titles = [block.text for block in blocks if isinstance(block, Heading)]
-    assert titles == ["Program by program", "Siconos", "Newton XPBD", "Box2D", "Exact motion"]
-    words = [block.text for block in blocks if isinstance(block, Paragraph)]
-    assert words[:4] == [
-        "Siconos 1.5: impulses.",
-        "Chosen settings: settings of Siconos.",
-        "As it comes: its defaults.",
-        "Adapter: examples/peers/peers/siconos.py; install by pip install siconos.",
-    ]
-    assert words[-2:] == ["Exact motion.", "Settings: none."]
-    siconos, *_, exact = (block for block in blocks if isinstance(block, Table))
-    assert [column.title for column in siconos.columns] == ["Problem", "Chosen settings", "As it comes", "Curve"]
-    problem, chosen, default, curve_says = siconos.rows[0]
-    assert (problem, chosen, default) == ("standing", "PASS creep 0.1 mm/s", "FAIL creep 48 mm/s")
-    assert curve_says.startswith("Chosen: the error falls")
-    assert "as it comes: the error does not shrink" in curve_says
-    assert [column.title for column in exact.columns] == ["Problem", "Answer", "Curve"]

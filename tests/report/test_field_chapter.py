@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from validation.report.blocks import Table as Shown
+from validation.report.chapters import field as chapter
 from validation.report.chapters.data import spoken_of
-from validation.report.chapters.field import absent, by_problem, counted, failures, programs
+from validation.report.chapters.field import counted
+from validation.report.chapters.programs import absent_of, installed_of
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS, Cell, ProblemLine, ProgramLine
 from validation.studies.field.table import Table as Field
 
@@ -35,6 +37,22 @@ def cells() -> dict[tuple[str, str], Cell]:
 
 
 FIELD = Field(PROBLEMS, PROGRAMS, cells())
+
+
+def by_problem(field: Field) -> Shown:
+    return chapter.by_problem(field, installed_of(field, field.programs))
+
+
+def failures(field: Field) -> Shown:
+    return chapter.failures(field, installed_of(field, field.programs))
+
+
+def absent(field: Field) -> Shown:
+    return absent_of(field, installed_of(field, field.programs))
+
+
+def programs(field: Field) -> Shown:
+    return chapter.programs(installed_of(field, field.programs))
 
 
 def test_the_table_has_a_cell_for_every_program_that_ran() -> None:

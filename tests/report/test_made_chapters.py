@@ -192,10 +192,10 @@ def test_sub_blocks_are_told_by_their_first_frequency_over_that_of_the_elements(
     metrics = {"mode1.frequency": 120.0, "mode1.damping": 0.05}
     elements = {"mode1.frequency": 100.0, "mode1.damping": 0.04}
     case = made_case(load_scene("rocking").expand()[0], {"dda": metrics, "fem": elements})
-    (row,) = subblocks._rocking(made_group(case)).rows
+    (row,) = subblocks.rocking(made_group(case)).rows
     assert [float(cell) for cell in row[1:5]] == [120.0, 100.0, 0.05, 0.04] and row[5] == "20\u00a0%"
     low = made_case(case.scene, {"dda": {"mode1.frequency": 75.0}, "fem": elements})
-    assert subblocks._rocking(made_group(low)).rows[0][5] == "−25\u00a0%"
+    assert subblocks.rocking(made_group(low)).rows[0][5] == "−25\u00a0%"
 
 
 # ---- creep and impacts --------------------------------------------------------------------------------------------

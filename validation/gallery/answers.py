@@ -17,7 +17,6 @@ from validation.errors import InputError
 from validation.gallery.chapters import placed
 from validation.gallery.judged import COLORS, badge_of
 from validation.gallery.pages import environment
-from validation.gallery.step_curves import step_curves
 from validation.gallery.svg import Sheet
 from validation.problems.answers import AnswerSet
 from validation.problems.data import PACK, AnswersData, united
@@ -291,7 +290,6 @@ class Site:
             sets=group,
             rows=_table(group),
             stated=[(title, [_stated(judged, field) for judged in group]) for field, title in STATED.items()],
-            curves=step_curves([(judged.answers, judged.judged) for judged in group]),
         )
 
     def curves(self, judged: JudgedSet) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import jinja2
@@ -14,11 +14,8 @@ from markupsafe import Markup, escape
 from validation.gallery import scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS, Calculator
 from validation.gallery.cases import GalleryScene, GalleryStudy, readable
-from validation.gallery.chapters import DrawnChapter, page_blocks, scene_of_figure
-from validation.gallery.histories import LEAST, samples_for
-from validation.gallery.svg import Sheet
-from validation.gallery.thumbnails import thumbnail
-from validation.gallery.work import work_plots
+from validation.gallery.chapters import page_blocks
+from validation.gallery.histories import samples_for
 from validation.report.chapters.text import parameters
 from validation.report.references import PAPER, identity, references
 from validation.runs.case_name import CaseName
@@ -28,6 +25,7 @@ from validation.runs.text import visible
 MENU = (("index.html", "Results"), *((f"{c.id}.html", c.title) for c in CALCULATORS))
 BIBLIOGRAPHY = references()
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
+LINE_BYTES = 900_000  # of all histories; the figures of a full gallery take four times as much
 SCRIPTS = ("uPlot.iife.min.js", "numerals.js", "gallery.js")
 
 
@@ -81,7 +79,7 @@ class Pages:
         self._studies = studies
         self._scenes = scenes
         self._most = scene_data.most_lines(scenes)
-        self._samples = LEAST
+        self._samples = samples_for(scene_data.all_lines(scenes, self._most), LINE_BYTES)
         self._imprint = readable(identity(study.manifest.get("provenance") or {} for study in studies))
         self._docs = docs
         self._menu = (*MENU, (f"{docs}/index.html", "Documentation")) if docs else MENU
@@ -96,13 +94,11 @@ class Pages:
         rows = [(study, verdicts.counts(study.verdicts)) for study in self._studies]
         failures = [verdict for verdict in all_verdicts if verdict["verdict"] == "FAIL"]
         failure_table = verdicts.table(failures) if failures else None
-        thumbnails = {scene.name: thumbnail(self._results, scene) for scene in self._scenes}
         return self._page(
             "index.html.j2",
             "index.html",
             studies=rows,
             scenes=self._scenes,
-            thumbnails=thumbnails,
             counts=verdicts.counts(all_verdicts),
             failed=failure_table,
             paper=PAPER,
@@ -110,38 +106,20 @@ class Pages:
             scripts=SCRIPTS,
         )
 
-    def study(self, study: GalleryStudy, chapter: DrawnChapter) -> str:
+    def study(self, study: GalleryStudy) -> str:
         """Return the page of a study: its chapter, its scenes, its verdicts."""
-        blocks = page_blocks(chapter, study.scenes, Sheet()) if chapter.blocks else []
         return self._page(
             "study.html.j2",
             study.page,
             study=study,
-            blocks=blocks,
-            work=work_plots(self._results, study.manifest),
+            blocks=page_blocks(self._results, study),
             counts=verdicts.counts(study.verdicts),
             table=verdicts.table(study.verdicts),
             scripts=SCRIPTS,
         )
 
-    def fit(self, room: float) -> None:
-        """Draw all histories with as many samples as there is room for [bytes]."""
-        self._samples = samples_for(scene_data.all_lines(self._scenes, self._most), room)
-
-    def figures(self, scene: GalleryScene, chapters: Mapping[str, DrawnChapter]) -> list[dict[str, str]]:
-        """Return the figures of a scene in the chapters of its studies, each once."""
-        sheet = Sheet()
-        figures: dict[str, dict[str, str]] = {}
-        for study in self._studies:
-            if study.name not in scene.studies:
-                continue
-            for file, drawing in chapters[study.name].drawings.items():
-                if file not in figures and scene_of_figure(drawing, study.scenes) is scene:
-                    figures[file] = {"svg": sheet.placed(drawing.svg, drawing.caption), "caption": drawing.caption}
-        return list(figures.values())
-
-    def scene(self, scene: GalleryScene, figures: Sequence[Mapping[str, str]]) -> str:
-        """Return the page of a scene: its parameters, histories, numbers, figures and verdicts."""
+    def scene(self, scene: GalleryScene) -> str:
+        """Return the page of a scene: its parameters, histories, numbers and verdicts."""
         varied: set[str] = set().union(*(CaseName.parse(case.name).values for case in scene.cases))
         return self._page(
             "scene.html.j2",
@@ -151,7 +129,6 @@ class Pages:
             studies=[study for study in self._studies if study.name in scene.studies],
             data=scene_data.data(self._results, scene, self._most, self._samples),
             drawn=len(scene_data.drawn(scene, self._most)),
-            figures=figures,
             counts=verdicts.counts(scene.verdicts),
             table=verdicts.table(scene.verdicts),
             scripts=SCRIPTS,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -10,7 +9,6 @@ from pathlib import Path
 from validation.errors import InputError
 from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import studies_and_scenes
-from validation.gallery.chapters import chapter_for
 from validation.gallery.pages import Pages
 from validation.report.book import ordered_studies, unread_studies
 from validation.runs.files import atomic_directory
@@ -26,9 +24,6 @@ STATIC = (
     "uPlot.min.css",
 )
 NOTICE = "NOTICE.txt"  # licence of what others have written; its first line marks a directory as a gallery
-MOST_BYTES = 4_800_000  # of a gallery, as long as its figures leave room for the fewest samples of its histories
-LINE_BYTES = 1_800_000  # of all histories, which no eye needs more of
-PAGE_BYTES = 11_000  # of a scene's page without histories and figures
 Progress = Callable[[int, int, str], None]
 
 
@@ -60,23 +55,18 @@ def build(
     total = len(studies) + len(scenes)
     with atomic_directory(out) as place:
         pages = Pages(results, studies, scenes, docs)
-        chapters = {}
-        for number, study in enumerate(studies):
-            progress(number, total, study.name)
-            chapters[study.name] = chapter_for(results, study)
-            _write(place / study.page, pages.study(study, chapters[study.name]))
+        for name in (*STATIC, NOTICE):
+            _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
         for calculator in CALCULATORS:
             _write(place / f"{calculator.id}.html", pages.calculator(calculator))
         _write(place / "index.html", pages.index())
         _write(place / "references.html", pages.references())
-        for name in (*STATIC, NOTICE):
-            _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
-        figures = {scene.page: pages.figures(scene, chapters) for scene in scenes}
-        figure_bytes = sum(len(figure["svg"].encode()) for figure in itertools.chain.from_iterable(figures.values()))
-        pages.fit(min(MOST_BYTES - size(place) - figure_bytes - PAGE_BYTES * len(scenes), LINE_BYTES))
+        for number, study in enumerate(studies):
+            progress(number, total, study.name)
+            _write(place / study.page, pages.study(study))
         for number, scene in enumerate(scenes, start=len(studies)):
             progress(number, total, scene.name)
-            _write(place / scene.page, pages.scene(scene, figures[scene.page]))
+            _write(place / scene.page, pages.scene(scene))
     return out / "index.html"
 
 

@@ -241,30 +241,6 @@
     return element("tr", {}, ...cells, element("td", {}, link));
   }
 
-  // ---- error against cost --------------------------------------------------------------------------------------------
-
-  function work(section) {
-    const data = data_of(section), form = section.querySelector("form"), place = section.querySelector(".chart");
-    const said = section.querySelector(".run");
-    const draw = () => {
-      const cost = form.cost.value, quantity = form.quantity.value, reference = form.reference.value;
-      const runs = data.runs.map((run) => ({ ...run, x: run.costs[cost], y: run.errors[quantity][reference] }))
-        .filter((run) => run.x !== null && run.y !== null).sort((a, b) => a.x - b.x);
-      said.textContent = "";
-      if (!runs.length) return place.replaceChildren(element("p", { textContent: "No run has an error here." }));
-      const methods = data.methods.map((method, index) => ({ ...method, index }))
-        .filter((method) => runs.some((run) => run.method === method.index));
-      return chart(place, { x: runs.map((run) => run.x), log: true, logy: true, xlabel: data.costs[cost],
-        ylabel: `error of ${data.quantities[quantity]}`,
-        cursor: (i) => { if (i !== null && i !== undefined && runs[i]) said.textContent =
-          `${data.methods[runs[i].method].name}, ${runs[i].label}: error ${written(runs[i].y, 3)}, ${data.costs[cost]} ${written(runs[i].x, 3)}`; },
-        lines: methods.map((method) => ({ label: method.name, color: method.color, points: true,
-          y: runs.map((run) => run.method === method.index ? run.y : null) })) });
-    };
-    form.addEventListener("change", draw);
-    drawn(draw);
-  }
-
   // ---- calculators -----------------------------------------------------------------------------------------------------
 
   function calculator(place) {
@@ -356,7 +332,6 @@
   }
 
   document.querySelectorAll(".histories").forEach(histories);
-  document.querySelectorAll(".work").forEach(work);
   document.querySelectorAll(".verdicts").forEach(verdicts);
   document.querySelectorAll(".calculator").forEach(calculator);
 })();

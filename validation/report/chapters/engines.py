@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+import itertools
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.programs import (
+    NONE,
+    NONE_INSTALLED,
+    NOT_THIS_VERSION,
+    about_rows,
+    absent_of,
+    cells_of,
+    installed_of,
+)
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, capital, short
 from validation.report.figures import histories
@@ -18,17 +28,14 @@ from validation.studies.field.programs import DEFAULT
 from validation.studies.field.table import (
     FAIL,
     JUDGED,
-    MISSING,
     NOT_APPLICABLE,
     NOT_RUN,
     PARTIAL,
     PASS,
     ProblemLine,
     ProgramLine,
-    is_absent,
 )
 
-NONE = "n. a."
 SETTINGS = {"default": "as it comes", "chosen": "chosen"}  # words for the kind of a program
 OWN_CASE = "as titled"
 GAIN = "gain of energy"  # in the name of a quantity
@@ -79,14 +86,14 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the finding in words, the table, a section for each problem, the programs."""
     engines = read(results)
     if engines is None:
-        return [*opening(manifest), Paragraph("The study was not run by this version; run it again.")]
+        return [*opening(manifest), Paragraph(NOT_THIS_VERSION)]
     blocks: Blocks = [
         *opening(manifest, results.verdicts(manifest["study"]), counted(engines)),
         Paragraph(METHOD),
         *_part("The finding", findings(engines)),
         *best(engines),
         *_part("Programs and problems", overview(engines)),
-        *_part("What is not applicable or gave no answer", absent(engines)),
+        *_part("What is not applicable or gave no answer", absent_of(engines, installed_programs(engines))),
     ]
     for problem in engines.problems:
         blocks += section(engines, problem, directory)
@@ -105,10 +112,10 @@ def counted(engines: EngineTable) -> str:
     installed = installed_programs(engines)
     names = {program.name.removesuffix(DEFAULT) for program in installed if program.kind != "suite"}
     if not names:
-        return "No other program is installed here: README of examples/peers has a recipe for each."
+        return NONE_INSTALLED
     parts = []
     for words, kinds in (("with chosen settings", CHOSEN), ("as they come", DEFAULTS)):
-        verdicts = [cell.verdict for p in installed if p.kind in kinds for cell in _cells(engines, p)]
+        verdicts = [cell.verdict for p in installed if p.kind in kinds for cell in cells_of(engines, p)]
         passed = verdicts.count(PASS) + verdicts.count(PARTIAL)
         if judged := passed + verdicts.count(FAIL):
             parts.append(f"{passed} of {judged} answers pass {words}")
@@ -170,7 +177,7 @@ def _who_gains(engines: EngineTable, kinds: Collection[str]) -> str:
         if program.kind not in kinds:
             continue
         values = []
-        for cell in _cells(engines, program):
+        for cell in cells_of(engines, program):
             measured = [
                 quantity for quantity in cell.quantities if GAIN in quantity.name and quantity.value is not None
             ]
@@ -199,18 +206,7 @@ def plain_title(program: ProgramLine) -> str:
 
 def installed_programs(engines: EngineTable) -> list[ProgramLine]:
     """Return the programs that are there, family by family; one that gave no answer at all is among them."""
-    return [p for programs in by_family(engines).values() for p in programs if _is_there(engines, p)]
-
-
-def _is_there(engines: EngineTable, program: ProgramLine) -> bool:
-    if not program.installed:
-        return False
-    cells = _cells(engines, program)
-    return not is_absent([(cell.verdict == NOT_APPLICABLE or MISSING in cell.reason, cell.reason) for cell in cells])
-
-
-def _cells(engines: EngineTable, program: ProgramLine) -> list[EngineCell]:
-    return [engines.cells[problem.name, program.name] for problem in engines.problems]
+    return installed_of(engines, itertools.chain(*by_family(engines).values()))
 
 
 def overview(engines: EngineTable) -> Table:
@@ -226,7 +222,7 @@ def overview(engines: EngineTable) -> Table:
         name = "" if plain_title(program) == title else plain_title(program)
         title = plain_title(program)
         settings = SETTINGS.get(program.kind, "").replace(" ", "\u00a0")
-        rows.append((name, settings, *map(_mark, _cells(engines, program))))
+        rows.append((name, settings, *map(_mark, cells_of(engines, program))))
     missing = [plain_title(p) for p in engines.programs if p not in installed and p.kind != "default"]
     notes = [NOTE, f"Not installed: {', '.join(missing)}."] if missing else [NOTE]
     columns = [TableColumn(problem.name, "outcome") for problem in engines.problems]
@@ -286,7 +282,7 @@ def prices(engines: EngineTable) -> Table:
 def _families(engines: EngineTable) -> list[str]:
     families = []
     for family, programs in by_family(engines).items():
-        if family != "suite" and any(_is_there(engines, program) for program in programs):
+        if family != "suite" and installed_of(engines, programs):
             families.append(family)
     return families
 
@@ -302,34 +298,6 @@ def _best(engines: EngineTable, problem: str, family: str) -> str:
 def seconds(value: float | None) -> str:
     """Return seconds to two digits."""
     return DASH if value is None else f"{short(float(f'{value:.2g}'), 2)}\u00a0s"
-
-
-def absent(engines: EngineTable) -> Table:
-    """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
-    rows = _lines(engines, (NOT_APPLICABLE, NOT_RUN), _reason)
-    return table(("Program", "Problems", TableColumn("Reason", "fill")), rows)
-
-
-def _reason(cell: EngineCell) -> str:
-    reason = cell.reason.removeprefix("the solver says that it is not made for this scene: ")
-    return f"no answer: {reason}" if cell.verdict == NOT_RUN else reason
-
-
-def _lines(
-    engines: EngineTable, verdicts: Collection[str], text_of: Callable[[EngineCell], str]
-) -> list[tuple[str, str, str]]:
-    """Return of each program a line for each text, with the problems of these verdicts that it applies to."""
-    lines = []
-    for program in installed_programs(engines):
-        problems_by_text: dict[str, list[str]] = {}
-        for cell in _cells(engines, program):
-            if cell.verdict in verdicts:
-                problems_by_text.setdefault(text_of(cell), []).append(cell.problem)
-        title = program.title
-        for text, problems in problems_by_text.items():
-            lines.append((title, "all" if len(problems) == len(engines.problems) > 1 else ", ".join(problems), text))
-            title = ""
-    return lines
 
 
 # ---- problems -----------------------------------------------------------------------------------------------------
@@ -391,7 +359,10 @@ def _allowed(quantity: Quantity) -> str:
 
 def programs(engines: EngineTable) -> Blocks:
     """Return what each program says of itself, where its adapter is, and the invitation to do better."""
-    rows = list(_about(engines))
+    rows = []
+    for program, is_same, row in about_rows(installed_programs(engines)):
+        has_adapter = program.kind in SETTINGS and not is_same
+        rows.append((*row, adapter(program.name) if has_adapter else ""))
     if not rows:
         return []
     heads = (
@@ -407,22 +378,6 @@ def programs(engines: EngineTable) -> Blocks:
         Paragraph(INVITATION),
         table(heads, rows, notes=(note,)),
     ]
-
-
-def _about(engines: EngineTable) -> Iterator[tuple[str, str, str, str, str]]:
-    previous: ProgramLine | None = None
-    for program in installed_programs(engines):
-        about = program.about
-        version = about.get("version", "")
-        model = about.get("model", "")
-        file = adapter(program.name) if program.kind in ("chosen", "default") else ""
-        if previous is not None and about.get("program") and about.get("program") == previous.about.get("program"):
-            version = ""
-            file = ""
-            if model == previous.about.get("model", ""):
-                model = "the same"
-        yield program.title, version, model, about.get("settings", ""), file
-        previous = program
 
 
 def adapter(name: str) -> str:

@@ -1,0 +1,148 @@
+"""What a chapter says and shows, as the TOML file beside its module describes it; rows, lines and values come in.
+
+    [text]          paragraphs, captions; ``{name}`` stands for a value
+    [table.NAME]    columns, caption, notes, dense, ruled
+    [panel.NAME]    of `ChartPanel`
+    [figure.NAME]   file, caption, height, margins, shared
+
+A column has a title, and where needed a group, a kind and what it is `of`, in a table with a row for each case:
+
+    "dda mode1.frequency"       a metric of a solver
+    "dda|fem displacement.l2"   a metric of a pair
+    "time.step"                 a datum of the scene
+    "label", or another word    the label of the case, or a value that the module computes from the case
+"""
+
+from __future__ import annotations
+
+import operator
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
+from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.text import DASH, bounded, cell, percent, plain, power, short
+from validation.report.figures import histories
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.runs.row import Value
+
+FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written with some digits
+    "plain": plain,
+    "short": short,
+    "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
+    "power": lambda value, _: bounded(value, power(value)),
+    "g": lambda value, _: f"{value:g}",
+}
+CaseValue = Callable[[CaseResults], Value]
+
+
+@dataclass(frozen=True)
+class CaseColumn:
+    """A column of a table: a number in the unit that its title names."""
+
+    title: str
+    of: str = ""
+    group: str = ""  # title that it shares with its neighbours
+    factor: float = 1.0  # from the number's unit to that of the title
+    digits: int = 4
+    decimals: int | None = None  # instead of significant digits
+    form: str = "plain"
+    kind: Kind | None = None  # of its cells; as they show where there is none
+
+    @property
+    def head(self) -> Head:
+        """Its head in the table."""
+        if self.kind is not None:
+            return TableColumn(self.title, self.kind, self.group)
+        return (self.group, self.title) if self.group else self.title
+
+    def text(self, value: Value) -> str:
+        """Return a value as a cell: a number, its word, or a dash where there is none."""
+        if value is None or isinstance(value, str):
+            return cell(value)
+        number = value * self.factor
+        if self.decimals is None:
+            return FORMS[self.form](number, self.digits)
+        # Adding zero takes the sign off a negative zero.
+        return f"{round(number, self.decimals) + 0.0:.{self.decimals}f}".replace("-", "−")
+
+    def of_case(
+        self, case: CaseResults | None, group: CaseGroup | None = None, own: Mapping[str, CaseValue] = {}
+    ) -> str:
+        """Return the cell of a case of a group; `own` are values that a module computes from a case."""
+        if case is None:
+            return DASH
+        if self.of in own:
+            return self.text(own[self.of](case))
+        source, _, metric = self.of.partition(" ")
+        if not metric:
+            return self.text(operator.attrgetter(source)(case if source == "label" else case.scene))
+        solver, _, reference = source.partition("|")
+        if reference:
+            return self.text(group.number_of_pair(case, solver, reference, metric) if group else None)
+        return self.text(case.number(solver, metric))
+
+
+class Description:
+    """The description of a chapter."""
+
+    def __init__(self, module: str) -> None:
+        self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
+
+    def text(self, name: str, **values: Any) -> str:
+        """Return a text with its values."""
+        text: str = self._data["text"][name]
+        return text.format_map(values) if values else text
+
+    def columns(self, name: str) -> list[CaseColumn]:
+        """Return the columns of a table."""
+        columns = self._data["table"][name]["columns"]
+        return [CaseColumn(column) if isinstance(column, str) else CaseColumn(**column) for column in columns]
+
+    def table(self, name: str, rows: Iterable[Sequence[str]], heads: Sequence[Head] = (), **values: Any) -> Table:
+        """Return a table of these rows; `heads` stand in place of the described ones."""
+        described = dict(self._data["table"][name])
+        described.pop("columns", None)
+        if values:
+            described["caption"] = described["caption"].format_map(values)
+        return table(heads or [column.head for column in self.columns(name)], rows, **described)
+
+    def cells(self, name: str, case: CaseResults | None, own: Mapping[str, CaseValue] = {}) -> list[str]:
+        """Return the cells of a case in a table."""
+        return [column.of_case(case, None, own) for column in self.columns(name)]
+
+    def case_table(
+        self,
+        name: str,
+        groups: Iterable[CaseGroup],
+        own: Mapping[str, CaseValue] = {},
+        **values: Any,
+    ) -> Table:
+        """Return a table with a row for each case of some groups."""
+        columns = self.columns(name)
+        rows = []
+        for group in groups:
+            rows += [[column.of_case(case, group, own) for column in columns] for case in group.cases]
+        return self.table(name, rows, **values)
+
+    def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
+        """Return a panel with these lines; `parts` stand beside or in place of the described ones."""
+        described = {"title": "", "x_label": "", "y_label": ""} | self._data["panel"][name] | parts
+        for axis in ("x_ticks", "y_ticks"):
+            if isinstance(described.get(axis), list):
+                described[axis] = dict(described[axis])
+        return ChartPanel(lines=lines, **described)
+
+    def figure(
+        self, name: str, panels: Sequence[ChartPanel], directory: Path, scene: str = "", **values: Any
+    ) -> FigureBlock:
+        """Draw panels as a figure, of one scene or of none, and return its block."""
+        described = self._data["figure"][name]
+        margins = histories.Margins(*described["margins"]) if "margins" in described else None
+        figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
+        file = described["file"].format_map(values)
+        caption = described["caption"].format_map(values) if values else described["caption"]
+        return histories.saved(figure, directory, file, caption, scene)
