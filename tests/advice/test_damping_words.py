@@ -114,10 +114,9 @@ def test_a_mode_is_told_in_words_with_its_numbers(changes: dict[str, Any], words
     )
 
 
-def test_what_is_not_known_of_a_mode_is_a_dash(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_known_of_a_mode_is_a_dash() -> None:
     found = Damping("s", 0.002, 0.0, None, (mode(damping=None, period_elongation=None),), {}, "It is so.")
-    cli_damping._print_damping(found)
-    lines = capsys.readouterr().out.splitlines()
+    lines = "\n".join(cli_damping._damping_lines(found)).splitlines()
     assert lines[2] == "gg = 0 per step"
     assert re.split(r"\s{2,}", lines[4])[3:] == ["-", "4", "1", "0.875", "-"]
 
@@ -173,16 +172,16 @@ def solution(**changes: Any) -> advice.Solution:
 def test_facts_of_a_solution_are_told_with_their_units() -> None:
     flipping = mode(name="contact", least_root=-0.95, omega_dt=7.25)
     error = {"window": 0.4, "fem": {"displacement": 0.0123, "pressure": 0.045}, "continuum": {"not applicable": "so"}}
-    assert cli_damping._facts(solution(contact=flipping), error) == [
-        ("  damping ratio", "5 %"),
-        ("  discount", "gg = 0.97 per step, c = 10.15 1/s"),
-        ("  displacement settles", "40 steps = 0.12 s (from the envelope)"),
-        ("  contact mode", runs(flipping)),
-        ("  differs from fem by", "displacement 1.23 %, pressure 4.5 % over 0.4 s (relative L2)"),
-        ("  differs from continuum by", "so"),
-    ]
-    never = cli_damping._facts(solution(settling_steps=None, settling_seconds=None), {})
-    assert never[2] == ("  displacement settles", "never (from the envelope)")
+    assert dict(cli_damping._facts(solution(contact=flipping), error)) == {
+        "damping ratio": "5 %",
+        "discount": "gg = 0.97 per step, c = 10.15 1/s",
+        "displacement settles": "40 steps = 0.12 s (from the envelope)",
+        "contact mode": runs(flipping),
+        "differs from fem by": "displacement 1.23 %, pressure 4.5 % over 0.4 s (relative L2)",
+        "differs from continuum by": "so",
+    }
+    never = dict(cli_damping._facts(solution(settling_steps=None, settling_seconds=None), {}))
+    assert never["displacement settles"] == "never (from the envelope)"
 
 
 def test_a_rate_that_is_kept_is_named() -> None:

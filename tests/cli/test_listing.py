@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from conftest import refused, typed
 
-from validation.cli.printing.listing import in_columns
+from validation.advice.plain import in_columns
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
 from validation.scenes.keys import default_of, keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes

@@ -11,7 +11,6 @@ from validation.theory.rebound import (
     conserving_steps,
     impact_steps,
     midpoints,
-    mode_damping,
     rebound_statistics,
     rebounds,
     spring_steps,
@@ -147,24 +146,6 @@ def test_a_dashpots_rebound_depends_on_scheme_and_step():
         for omega, mean in zip((0.1, 1.0, 10.0), means, strict=False):
             statistics = rebound_statistics(spring_steps(SCHEMES[name], omega, zeta=0.1))
             assert abs(statistics.mean - mean) < 6e-5
-
-
-def test_the_damping_of_a_closed_contact_by_a_dashpot_depends_on_the_step():
-    omegas = (0.01, 0.1, 0.3, 1.0, 3.0)
-    average = (0.04999917, 0.04991705, 0.04926609, 0.04314700, 0.02348584)
-    constant = (0.05248601, 0.07469009, 0.12230034, 0.25635330, 0.39484612)
-    for omega, first, second in zip(omegas, average, constant, strict=True):
-        assert mode_damping(SCHEMES["average"], omega, 0.05) == pytest.approx(first, abs=6e-9)
-        assert mode_damping(SCHEMES["constant"], omega, 0.05) == pytest.approx(second, abs=6e-9)
-
-
-@pytest.mark.parametrize(
-    ("scheme", "xi"),
-    [("ch-0.8", 0.000685871), ("ch-0.5", 0.0185185185), ("hht-0.1", 0.010125), ("wbz-0.5", 0.0740740741)],
-)
-def test_the_undamped_modes_of_the_tables_have_their_leading_damping(scheme, xi):
-    W = 0.01
-    assert mode_damping(SCHEMES[scheme], W, 0.0) == pytest.approx(xi * W**3, rel=2e-3)
 
 
 def test_numbers_out_of_range_are_named():

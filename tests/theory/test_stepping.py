@@ -6,7 +6,6 @@ import cmath
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 
@@ -128,7 +127,7 @@ def test_damping_ratios_are_those_of_the_printed_table(name: str) -> None:
     stepping = SCHEMES[name]
     for omega, value in zip((W1, W2, W3), PRINTED[name], strict=True):
         if value < 0:
-            assert not stepping.oscillates(omega)
+            assert not (stepping.roots(omega)[0].imag > 0)
             assert stepping.roots(omega)[0].real == pytest.approx(value, rel=1e-8)
             assert math.isnan(stepping.damping_ratio(omega))
         else:
@@ -197,17 +196,13 @@ def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str
     """At z = e^{i w dt} of a free motion the stepped system answers without load: W2 is the mode's own w^2."""
     stepping = replace(SCHEMES[name], step=0.01, gg=0.99)
     natural = 80.0
-    complex_frequency = stepping.complex_frequency(natural)
-    root = stepping.roots(natural * stepping.step)[0]
-    assert cmath.exp(1j * complex_frequency * stepping.step) == pytest.approx(root, rel=1e-12)
+    z = complex(stepping.roots(natural * stepping.step)[0])
     if stepping.scheme == "composite":
         with pytest.raises(InputError) as caught:
             stepping.squared_frequency(1.0)
         assert caught.value.field == "time.scheme"
         return
     # the formula of real frequencies continued to the complex one
-    half = stepping.step * complex_frequency / 2
-    z = complex(mpmath.exp(2j * half))
     turn = z - 1
     if stepping.scheme == "leapfrog":
         squared = -turn * (z - stepping.gg) / (stepping.step**2 * z)
@@ -219,11 +214,11 @@ def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str
     assert squared == pytest.approx(natural**2, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("name", [name for name in SCHEMES if SCHEMES[name].scheme != "composite"])
 def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name: str) -> None:
     stepping = replace(SCHEMES[name], gg=0.9)
     natural, driven = 0.8, 0.5
-    amplitude = complex(stepping.modal_response(driven, natural))
+    amplitude = 1 / (natural**2 - complex(stepping.squared_frequency(driven)))
     state = np.zeros(3, complex)
     state[2] = 1.0
     for n in range(600):
@@ -244,14 +239,6 @@ def driven_step(stepping: Stepping, natural: float, driven: float, n: int, state
     if stepping.scheme == "leapfrog":
         v1 = u + load(n) - square * x
         return np.array([x + v1, v1, 0.0])
-    if stepping.scheme == "composite":
-        a = load(n) - square * x
-        g, q0, q1, q2 = stepping.composite
-        ag = (load(n + g) - square * (x + g * u + g**2 / 4 * a)) / (1 + g**2 / 4 * square)
-        vg = u + g / 2 * (a + ag)
-        known = x + (q0 + q2) * u + q1 * vg + q2 * (q0 * a + q1 * ag)
-        a1 = (load(n + 1) - square * known) / (1 + q2**2 * square)
-        return np.array([known + q2**2 * a1, u + q0 * a + q1 * ag + q2 * a1, a1])
     am, af, beta, gamma = weights(stepping)
     known = x + u + (0.5 - beta) * a
     force = (1 - af) * (load(n + 1) - square * known) + af * (load(n) - square * x)

@@ -10,12 +10,13 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from validation.advice.advice import LARGEST_RATIO
+from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency, percent
 from validation.errors import InputError
 from validation.scenes import features
@@ -67,7 +68,7 @@ class Offer:
 
 
 @dataclass(frozen=True)
-class SchemeAdvice:
+class SchemeAdvice(PlainAnswer):
     """The offers, the recommended first, and one sentence."""
 
     scene: str
@@ -77,10 +78,6 @@ class SchemeAdvice:
     offers: tuple[Offer, ...]
     unreachable: dict[str, float]  # scheme -> the largest xi that it has there
     sentence: str
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def advise_across(

@@ -11,13 +11,14 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.alternatives import alternative
+from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -64,7 +65,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Advice:
+class Advice(PlainAnswer):
     """The answer: all solutions in increasing order, the attainable range, and one sentence."""
 
     scene: str
@@ -80,10 +81,6 @@ class Advice:
     nearest: float | None = None  # xi that comes nearest to the target where that cannot be reached [1]
     nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
     instead: dict[str, float] | None = None  # settings with another parameter that give the target
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
 
 from validation.advice import engines
 from validation.advice.engine_table import (
@@ -24,6 +23,7 @@ from validation.advice.engine_table import (
     Program,
     Settings,
 )
+from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
@@ -75,7 +75,7 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class EngineAdvice:
+class EngineAdvice(PlainAnswer):
     """What to set in a program, and what that is."""
 
     program: str
@@ -94,10 +94,6 @@ class EngineAdvice:
     stiffness_ratio: float | None = None  # of the contact over the block, k h / (E a) [-]
     defaults: dict[str, float | None] = field(default_factory=dict)  # of the program as it comes
     notes: tuple[str, ...] = ()
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def landing_of(scene: Scene) -> Landing:

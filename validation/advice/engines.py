@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from validation.advice.engine_table import (
@@ -17,6 +17,7 @@ from validation.advice.engine_table import (
     PROGRAMS,
     PYBULLET_SLOP,
 )
+from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.theory.restitution import damping_ratio, restitution
@@ -26,7 +27,7 @@ RADIUS_TOLERANCE = 1e-12  # of the spectral radius of a step that keeps the ampl
 
 
 @dataclass(frozen=True)
-class Translation:
+class Translation(PlainAnswer):
     """One contact in the words of each engine and of the suite."""
 
     engine: str  # whose numbers were stated, or "spring"
@@ -48,10 +49,6 @@ class Translation:
     forms: dict[str, dict[str, float]]  # engine -> its parameters for this spring and dashpot
     scene: dict[str, float]  # keys of the scene of a block on two corners
     notes: tuple[str, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def translate(

@@ -11,14 +11,14 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dda.scheme import spectral, viscous
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
+from validation.advice.plain import PlainAnswer
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
@@ -55,7 +55,7 @@ class ModeDamping:
 
 
 @dataclass(frozen=True)
-class Damping:
+class Damping(PlainAnswer):
     """Damping of a scene: modes of the DDA block, first axial mode first, and the reference's first mode."""
 
     scene: str
@@ -66,10 +66,6 @@ class Damping:
     references: dict[str, dict[str, float | None]]  # solver -> frequency and damping of its first axial mode
     sentence: str
     alias: float | None = None  # what samples show of the continuum's first mode where it lies beyond pi / dt [rad/s]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def number(value: float) -> float | None:

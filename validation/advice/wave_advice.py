@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from validation.advice.plain import PlainAnswer
 from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency, percent
@@ -72,7 +72,7 @@ class Passage:
 
 
 @dataclass(frozen=True)
-class WaveAdvice:
+class WaveAdvice(PlainAnswer):
     """Blocks and step for a wave, what limits them, and what the present ones do."""
 
     scene: str
@@ -88,10 +88,6 @@ class WaveAdvice:
     limits_step: str
     sentence: str  # what the present ones do
     advice: str  # what is advised, or why nothing is
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)

@@ -75,14 +75,15 @@ def list_command(
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
-    from validation.cli.printing.listing import LISTS, in_columns, short
-    from validation.cli.printing.output import terminal_width
+    from validation.advice.plain import in_columns
+    from validation.cli.printing.listing import LISTS, short
+    from validation.cli.printing.output import columns, terminal_width
     from validation.errors import InputError
 
     if what is not None and what not in LISTS:
         raise InputError(f"must be one of {', '.join(sorted(LISTS))}", field="list", value=repr(what))
     if what is not None:
-        echo(in_columns(LISTS[what](), terminal_width()))
+        echo(columns(LISTS[what]()))
         return
     for title, lines in short().items():
         echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")

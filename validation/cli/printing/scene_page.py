@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from validation.advice.plain import Line, in_columns
 from validation.cli.printing import numbers
-from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
 from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
