@@ -288,6 +288,10 @@ class Stepping:
         order = np.lexsort((-turns.imag, -np.round(np.abs(1 + turns), 14), ~oscillating))
         return np.asarray(1 + turns[order], complex)
 
+    def oscillates(self, omega_dt: float) -> bool:
+        """Whether the principal roots are a complex pair."""
+        return bool(abs(self.roots(omega_dt)[0].imag) > 0)
+
     def damping_ratio(self, omega_dt: float) -> float:
         """Return xi = -(l1 + l2) / (2 sqrt(l1 l2)), l = ln z of the principal pair; NaN where a root is not positive.
 
