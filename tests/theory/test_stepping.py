@@ -12,7 +12,7 @@ import pytest
 from validation.errors import InputError
 from validation.scenes.scene import load_scene
 from validation.theory import spectra
-from validation.theory.schemes import CARDS, aliases
+from validation.theory.schemes import CARDS
 from validation.theory.stepping import Stepping
 
 NAMED = Stepping.named
@@ -266,36 +266,14 @@ def test_schemes_of_one_table_are_one_scheme() -> None:
             assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
 
 
-@pytest.mark.parametrize(
-    ("stepping", "words"),
-    [
-        (AVERAGE, "average acceleration"),
-        (Stepping(1.0, 1.0, 1.5), "implicit Euler"),
-        (Stepping(1.0, 0.36, 0.7), "Moreau's theta = 0.6"),
-        (Stepping(1.0, 0.0, 0.5), "central differences"),
-        (NAMED("chung-hulbert", rho_inf=0.0), "Houbolt"),
-        (NAMED("wbz", rho_inf=0.0), "chung-hulbert with rho_inf = 0"),
-        (NAMED("chung-hulbert", rho_inf=0.5), "hht with rho_inf = 1/2"),
-        (NAMED("hht", rho_inf=0.9 / 1.1), "HHT's alpha is -0.1 in papers and 0.9 in OpenSees"),
-        (NAMED("chung-hulbert", rho_inf=0.8), "alpha_M = 0.666667, alpha_F = 0.555556"),
-        (NAMED("composite"), "TR-BDF2"),
-        (NAMED("composite", split=0.5), "three-point backward Euler"),
-        (NAMED("leapfrog"), "symplectic Euler"),
-    ],
-)
-def test_aliases_are_said(stepping: Stepping, words: str) -> None:
-    assert any(words in sentence for sentence in aliases(stepping))
-    assert aliases(CONSTANT) == ()
-
-
 def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s() -> None:
     import dda
     import fem_reference
 
-    assert tuple(card.name for card in CARDS) == dda.SCHEMES == fem_reference.SCHEMES
-    for card in CARDS[1:]:
-        stepping = NAMED(card.name, rho_inf=None if card.name == "leapfrog" else 0.7)
-        assert (str(stepping.order), stepping.solves) == (card.order, card.solves)
+    assert tuple(CARDS) == dda.SCHEMES == fem_reference.SCHEMES
+    for name, card in list(CARDS.items())[1:]:
+        stepping = NAMED(name, rho_inf=None if name == "leapfrog" else 0.7)
+        assert (str(stepping.order), stepping.solves) == (card["order"], card["solves"])
 
 
 def test_spectra_of_a_scene_follow_its_scheme() -> None:

@@ -78,8 +78,6 @@ class Advice(PlainAnswer):
     greatest: float | None  # greatest xi [1]
     greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
-    nearest: float | None = None  # xi that comes nearest to the target where that cannot be reached [1]
-    nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
     instead: dict[str, float] | None = None  # settings with another parameter that give the target
 
 
@@ -193,16 +191,13 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
     text = _sentence(scene, solve_for, damping, solutions, reach)
     answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    return answer if solutions else _with_alternative(answer, scene, modes[0].frequency, highest)
-
-
-def _with_alternative(answer: Advice, scene: Scene, first: float, highest: float) -> Advice:
-    """Return an answer of "no" with the nearest that can be had and what to change."""
-    makes = {kind: functools.partial(make, frequency=first, highest=highest) for kind, make in SEARCHES.items()}
-    other = alternative(scene, answer.solve_for, answer.target, makes, first)
-    settings = None if other.settings is None else dict(other.settings)
-    text = f"{answer.sentence} {other.words}"
-    return replace(answer, sentence=text, nearest=other.nearest, nearest_at=other.nearest_at, instead=settings)
+    if solutions:
+        return answer
+    makes = {
+        kind: functools.partial(make, frequency=modes[0].frequency, highest=highest) for kind, make in SEARCHES.items()
+    }
+    instead, words = alternative(scene, solve_for, damping, makes, modes[0].frequency)
+    return replace(answer, sentence=f"{answer.sentence} {words}", instead=instead)
 
 
 def _everywhere(search: Search, target: float) -> bool:

@@ -45,6 +45,7 @@ from validation.cli.app import (
     app,
     known_targets,
     one_case,
+    print_warnings,
     refuse_bad_input,
 )
 from validation.cli.printing.output import echo, echo_json
@@ -128,12 +129,11 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.cli.printing.costs import print_before_run
     from validation.engine.shards import Shard
     from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.studies.catalogue import STUDIES, resolve
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     part = None if shard is None else Shard.parse(shard)
@@ -155,7 +155,11 @@ def run(
             "ranks": ranks,
         }
         raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
-    print_before_run(studies, quiet)
+    for study in studies:
+        if study.name not in STUDIES:  # the suite's own studies are extreme on purpose
+            for scene in study.scenes:
+                if not isinstance(scene, str):
+                    print_warnings(scene)
     runs, seconds = _run_studies(studies, store, machine, judging)
     answer_and_exit(runs, seconds, store, judging, before)
 

@@ -81,9 +81,9 @@ def schemes() -> list[Line]:
     from validation.theory.schemes import CARDS
 
     lines: list[Line] = [("scheme", "parameters", "order", "solves", "description")]
-    for card in CARDS:
-        description = f"good: {card.good}. bad: {card.bad}. the same as: {card.aliases}"
-        lines += [BREAK, (card.name, card.parameters, card.order, str(card.solves), description)]
+    for name, card in CARDS.items():
+        description = "good: {good}. bad: {bad}. the same as: {aliases}".format(**card)
+        lines += [BREAK, (name, card["parameters"], card["order"], str(card["solves"]), description)]
     return lines
 
 
