@@ -38,10 +38,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
 
 
-def test_metrics_stand_in_groups_one_for_each_first_part() -> None:
-    assert_grouped(listed("metrics"))
-
-
 def assert_grouped(lines: list[str]) -> None:
     groups = "\n".join(lines).split("\n\n")
     names = [{line.split()[0].partition(".")[0] for line in group.splitlines()} - {"metric"} for group in groups]
