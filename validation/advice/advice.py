@@ -18,6 +18,7 @@ import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.alternatives import alternative
+from validation.advice.limits import check_choice
 from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
@@ -174,8 +175,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
             value=f"{damping:g}",
             advice=f"{damping:g} % is {damping / 100:g}",
         )
-    if solve_for not in KINDS:
-        raise InputError(f"must be one of {', '.join(KINDS)}", field="solve_for", value=repr(solve_for))
+    check_choice("solve_for", solve_for, KINDS)
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
     highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only

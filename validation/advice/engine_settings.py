@@ -19,10 +19,10 @@ from validation.advice.engine_table import (
     MUJOCO_IMPEDANCES,
     MUJOCO_STEPS,
     PROGRAMS,
-    Parameter,
     Program,
     Settings,
 )
+from validation.advice.limits import Limit, check_choice
 from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.scenes.scene import Scene
@@ -194,16 +194,14 @@ def advise_landing(
     points: int | None = None,
 ) -> EngineAdvice:
     """Return what to set in a program for a landing; see `advise_engine`."""
-    if program not in PROGRAMS_ADVISED:
-        raise InputError(f"must be one of {', '.join(PROGRAMS_ADVISED)}", field="--for", value=repr(program))
+    check_choice("--for", program, PROGRAMS_ADVISED)
     if (targets.penetration, targets.restitution, targets.hidden) == (None, None, None):
         raise InputError(
             "one of them must be given", field="--penetration, --restitution, --hidden-damping", value="neither"
         )
     stated = (targets.penetration, targets.restitution, targets.hidden, speed, step, points)
     for limit, value in zip(LIMITS, stated, strict=True):
-        if value is not None:
-            limit.check(value)
+        limit.check(value)
     described = PROGRAMS[program]
     if points is None:
         points = described.points if landing.box is not None else 1
@@ -229,12 +227,12 @@ def advise_landing(
 
 
 LIMITS = (
-    Parameter("--penetration", above=0.0, below=math.inf, rule="must be positive"),
-    Parameter("--restitution", above=0.0, below=1.0, ends=(0.0, 1.0), rule="must be from 0 to 1"),
-    Parameter("--hidden-damping", above=0.0, below=1.0, rule="must be between 0 and 1"),
-    Parameter("--speed", above=0.0, below=math.inf, rule="must be positive"),
-    Parameter("--step", above=0.0, below=math.inf, rule="must be positive"),
-    Parameter("--points", above=0.0, below=math.inf, rule="must be at least 1"),
+    Limit("--penetration", "must be positive"),
+    Limit("--restitution", "must be from 0 to 1", below=1.0, ends=(0.0, 1.0)),
+    Limit("--hidden-damping", "must be between 0 and 1", below=1.0),
+    Limit("--speed", "must be positive"),
+    Limit("--step", "must be positive"),
+    Limit("--points", "must be at least 1"),
 )
 
 

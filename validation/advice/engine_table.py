@@ -5,9 +5,8 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from validation.errors import InputError
+from validation.advice.limits import Limit
 
 GRAVITY = 9.81  # m/s2
 BOX2D_LIMIT = 0.125  # of the rate of substeps: the greatest hertz of a contact between moving bodies
@@ -28,25 +27,8 @@ class Parameter:
     meaning: str = ""
     formula: str = ""  # of the spring and the dashpot on an effective mass m
     default: tuple[float, ...] = ()  # of the program; empty where it has none
-    above: float | None = None  # what it must lie above, and below; None where other numbers decide
-    below: float | None = None
-    ends: tuple[float, ...] = ()  # of these limits that are allowed
-    rule: str = ""
-    advice: str | None = None
+    limit: Limit | None = None  # None where other numbers decide
     absent: str | None = None  # what to say where it must be stated
-
-    def check(self, value: float) -> None:
-        """Refuse a value out of its range; NaN holds no rule.
-
-        Raises
-        ------
-        InputError
-            With the rule.
-        """
-        if self.above is None or self.below is None or self.above < value < self.below or value in self.ends:
-            return
-        shown = f"{value:g}" if isinstance(value, float) else value
-        raise InputError(self.rule, field=self.name, value=shown, advice=self.advice)
 
 
 @dataclass(frozen=True)
@@ -77,9 +59,10 @@ def _programs() -> dict[str, Program]:
     programs = {}
     for name, entry in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")).items():
         parameters = []
-        for parameter, numbers in entry.pop("parameters").items():
-            lists: dict[str, Any] = {key: tuple(numbers.pop(key, ())) for key in ("default", "ends")}
-            parameters.append(Parameter(parameter, **lists, **numbers))
+        for parameter, stated in entry.pop("parameters").items():
+            limit = Limit(parameter, **stated.pop("limit")) if "limit" in stated else None
+            default = tuple(stated.pop("default", ()))
+            parameters.append(Parameter(parameter, default=default, limit=limit, **stated))
         programs[name] = Program(name, parameters=tuple(parameters), **entry)
     return programs
 

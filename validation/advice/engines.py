@@ -17,6 +17,7 @@ from validation.advice.engine_table import (
     PROGRAMS,
     TRANSLATED,
 )
+from validation.advice.limits import Limit, check_choice
 from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.runs.history import Array
@@ -103,8 +104,7 @@ def translate(
     >>> round(1e3 * contact.rest_penetration, 6), round(contact.determinant, 8)
     (0.2761, 0.05772068)
     """
-    if engine not in PARAMETERS:
-        raise InputError(f"must be one of {', '.join(PARAMETERS)}", field="engine", value=repr(engine))
+    check_choice("engine", engine, PARAMETERS)
     for name in parameters:
         if name not in PARAMETERS[engine]:
             rule = f"is no parameter of {engine}"
@@ -123,16 +123,14 @@ def translate(
         missing = []  # dmax stands in its place
     if missing:
         raise InputError(f"must be stated for {engine}", field=missing[0].name, advice=missing[0].absent)
-    _require(points >= 1, "must be at least 1", "points", points)
+    Limit("points", "must be at least 1").check(points)
     if box is not None:
         _require(len(box) == 2 and min(box) > 0, "must be a positive width and height", "box", box)
-    if step is not None:
-        _require(0 < step < math.inf, "must be positive", "step", step)
+    Limit("step", "must be positive").check(step)
     effective, weight = _masses(mass, block_mass, gravity)
     body = Body(effective, weight, step, points, lever(box, points), static)
     contact = contact_of(engine, body, parameters)
-    if contact.stiffness <= 0 or not math.isfinite(contact.stiffness):
-        raise InputError("must be positive and finite", field="stiffness", value=f"{contact.stiffness:g}")
+    Limit("stiffness").check(contact.stiffness)
     solimp = parameters.get("solimp")
     has_constant_numbers = solimp is None or solimp[0] == solimp[1]
     if not has_constant_numbers:
@@ -182,8 +180,8 @@ def _masses(mass: float | None, block_mass: float | None, gravity: float) -> tup
         )
     name, value = ("mass", mass) if mass is not None else ("block_mass", block_mass)
     total = float(value or 0.0)
-    _require(0 < total < math.inf, "must be positive and finite", name, total)
-    _require(0 <= gravity < math.inf, "must not be negative", "gravity", gravity)
+    Limit(name).check(total)
+    Limit("gravity", "must not be negative", ends=(0.0,)).check(gravity)
     effective = total if mass is not None else QUARTER * total
     return effective, total * gravity
 
@@ -197,8 +195,8 @@ def contact_of(engine: str, body: Body, parameters: Mapping[str, Any]) -> SoftCo
         A parameter is out of its range.
     """
     for parameter in TRANSLATED[engine].parameters:
-        if parameter.name in parameters:
-            parameter.check(parameters[parameter.name])
+        if parameter.limit is not None:
+            parameter.limit.check(parameters.get(parameter.name))
     mass = body.mass
     points = body.points
     if engine == "box2d":
@@ -226,8 +224,8 @@ def _mujoco(body: Body, parameters: Mapping[str, Any]) -> SoftContact:
     is_direct = timeconst < 0 and dampratio <= 0
     if not is_direct:
         advice = "(-stiffness, -damping) per mass is MuJoCo's other form, both not above 0"
-        _require(0 < timeconst < math.inf, "must be positive", "timeconst", timeconst, advice)
-        _require(0 < dampratio < math.inf, "must be positive", "dampratio", dampratio, advice)
+        Limit("timeconst", "must be positive", advice=advice).check(timeconst)
+        Limit("dampratio", "must be positive", advice=advice).check(dampratio)
     if body.step is not None and not is_direct:
         least = MUJOCO_STEPS * body.step
         advice = f"MuJoCo takes {least:g} instead (refsafe): state that, or a step of at most {timeconst / 2:g} s"

@@ -76,14 +76,13 @@ def list_command(
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
+    from validation.advice.limits import check_choice
     from validation.advice.plain import in_columns
     from validation.cli.printing.listing import LISTS, short
     from validation.cli.printing.output import columns, terminal_width
-    from validation.errors import InputError
 
-    if what is not None and what not in LISTS:
-        raise InputError(f"must be one of {', '.join(sorted(LISTS))}", field="list", value=repr(what))
     if what is not None:
+        check_choice("list", what, sorted(LISTS))
         echo(columns(LISTS[what]()))
         return
     for title, lines in short().items():
