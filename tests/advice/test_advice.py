@@ -121,16 +121,14 @@ def test_two_steps_solve_it_where_gg_is_below_one() -> None:
     assert "does not converge" in advise(scene, damping=0.05).sentence
 
 
-@pytest.mark.parametrize(("target", "steps"), [(0.05, 457), (0.2, None)])
-def test_settling_is_that_of_the_history(target: float, steps: int | None) -> None:
+def test_settling_is_that_of_the_history() -> None:
     from validation.engine.case import Case
     from validation.engine.measure import execute
 
-    solution = advise(BASE, damping=target).solutions[0]
-    case = BASE.with_values(solution.settings | {"time.steps": 2000})
+    solution = advise(BASE, damping=0.2).solutions[0]
+    case = BASE.with_values(solution.settings | {"time.steps": 500})
     row, _ = execute(Case(case, "dda"), "key", "test")
     assert solution.settling_steps == row.metrics["displacement.settling_step"]
-    assert steps in (None, solution.settling_steps)
     assert solution.settling_seconds == pytest.approx(solution.settling_steps * solution.value)
 
 

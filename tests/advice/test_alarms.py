@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import beside, typed
+from conftest import beside
 
-from validation.advice.alarms import AGREEMENT, DISCOUNT, RINGING, TENSION, Alarm, alarms, removed_motion
+from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, removed_motion
 from validation.engine.run import finish, run_study
 from validation.gates.gate import Gate
-from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.declaration import Study
 
@@ -34,11 +33,6 @@ def test_agreement_by_damping_is_agreement_beside_what_it_cost(tmp_path: Path, f
     assert AGREEMENT not in raised(light, finished_cases, tmp_path)
 
 
-@pytest.mark.long
-def test_no_agreement_is_warned_of_where_there_is_none(tmp_path: Path, finished_cases: Path) -> None:
-    assert AGREEMENT not in raised(STEPS.expand()[3], finished_cases, tmp_path)  # 64 % apart
-
-
 def test_what_damping_removes_is_algorithmic() -> None:
     scene = STEPS.expand()[1]
     n = np.arange(1, 101)
@@ -48,28 +42,12 @@ def test_what_damping_removes_is_algorithmic() -> None:
     assert removed_motion(kinetic, 0.9) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_hidden_tension_says_when_and_for_how_long(tmp_path: Path, finished_cases: Path) -> None:
-    alarm = raised(STEPS.expand()[2], finished_cases, tmp_path)[TENSION]
-    assert alarm.values["dda.minimum"] == pytest.approx(-0.435e6, abs=500)
-    assert (alarm.values["dda.time"], alarm.values["dda.duration"]) == pytest.approx((0.002, 0.002))
-    assert TENSION not in raised(STEPS.expand()[1], finished_cases, tmp_path, "dda", "bar")
-
-
 def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path, finished_cases: Path) -> None:
     soft, stiff, stiffest = STIFFNESS.expand()
     assert raised(stiffest, finished_cases, tmp_path)[RINGING].values["root"] == pytest.approx(-0.9733, abs=5e-5)
     assert RINGING not in raised(soft, finished_cases, tmp_path) and RINGING not in raised(
         stiff, finished_cases, tmp_path
     )
-
-
-def test_refining_dt_at_a_fixed_discount_is_warned_of(tmp_path: Path) -> None:
-    cases = load_scene("discount-map").expand()
-    study = Study("test", "", "", cases, ("dda",))
-    found = list(alarms(cases, finish(study.cases(), study, Results(tmp_path))))
-    assert [alarm.scene for alarm in found if alarm.kind == DISCOUNT] == ["discount-map"]
-    rate = load_scene("discount-map").with_values({"time.gg_rate": 20.0})
-    assert not [a for a in alarms(rate.expand(), finish([], study, Results(tmp_path))) if a.kind == DISCOUNT]
 
 
 def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path, finished_cases: Path) -> None:
@@ -83,11 +61,3 @@ def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path, finished_cases: 
     assert len(verdicts) == 2 and all(AGREEMENT in v["alarms"] for v in verdicts)
     kinds = {alarm["kind"] for alarm in json.loads((tmp_path / "studies/two.json").read_text())["alarms"]}
     assert kinds == {AGREEMENT, RINGING, TENSION}
-
-
-def test_a_run_counts_its_alarms_and_tells_of_a_fixed_discount(tmp_path: Path) -> None:
-    done = typed("run", "discount-map", "--results", tmp_path)
-    assert done.returncode == 0
-    said = " ".join(done.stdout.split())
-    assert "fixed discount: discount-map: dt is varied at a fixed gg = 0.98" in said and not done.stderr
-    assert "alarms: " in said and "hidden tension in" in said

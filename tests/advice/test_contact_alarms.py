@@ -19,7 +19,7 @@ from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import Scene
 from validation.theory import landing
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
@@ -38,15 +38,12 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
     [
         ({"time.step": 1e-5, "time.steps": 400}, set()),
         ({}, {kinds.LARGE_STEP}),
-        ({"time.step": 2e-3}, {kinds.HIDDEN}),
+        ({"time.step": 2e-3, "time.gg": 0.98}, {kinds.HIDDEN}),
         ({"time.gg": 0.98}, {kinds.LARGE_STEP, kinds.DRAG}),
-        ({"time.gg": 0.98, "time.step": 2e-3}, {kinds.HIDDEN}),
         (STIFF | AVERAGE, {kinds.LARGE_STEP, kinds.MAY_GAIN, kinds.GAINED, kinds.PENALTY}),
         (STIFF | {"time.step": 2e-5, "time.steps": 250}, {kinds.LARGE_STEP, kinds.PENALTY}),  # three contacts in a row
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-4]}, {kinds.PULLING}),
-        ({"time.step": 1e-5, "time.steps": 400, "contact.band": [0.0, 1e-6]}, set()),
         ({"time.step": 1e-5, "time.steps": 400, "contact.band": [1e-3, 0.0]}, {kinds.GAINED}),  # p (1 mm)^2 a landing
-        ({"contact.law": "locked"}, set()),
         ({"load.pressure": -1e6}, set()),  # flies off and never lands
         ({"contact.gap": 2.0}, set()),  # has not landed yet
         (STIFF | AVERAGE | {"contact.rule": "implicit"}, {kinds.LARGE_STEP}),
@@ -139,13 +136,6 @@ def test_the_opening_is_hidden_at_the_known_limits() -> None:
         assert landing.hidden_from(PAPER.with_values(none)) is None
 
 
-def test_the_opening_is_hidden_by_the_height_and_not_the_width() -> None:
-    data = PAPER.definition()
-    del data["block"]["side"]
-    oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
-    assert landing.hidden_from(oblong) == pytest.approx(1.8973665961e-3 * 1.25 / 2, rel=1e-10)
-
-
 def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_one() -> None:
     may = {(0.4, 1.0), (0.45, 0.9), (0.25, 0.5), (0.55, 1.2)}
     cannot = {(0.5, 1.0), (0.75, 1.0), (0.6, 1.2), (0.75, 1.5)}
@@ -157,7 +147,7 @@ def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_on
 
 @pytest.mark.parametrize(
     ("alpha", "delta", "risen"),  # by a recursion of two unknowns, without dda
-    [(0.5, 1.0, 0.0), (0.6, 1.2, 0.0), (0.75, 1.5, 0.0), (0.75, 1.0, 2.4874), (1.0, 1.0, 5.9408)],
+    [(0.6, 1.2, 0.0), (0.75, 1.0, 2.4874)],
 )
 def test_without_switching_energy_rises_at_2_alpha_above_delta_only(alpha: float, delta: float, risen: float) -> None:
     scheme = {"time.alpha": alpha, "time.delta": delta, "time.step": 1e-2, "time.steps": 20, "time.start": "consistent"}

@@ -1,17 +1,14 @@
 """Blocks and step for a wave: what is advised is just good enough, and what the present ones do."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import validation.cli.entry  # noqa: F401 (declares the commands)
 from validation import load_scene, solve
 from validation.advice import wave_advice
 from validation.advice.wave_advice import advise_wave
-from validation.cli.app import app
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
@@ -86,17 +83,6 @@ def test_the_present_step_is_told_in_words() -> None:
     assert (whole.limits_height, whole.blocks) == ("column", (1,))
 
 
-@pytest.mark.parametrize(("delay", "words"), [(0.25, "0.25 periods late"), (-0.25, "0.25 periods early")])
-def test_an_arrival_is_late_or_early_by_its_sign(delay: float, words: str) -> None:
-    way = wave_advice._WavePath(wave_advice.layers_of(COLUMN), 5.0, 1.0)
-    passage = wave_advice.Passage(0.01, 1.0, (2.0,), 0.25, delay, 0.05)
-    said = wave_advice._sentence(COLUMN, way, passage)
-    assert "75 % of a wave arrives" in said and said.endswith(f"{words}.")
-    assert f"lose 25 % of it and bring it {words};" in wave_advice._advised(
-        COLUMN, passage, "column", wave_advice._LargestStep(0.01, "loss")
-    )
-
-
 FREE = {"time.allow_unstable": True}
 SITE = load_scene("waves-site").with_values(FREE)
 JOINT = load_scene("waves-joint").with_values(FREE)
@@ -113,13 +99,17 @@ def with_blocks(scene: Scene, blocks: tuple[int, ...]) -> Scene:
     return scene.with_values({"column.layer": layers, "time.allow_unstable": False})
 
 
-@pytest.mark.parametrize("scheme", [LINEAR, EXPLICIT, {"time.alpha": 0.2, "time.delta": 0.6, "time.gg_rate": 0.1}])
 @pytest.mark.parametrize(
-    ("scene", "frequency"),
-    [(COLUMN.with_values(FREE), 5.0), (SITE, 8.0), (JOINT, 100.0), (JOINT, 250.0), (GLUE, 20.0)],
+    ("scheme", "scene", "frequency"),
+    [
+        (LINEAR, COLUMN.with_values(FREE), 5.0),
+        (EXPLICIT, SITE, 8.0),
+        (EXPLICIT, JOINT, 250.0),
+        ({"time.alpha": 0.2, "time.delta": 0.6, "time.gg_rate": 0.1}, GLUE, 20.0),
+    ],
 )
 def test_a_step_limited_by_stability_is_the_largest_that_the_solver_takes(
-    scene: Scene, frequency: float, scheme: dict[str, float]
+    scheme: dict[str, float], scene: Scene, frequency: float
 ) -> None:
     """Glue, joints and contact springs set the limit, not the blocks alone."""
     scene = scene.with_values(scheme)
@@ -173,32 +163,6 @@ def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
         assert -np.log(1 - loss) == pytest.approx(a0 / 2 * 100 / SPEED, rel=(w * dt) ** 2)
 
 
-def test_the_command_lists_blocks_step_loss_and_delay_of_both() -> None:
-    words = ["advise", "figures-3-4", "--set", "time.step=0.01", "--fmax", "5", "--wavelengths", "4"]
-    found = json.loads(CliRunner().invoke(app, [*words, "--json"]).output)
-    lines = {line.split()[0]: line.split()[1:] for line in CliRunner().invoke(app, words).output.splitlines() if line}
-    for name in ("present", "advised"):
-        one = found[name]
-        shares = f"{100 * one['loss']:.4g}", "%", f"{one['delay']:+.4g}", f"{100 * one['damping']:.4g}", "%"
-        assert lines[name] == [f"{one['heights'][0]:.5g}", f"{one['step']:.6g}", *shares]
-
-
-@pytest.mark.parametrize(
-    ("options", "rule"),
-    [
-        ([], "one of them must be given, got neither"),
-        (["--fmax", "5", "--damping", "0.1"], "one of them must be given, got both"),
-        (["--fmax", "-5"], "--fmax: must be finite and positive"),
-        (["--fmax", "5", "--loss", "1"], "--loss: must be above 0 and below 1"),
-        (["--fmax", "5", "--wavelengths", "0"], "--wavelengths: must be finite and positive"),
-        (["--fmax", "5", "--phase-error", "2"], "--phase-error: must be above 0 and below 1"),
-    ],
-)
-def test_what_the_command_refuses(options: list[str], rule: str) -> None:
-    with pytest.raises(InputError, match=rule):
-        CliRunner().invoke(app, ["advise", "figures-3-4", "--set", "time.step=0.01", *options], catch_exceptions=False)
-
-
 def test_layers_of_a_column_are_cut_each_for_its_own_speed() -> None:
     found = advise_wave(load_scene("waves-site"), 8.0, 0.1)
     assert found.limits_step == "phase error"  # average acceleration loses nothing
@@ -211,24 +175,6 @@ def test_layers_of_a_column_are_cut_each_for_its_own_speed() -> None:
     thickness = np.array([15.0, 10.0, 8.0, 5.0])
     exponent = np.sum(thickness / speeds) * stepping.rayleigh()[1] * w**2 / 2
     assert -np.log(1 - advise_wave(lossy, 8.0, 0.1).present.loss) == pytest.approx(exponent, rel=0.01)
-
-
-def test_layers_share_the_phase_error_that_is_allowed() -> None:
-    scene = load_scene("waves-site")
-    found = advise_wave(scene, 8.0, 0.1)
-    cut = [replace(layer, blocks=n) for layer, n in zip(wave_advice.layers_of(scene), found.blocks, strict=True)]
-    way = wave_advice._WavePath(tuple(cut), 8.0, 1.0)
-    assert abs(way.passed(np.array([way.omega**2 + 0j]))[1][0]) <= 0.025  # half of it; the step has the other
-
-
-@pytest.mark.parametrize(
-    ("gg", "losses", "why"),
-    [(0.9, [0.2, 0.9], "gg"), (0.9, [0.05, 0.9], "scheme"), (1.0, [0.2, 0.9], "scheme")],
-)
-def test_the_discount_is_named_where_it_alone_loses_more_than_is_allowed(
-    gg: float, losses: list[float], why: str
-) -> None:
-    assert wave_advice._why_none(COLUMN.with_values({"time.gg": gg}), losses, 0.1) == why
 
 
 def test_a_block_that_is_no_rectangle_is_refused() -> None:

@@ -173,6 +173,7 @@ def test_an_interruption_is_one_line() -> None:
     assert interrupted("entry.command_line = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_promises_rows_where_the_command_keeps_them() -> None:
     code = "def slow(**options):\n    signals.promise_rows()\n    time.sleep(50)\nentry.command_line = lambda: slow"

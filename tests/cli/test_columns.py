@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import refused, typed
+from conftest import typed
 
 from validation.cli.app import NUMERICAL_FAILURE
 
@@ -60,23 +60,3 @@ def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
     assert done.returncode == NUMERICAL_FAILURE
     assert "needs more solves than its limit" in done.stdout
     assert "ALARM solve limit" in done.stdout
-
-
-def test_advise_needs_no_target_for_a_column_of_contacts(stack: Path) -> None:
-    assert json.loads(typed("advise", stack, "--json").stdout)["solves"] == 8
-    assert typed("advise", stack).stdout.startswith("Allow 8 solves")
-    undamped = ("--set", "time.alpha=0.25", "--set", "time.delta=0.5")  # which never comes to rest: no infinity in JSON
-    assert json.loads(typed("advise", stack, *undamped, "--json").stdout)["settling"] is None
-    assert "--damping and --fmax" in refused("advise", stack, "--fmax", "10")
-
-
-def test_show_draws_the_contacts(stack: Path) -> None:
-    page = typed("show", stack).stdout
-    assert "rigid, v = -1 m/s" in page
-    assert "contacts: law = unilateral, stiffness = 1e+09 Pa/m, gravity = 9.81 m/s2" in page
-    numbers = json.loads(typed("show", stack, "--json").stdout)["numbers"]
-    assert (numbers["contacts"]["low"], numbers["solves"]["low"]) == (7, 8)
-
-
-def test_what_is_of_a_block_is_refused_of_a_column(stack: Path) -> None:
-    assert "takes scenes of a block only" in refused("contact", stack, "--penetration", "1e-3")

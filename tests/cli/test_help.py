@@ -16,9 +16,7 @@ from oracles.submissions import right_answer
 from validation import load_scene, solve
 from validation.cli import app as command_line
 from validation.cli.entry import GROUPS, app
-from validation.cli.printing import costs
 from validation.errors import InputError
-from validation.studies.catalogue import STUDIES
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 FAIL = [["judge", "locked", "--solver", "my_solver:solve"]]  # by the damping of the scheme that the scene names
@@ -79,18 +77,6 @@ def test_every_command_stands_in_one_group_of_the_help() -> None:
     page = typed("--help").stdout
     for group in GROUPS:
         assert group in page
-
-
-def test_a_long_run_says_its_length_by_a_table_that_has_every_study() -> None:
-    assert list(costs.COSTS) == list(STUDIES)
-    assert costs.announcement(["core"]) is None and costs.announcement(["my-scene"]) is None
-    alone = costs.announcement(["stability"])
-    assert alone is not None and alone.startswith("stability: ") and "% of it" not in alone
-    sentence = costs.announcement(list(STUDIES))
-    minutes = sum(costs.COSTS.values()) * costs.SECONDS / 60
-    assert sentence is not None and f"about {minutes:.0f} min where core takes 20 s" in sentence
-    share = 100 * costs.COSTS["stability"] / sum(costs.COSTS.values())
-    assert f"stability is {share:.0f} %" in sentence
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from conftest import refused, typed
 
-from validation.cli.printing.listing import in_columns
+from validation.advice.plain import in_columns
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
 from validation.scenes.keys import default_of, keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
@@ -36,10 +36,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
         found[cells[0]] = cells[1:]
     for metric in CATALOGUE.values():
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
-def test_metrics_stand_in_groups_one_for_each_first_part() -> None:
-    assert_grouped(listed("metrics"))
 
 
 def assert_grouped(lines: list[str]) -> None:

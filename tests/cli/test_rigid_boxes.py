@@ -95,20 +95,6 @@ def test_a_landing_a_contact_and_a_ground_that_moves(tmp_path: Path) -> None:
     assert any("slips" in remark for remark in page["remarks"])
 
 
-def test_equal_boxes_are_drawn_as_one_and_others_by_themselves(tmp_path: Path) -> None:
-    box = "[[rigid.box]]\nwidth = 0.6\nheight = 1.2\ndensity = 2500.0\n"
-    file = tmp_path / "boxes.toml"
-    file.write_text(SCENE.replace("[time]", f"{box}{box.replace('0.6', '1.2')}[time]"))
-    lines = typed("show", file).stdout.splitlines()
-    numbers = [line.split("|")[1].strip() for line in lines if line.count("|") == 2]
-    assert [number for number in numbers if number] == ["3", "1-2"]
-    widths = [line.count("-") for line in lines if line.lstrip().startswith("+-")]
-    assert widths[0] == widths[1] == 15
-    assert widths[2] == widths[3] == 8
-    assert any("friction 19 deg, restitution 0" in line for line in lines)
-    assert any("slope of 20 deg, down to the right" in line for line in lines)
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -133,6 +119,7 @@ def test_compare_refuses_them_before_it_looks_for_columns(rigid_file: Path, tmp_
     assert "rigid boxes" in refused("compare", rigid_file, history)
 
 
+@pytest.mark.long
 def test_a_scene_of_boxes_is_run_reported_and_drawn(rigid_file: Path, tmp_path: Path) -> None:
     results = ("--results", tmp_path / "results")
     done = typed("run", rigid_file, *results)

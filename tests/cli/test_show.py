@@ -65,7 +65,7 @@ def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: P
 
 @pytest.mark.parametrize(
     ("name", "values"),
-    [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]}), ("figures-5-6", {})],
+    [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]})],
 )
 def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[str, Any]) -> None:
     """Glue and joints count, and all modes of sub-blocks, not the lowest that are reported."""
@@ -117,7 +117,7 @@ def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
     assert topples not in shown(scene_file, *slender)["remarks"]  # locked
 
 
-@pytest.mark.parametrize(("friction", "topples"), [(25.0, True), (18.0, True), (10.0, False)])
+@pytest.mark.parametrize(("friction", "topples"), [(18.0, True), (10.0, False)])
 def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction: float, topples: bool) -> None:
     """Half a metre by two on 20 degrees, as DDA moves it with the outline anew at every step: w/h = tan(14 degrees)."""
     slender = load_scene("slope-sliding").expand()[0].with_values(
@@ -144,69 +144,11 @@ def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
     assert shown("waves-glue", "--set", half)["numbers"]["blocks"] == {"low": 50.0, "high": 50.0, "unit": ""}
 
 
-def test_a_sweep_shows_ranges_and_in_how_many_cases_a_limit_is_passed() -> None:
-    text = typed("show", "figures-3-4").stdout
-    lines = {line.split("  ")[0]: line.split() for line in text.splitlines()}
-    assert lines["c dt/h"][2:5] == ["0.3043", "..", "3.043"] and lines["m"][1] == "1.08e+04"
-    assert lines["varied"] == ["varied", "time.step", "=", "0.01,", "0.002,", "0.001"]
-    assert "! fewer than two steps per period of the first mode: no history can show it (in 1 of 3 cases)" in text
-    assert "next: dda-validate run figures-3-4" in text
-    assert "over all" not in typed("show", "figures-3-4", "--set", "time.step=0.002").stdout
-
-
-def test_a_key_that_is_not_drawn_is_named_with_its_unit(scene_file: Path) -> None:
-    scene_file.write_text(SCENE.replace("[load]", 'law = "unilateral"\ncut = 0.25\nband = [1e-3, 0.0]\n\n[load]'))
-    text = typed("show", scene_file).stdout
-    assert "keys      band = 0.001, 0 m, cut = 0.25\n" in text
-
-
-def test_parameters_stand_beside_the_drawing(scene_file: Path) -> None:
-    scene_file.write_text(SCENE + "[damping]\nmass = 2.0\n[run]\nsolvers = ['dda']\n")
-    text = typed("show", scene_file).stdout
-    for words in (
-        "q = 5e+06 Pa",
-        "2 m wide, 2 m high",
-        "rho = 2700 kg/m3, E = 1e+09 Pa",
-        "p = 1e+09 N/m at each corner",
-        "locked",
-        "50 of dt = 0.002 s",
-        "constant acceleration",
-        "a0 = 2 1/s",
-        "damping tables",
-    ):
-        assert words in text
-
-
-def test_the_page_of_a_sweep_shows_the_steps_and_the_scheme_of_the_case_that_is_drawn() -> None:
-    page = typed("show", "figures-3-4").stdout
-    assert "200 of dt = 0.01 s" in page and "dt = 0.002 s" not in page  # the file's own step, 2 ms, is the second
-    assert "cases of the sweep (the first one is above):" in page
-    schemes = typed("show", "stiff-contact").stdout
-    first = load_scene("stiff-contact").expand()[0]
-    assert f"alpha = {first.time.alpha:.4g}, delta = {first.time.delta:g}" in schemes
-
-
-def test_a_tower_is_drawn_as_one(scene_file: Path) -> None:
-    def inside(width: float) -> tuple[int, int]:
-        sets = ("--set", f"block.width={width}", "--set", "block.height=2.0")
-        walls = [line for line in typed("show", scene_file, *sets).stdout.splitlines() if line.startswith("  |")]
-        return walls[0].index("|", 3) - 3, len(walls)
-
-    tower, square, low = inside(0.5), inside(2.0), inside(4.0)
-    assert square == (15, 7) and low == (15, 4) and tower[1] == 7 and tower[0] == 8
-
-
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
 def test_every_built_in_scene_is_shown(name: str) -> None:
     found = shown(name)
     assert found["numbers"] and found["cases"] == len(load_scene(name).expand())
     assert typed("show", name).stdout.startswith(f"{name}: ")
-
-
-def test_bad_input_is_refused_as_by_run(tmp_path: Path) -> None:
-    for words, said in ((("nowhere.toml",), "no such scene file"), (("drop", "--set", "time.stop=1"), "unknown key")):
-        done = typed("show", *words)
-        assert done.returncode == 2 and said in done.stderr and not done.stdout
 
 
 @pytest.mark.parametrize("name", ["slope-base", "rocking-release", "two-codes-friction", "waves-joint"])

@@ -17,7 +17,7 @@ from validation.advice import rayleigh
 from validation.advice.rayleigh import scheme_of
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
-from validation.cli.printing import numbers, scene_page, tables
+from validation.cli.printing import numbers, tables
 from validation.gates.changes import changes
 from validation.problems import pack as problems_pack
 from validation.report.figures import response as figures
@@ -82,21 +82,6 @@ def test_the_thinnest_block_of_a_column_sets_its_stable_step() -> None:
     heights, speeds = np.array([1.5, 1.0, 0.5, 0.5]), np.array([500.0, 350.0, 220.0, 150.0])
     free = float(np.min(2 * heights / (np.sqrt(12) * speeds)))  # of the thinnest block by itself
     assert free <= found <= 1.02 * free  # the solver's own: neighbours hold it, so that its frequency is lower
-
-
-def test_a_column_is_drawn_with_its_top_layer_above() -> None:
-    text = list(scene_page.column(SITE))
-    densities = [line.partition("rho = ")[2].split()[0] for line in text if "rho =" in line]
-    assert densities == ["1800", "1900", "2000", "2100"] and "transmitting base" in text[-1]
-
-
-@pytest.mark.parametrize(
-    ("start", "words"), [("zero", "zero acceleration"), ("consistent", "the acceleration of the load")]
-)
-def test_a_start_is_told_by_its_acceleration(start: str, words: str) -> None:
-    scene = SCENE.with_values({"time.start": start})
-    facts = dict(line for line in scene_page._facts(scene, scene, 1) if len(line) == 2)
-    assert facts["steps"].endswith(f"of dt = 0.002 s, from {words}")
 
 
 # ---- figures of frequencies ---------------------------------------------------------------------------------------

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from validation.advice.engine_settings import EngineAdvice, Landing, Targets, advise_landing
-from validation.advice.engine_table import PROGRAMS, PYBULLET_SLOP
+from validation.advice.engine_table import PROGRAMS
 from validation.errors import InputError
+from validation.theory.soft_contact import PYBULLET_SLOP
 
 GRAVITY = 9.81
 PHASES = (0.037, 0.241, 0.463, 0.689, 0.917)  # of a step, where the body lands

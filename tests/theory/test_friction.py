@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from validation import load_scene, solve
+from validation import load_scene
 from validation.scenes.scene import Scene
 from validation.theory import friction
 
@@ -128,21 +128,3 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: f
         held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
         until = friction.damped_creep(case) / friction.creep_scale(case)
         assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)
-
-
-@pytest.mark.parametrize(("cohesion", "bounces", "holds"), [(0.0, True, True), (1e4, False, True), (1e4, True, False)])
-def test_a_sliding_block_moves_freely_through_bounces_unless_cohesion_is_lost_in_them(
-    cohesion: float, bounces: bool, holds: bool
-) -> None:
-    """Weight put on at once under average acceleration opens corners; under constant acceleration at 10 ms none."""
-    average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "time.step": 5e-4, "time.steps": 400}
-    columns = ["displacement", "horizontal_displacement", "gap_m", "gap_n"]
-    case = load_scene("slope-sliding").expand()[0].with_values(
-        {"contact.cohesion": cohesion, "run.columns": columns} | (average if bounces else {})
-    )  # fmt: skip
-    history = solve(case, "dda").history
-    assert any(np.max(history.columns[gap]) > 0 for gap in ("gap_m", "gap_n")) == bounces
-    free, _ = friction.free_motion(case, friction.sliding_acceleration(case))
-    slide = history.columns["horizontal_displacement"] + friction.coefficient(case) * history.displacement
-    accelerations = np.diff(slide - free, 2)[1:]  # times dt^2, once it slides
-    assert (np.max(np.abs(accelerations)) < 1e-6 * np.diff(free, 2)[-1]) == holds

@@ -11,7 +11,6 @@ from validation.theory.rebound import (
     conserving_steps,
     impact_steps,
     midpoints,
-    mode_damping,
     rebound_statistics,
     rebounds,
     spring_steps,
@@ -21,13 +20,9 @@ OMEGAS = (0.1, 0.3, 1.0, 1.9, 4.0, 10.0, 1000.0)
 SCHEMES = {
     "constant": stages.newmark(0.5, 1.0),
     "average": stages.newmark(0.25, 0.5),
-    "best-constant": stages.newmark(0.5625, 1.0),
-    "ch-0.8": stages.chung_hulbert(0.8),
     "ch-0.5": stages.chung_hulbert(0.5),
     "ch-0": stages.chung_hulbert(0.0),
-    "hht-0.1": stages.generalised_alpha(0.0, 0.1),
     "wbz-0.5": stages.wbz(0.5),
-    "bathe-half": stages.composite(0.0, 0.5),
     "bathe": stages.composite(0.0),
     "bathe-0.5": stages.composite(0.5),
     "leapfrog": stages.LEAPFROG,
@@ -40,20 +35,12 @@ TABLE = {
     "0.4854 0.010 0.952 0.5000 0.010 0.990",
     "average": "1.0000 0.999 1.001 1.0001 0.989 1.011 1.0056 0.900 1.110 1.0039 0.916 1.091 1.3272 0.456 2.184 "
     "1.5987 0.365 2.827 1.6666 0.340 2.980",
-    "best-constant": "0.9246 0.923 0.926 0.7929 0.785 0.801 0.5088 0.456 0.562 0.3655 0.286 0.444 0.3714 0.144 0.597 "
-    "0.4124 0.081 0.741 0.4222 0.073 0.772",
-    "ch-0.8": "1.0000 0.999 1.001 1.0000 0.989 1.011 1.0041 0.899 1.109 0.9992 0.898 1.100 1.2956 0.473 2.112 "
-    "1.5507 0.366 2.724 1.6142 0.341 2.869",
     "ch-0.5": "0.9999 0.999 1.001 0.9987 0.988 1.009 0.9788 0.879 1.079 0.9420 0.808 1.076 1.1307 0.484 1.775 "
     "1.3166 0.387 2.248 1.3625 0.367 2.358",
     "ch-0": "0.9986 0.997 1.000 0.9755 0.969 0.982 0.8009 0.751 0.851 0.6691 0.549 0.788 0.6162 0.456 0.776 "
     "0.6561 0.355 0.956 0.6666 0.335 0.995",
-    "hht-0.1": "1.0000 0.999 1.001 0.9993 0.989 1.010 0.9905 0.887 1.093 0.9680 0.857 1.079 1.2230 0.469 1.972 "
-    "1.4490 0.364 2.525 1.5049 0.341 2.655",
     "wbz-0.5": "0.9998 0.999 1.001 0.9952 0.985 1.005 0.9371 0.845 1.028 0.8671 0.729 1.005 0.9904 0.456 1.517 "
     "1.1319 0.354 1.898 1.1666 0.335 1.985",
-    "bathe-half": "1.0000 0.999 1.000 0.9997 0.996 1.004 0.9926 0.944 1.041 0.9649 0.867 1.051 0.9339 0.580 1.184 "
-    "0.9894 0.377 1.729 1.0951 0.277 1.970",
     "bathe": "1.0000 1.000 1.001 0.9997 0.995 1.004 0.9921 0.952 1.046 0.9617 0.850 1.040 0.9209 0.599 1.186 "
     "0.9557 0.332 1.792 1.0463 0.221 2.116",
     "bathe-0.5": "1.0000 1.000 1.000 0.9998 0.998 1.002 0.9959 0.963 1.035 0.9827 0.869 1.074 0.9444 0.769 1.040 "
@@ -79,17 +66,11 @@ def test_rebounds_by_scheme_and_contact_frequency(name):
     [
         (stages.newmark(0.5, 1.0), 0.5, 0.0, 1.0, 1 / 3),
         (stages.newmark(0.25, 0.5), 5 / 3, 1 / 3, 3.0, 91 / 27),
-        (stages.chung_hulbert(0.9), 1.6534, 0.337, 2.970, 3.312),
-        (stages.chung_hulbert(0.8), 1.6143, 0.341, 2.887, 3.147),
         (stages.chung_hulbert(0.5), 1.3625, 0.351, 2.374, 2.198),
-        (stages.chung_hulbert(0.2), 0.9663, 0.341, 1.591, 1.064),
-        (stages.chung_hulbert(0.15), 0.8924, 0.3385, 1.446, 0.899),
         (stages.chung_hulbert(0.0), 2 / 3, 1 / 3, 1.0, 13 / 27),
         (stages.generalised_alpha(0.0, 0.1), 1.5050, 0.338, 2.672, 2.720),
         (stages.wbz(0.5), 7 / 6, 1 / 3, 2.0, 43 / 27),
-        (stages.wbz(0.0), 2 / 3, 1 / 3, 1.0, 13 / 27),
         (stages.composite(0.0, 0.5), 1.0952, 0.264, 1.999, 1.393),
-        (stages.composite(0.0), 1.0464, 0.208, 2.121, 1.320),
         (stages.composite(0.5), 1.3862, 0.255, 2.663, 2.315),
         (stages.IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
     ],
@@ -147,24 +128,6 @@ def test_a_dashpots_rebound_depends_on_scheme_and_step():
         for omega, mean in zip((0.1, 1.0, 10.0), means, strict=False):
             statistics = rebound_statistics(spring_steps(SCHEMES[name], omega, zeta=0.1))
             assert abs(statistics.mean - mean) < 6e-5
-
-
-def test_the_damping_of_a_closed_contact_by_a_dashpot_depends_on_the_step():
-    omegas = (0.01, 0.1, 0.3, 1.0, 3.0)
-    average = (0.04999917, 0.04991705, 0.04926609, 0.04314700, 0.02348584)
-    constant = (0.05248601, 0.07469009, 0.12230034, 0.25635330, 0.39484612)
-    for omega, first, second in zip(omegas, average, constant, strict=True):
-        assert mode_damping(SCHEMES["average"], omega, 0.05) == pytest.approx(first, abs=6e-9)
-        assert mode_damping(SCHEMES["constant"], omega, 0.05) == pytest.approx(second, abs=6e-9)
-
-
-@pytest.mark.parametrize(
-    ("scheme", "xi"),
-    [("ch-0.8", 0.000685871), ("ch-0.5", 0.0185185185), ("hht-0.1", 0.010125), ("wbz-0.5", 0.0740740741)],
-)
-def test_the_undamped_modes_of_the_tables_have_their_leading_damping(scheme, xi):
-    W = 0.01
-    assert mode_damping(SCHEMES[scheme], W, 0.0) == pytest.approx(xi * W**3, rel=2e-3)
 
 
 def test_numbers_out_of_range_are_named():

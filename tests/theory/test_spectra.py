@@ -128,8 +128,10 @@ def test_the_response_of_a_mode_is_the_scheme_s(scene: Scene, start: str) -> Non
         np.testing.assert_allclose(found[n], D, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("quantity", ["displacement", "pressure"])
-@pytest.mark.parametrize("name", ["figure-8[time.alpha=0.25,time.delta=0.5]", "figure-9[time.gg=0.95]"])
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [("figure-8[time.alpha=0.25,time.delta=0.5]", "displacement"), ("figure-9[time.gg=0.95]", "pressure")],
+)
 def test_the_predicted_error_of_quadratic_elements_is_theirs(name: str, quantity: str) -> None:
     """Own quadratic elements, mode by mode, against the bar, where motion lasts and its phase is what is wrong.
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.core import CORE
 from validation.theory import spectra, statics
 
 BASE = load_scene("poisson-statics").with_values({"contact.stiffness": 1e9})
@@ -66,11 +65,6 @@ def test_numbers_of_the_independent_computation() -> None:
         assert spectra.damping_ratio(
             light.with_values({"time.step": dt}), spectra.dda_frequency(light)
         ) == pytest.approx(xi, rel=5e-3)
-
-
-def test_a_number_of_an_independent_program_is_not_called_exact() -> None:
-    gates = [gate for gate in CORE.gates() if "independent program" in gate.reason]
-    assert gates and {gate.reference_kind for gate in gates} == {"other code"}
 
 
 def test_plane_strain_is_plane_stress_of_other_moduli() -> None:

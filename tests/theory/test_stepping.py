@@ -6,14 +6,13 @@ import cmath
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 
 from validation.errors import InputError
 from validation.scenes.scene import load_scene
 from validation.theory import spectra
-from validation.theory.schemes import CARDS, aliases
+from validation.theory.schemes import CARDS
 from validation.theory.stepping import Stepping
 
 NAMED = Stepping.named
@@ -197,17 +196,13 @@ def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str
     """At z = e^{i w dt} of a free motion the stepped system answers without load: W2 is the mode's own w^2."""
     stepping = replace(SCHEMES[name], step=0.01, gg=0.99)
     natural = 80.0
-    complex_frequency = stepping.complex_frequency(natural)
-    root = stepping.roots(natural * stepping.step)[0]
-    assert cmath.exp(1j * complex_frequency * stepping.step) == pytest.approx(root, rel=1e-12)
+    z = complex(stepping.roots(natural * stepping.step)[0])
     if stepping.scheme == "composite":
         with pytest.raises(InputError) as caught:
             stepping.squared_frequency(1.0)
         assert caught.value.field == "time.scheme"
         return
     # the formula of real frequencies continued to the complex one
-    half = stepping.step * complex_frequency / 2
-    z = complex(mpmath.exp(2j * half))
     turn = z - 1
     if stepping.scheme == "leapfrog":
         squared = -turn * (z - stepping.gg) / (stepping.step**2 * z)
@@ -219,11 +214,11 @@ def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str
     assert squared == pytest.approx(natural**2, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("name", [name for name in SCHEMES if SCHEMES[name].scheme != "composite"])
 def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name: str) -> None:
     stepping = replace(SCHEMES[name], gg=0.9)
     natural, driven = 0.8, 0.5
-    amplitude = complex(stepping.modal_response(driven, natural))
+    amplitude = 1 / (natural**2 - complex(stepping.squared_frequency(driven)))
     state = np.zeros(3, complex)
     state[2] = 1.0
     for n in range(600):
@@ -244,14 +239,6 @@ def driven_step(stepping: Stepping, natural: float, driven: float, n: int, state
     if stepping.scheme == "leapfrog":
         v1 = u + load(n) - square * x
         return np.array([x + v1, v1, 0.0])
-    if stepping.scheme == "composite":
-        a = load(n) - square * x
-        g, q0, q1, q2 = stepping.composite
-        ag = (load(n + g) - square * (x + g * u + g**2 / 4 * a)) / (1 + g**2 / 4 * square)
-        vg = u + g / 2 * (a + ag)
-        known = x + (q0 + q2) * u + q1 * vg + q2 * (q0 * a + q1 * ag)
-        a1 = (load(n + 1) - square * known) / (1 + q2**2 * square)
-        return np.array([known + q2**2 * a1, u + q0 * a + q1 * ag + q2 * a1, a1])
     am, af, beta, gamma = weights(stepping)
     known = x + u + (0.5 - beta) * a
     force = (1 - af) * (load(n + 1) - square * known) + af * (load(n) - square * x)
@@ -279,36 +266,14 @@ def test_schemes_of_one_table_are_one_scheme() -> None:
             assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
 
 
-@pytest.mark.parametrize(
-    ("stepping", "words"),
-    [
-        (AVERAGE, "average acceleration"),
-        (Stepping(1.0, 1.0, 1.5), "implicit Euler"),
-        (Stepping(1.0, 0.36, 0.7), "Moreau's theta = 0.6"),
-        (Stepping(1.0, 0.0, 0.5), "central differences"),
-        (NAMED("chung-hulbert", rho_inf=0.0), "Houbolt"),
-        (NAMED("wbz", rho_inf=0.0), "chung-hulbert with rho_inf = 0"),
-        (NAMED("chung-hulbert", rho_inf=0.5), "hht with rho_inf = 1/2"),
-        (NAMED("hht", rho_inf=0.9 / 1.1), "HHT's alpha is -0.1 in papers and 0.9 in OpenSees"),
-        (NAMED("chung-hulbert", rho_inf=0.8), "alpha_M = 0.666667, alpha_F = 0.555556"),
-        (NAMED("composite"), "TR-BDF2"),
-        (NAMED("composite", split=0.5), "three-point backward Euler"),
-        (NAMED("leapfrog"), "symplectic Euler"),
-    ],
-)
-def test_aliases_are_said(stepping: Stepping, words: str) -> None:
-    assert any(words in sentence for sentence in aliases(stepping))
-    assert aliases(CONSTANT) == ()
-
-
 def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s() -> None:
     import dda
     import fem_reference
 
-    assert tuple(card.name for card in CARDS) == dda.SCHEMES == fem_reference.SCHEMES
-    for card in CARDS[1:]:
-        stepping = NAMED(card.name, rho_inf=None if card.name == "leapfrog" else 0.7)
-        assert (str(stepping.order), stepping.solves) == (card.order, card.solves)
+    assert tuple(CARDS) == dda.SCHEMES == fem_reference.SCHEMES
+    for name, card in list(CARDS.items())[1:]:
+        stepping = NAMED(name, rho_inf=None if name == "leapfrog" else 0.7)
+        assert (str(stepping.order), stepping.solves) == (card["order"], card["solves"])
 
 
 def test_spectra_of_a_scene_follow_its_scheme() -> None:

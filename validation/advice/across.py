@@ -10,12 +10,14 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from validation.advice.advice import LARGEST_RATIO
+from validation.advice.limits import Limit
+from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency, percent
 from validation.errors import InputError
 from validation.scenes import features
@@ -67,7 +69,7 @@ class Offer:
 
 
 @dataclass(frozen=True)
-class SchemeAdvice:
+class SchemeAdvice(PlainAnswer):
     """The offers, the recommended first, and one sentence."""
 
     scene: str
@@ -77,10 +79,6 @@ class SchemeAdvice:
     offers: tuple[Offer, ...]
     unreachable: dict[str, float]  # scheme -> the largest xi that it has there
     sentence: str
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def advise_across(
@@ -119,8 +117,7 @@ def advise_across(
         rule = f"must be a damping ratio from {LEAST_RATIO:g} to {LARGEST_RATIO:g}"
         advice = f"{damping:g} % is {damping / 100:g}" if damping > LARGEST_RATIO else None
         raise InputError(rule, field="damping", value=f"{damping:g}", advice=advice)
-    if frequency is not None and not 0 < frequency < math.inf:
-        raise InputError("must be positive and finite", field="frequency", value=f"{frequency:g}")
+    Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
     frequencies = _block_frequencies(scene)
     hertz = frequencies.first / (2 * math.pi) if frequency is None else float(frequency)

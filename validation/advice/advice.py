@@ -11,13 +11,15 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.alternatives import alternative
+from validation.advice.limits import check_choice
+from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
     CONTACT,
@@ -64,7 +66,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Advice:
+class Advice(PlainAnswer):
     """The answer: all solutions in increasing order, the attainable range, and one sentence."""
 
     scene: str
@@ -77,13 +79,7 @@ class Advice:
     greatest: float | None  # greatest xi [1]
     greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
-    nearest: float | None = None  # xi that comes nearest to the target where that cannot be reached [1]
-    nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
     instead: dict[str, float] | None = None  # settings with another parameter that give the target
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
@@ -179,8 +175,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
             value=f"{damping:g}",
             advice=f"{damping:g} % is {damping / 100:g}",
         )
-    if solve_for not in KINDS:
-        raise InputError(f"must be one of {', '.join(KINDS)}", field="solve_for", value=repr(solve_for))
+    check_choice("solve_for", solve_for, KINDS)
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
     highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only
@@ -196,16 +191,13 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
     text = _sentence(scene, solve_for, damping, solutions, reach)
     answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    return answer if solutions else _with_alternative(answer, scene, modes[0].frequency, highest)
-
-
-def _with_alternative(answer: Advice, scene: Scene, first: float, highest: float) -> Advice:
-    """Return an answer of "no" with the nearest that can be had and what to change."""
-    makes = {kind: functools.partial(make, frequency=first, highest=highest) for kind, make in SEARCHES.items()}
-    other = alternative(scene, answer.solve_for, answer.target, makes, first)
-    settings = None if other.settings is None else dict(other.settings)
-    text = f"{answer.sentence} {other.words}"
-    return replace(answer, sentence=text, nearest=other.nearest, nearest_at=other.nearest_at, instead=settings)
+    if solutions:
+        return answer
+    makes = {
+        kind: functools.partial(make, frequency=modes[0].frequency, highest=highest) for kind, make in SEARCHES.items()
+    }
+    instead, words = alternative(scene, solve_for, damping, makes, modes[0].frequency)
+    return replace(answer, sentence=f"{answer.sentence} {words}", instead=instead)
 
 
 def _everywhere(search: Search, target: float) -> bool:

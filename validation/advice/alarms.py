@@ -22,6 +22,7 @@ from typing import Protocol
 import numpy as np
 
 from validation.advice.alarm import Alarm as Alarm
+from validation.advice.alarm import alarm, first_row, number
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.metrics.catalogue import pair as pair_metric
@@ -82,14 +83,12 @@ def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | No
         return None
     agreement = pair_metric("displacement.l2", history, reference)
     error = pair_metric("displacement.l2", reference, exact)
-    metrics = finished.rows[scene.name, solver].metrics
-    radius = metrics.get("mode1.spectral_radius")
-    if not (isinstance(agreement, float) and isinstance(error, float) and isinstance(radius, float)):
+    row = finished.rows[scene.name, solver]
+    radius = number(row, "mode1.spectral_radius")
+    if not (isinstance(agreement, float) and isinstance(error, float) and radius is not None):
         return None
-    frequency = metrics.get("mode1.frequency")
-    if not isinstance(frequency, float):
-        frequency = 0.0
-    return {"agreement": agreement, "removed": removed_motion(scene, radius, frequency), "time error": error}
+    removed = removed_motion(scene, radius, number(row, "mode1.frequency") or 0.0)
+    return {"agreement": agreement, "removed": removed, "time error": error}
 
 
 def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, History | None]:
@@ -118,12 +117,8 @@ def _agreement(scene: Scene, finished: Cases) -> Iterator[Alarm]:
     values = agreement_by_damping(scene, finished)
     if values is None or values["removed"] < REMOVED or values["agreement"] >= values["time error"]:
         return
-    sentence = (
-        f"DDA agrees with the elastic block to {100 * values['agreement']:.2g} % because both are damped: damping "
-        f"removed {100 * values['removed']:.0f} % of the first mode's motion, and the time error is "
-        f"{100 * values['time error']:.2g} %"
-    )
-    yield Alarm(AGREEMENT, scene.name, sentence, values)
+    shares = {"agreement_share": "agreement", "removed_share": "removed", "error_share": "time error"}
+    yield alarm(AGREEMENT, scene.name, values, **{word: 100 * values[name] for word, name in shares.items()})
 
 
 def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
@@ -131,29 +126,27 @@ def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     values: dict[str, float] = {}
     parts = []
     for solver, row in solvers.items():
-        metrics = [row.metrics.get(f"pressure.{part}") for part in ("minimum", "minimum_time", "tension_time")]
-        minimum, time, duration = (value if isinstance(value, float) else math.nan for value in metrics)
-        pulls = minimum < -1e-6 * abs(scene.load.pressure) and duration > 0
-        if ":" in solver or role(solver) is Role.REPEAT or not pulls:
+        minimum = number(row, "pressure.minimum")
+        time = number(row, "pressure.minimum_time")
+        duration = number(row, "pressure.tension_time")
+        if ":" in solver or role(solver) is Role.REPEAT or minimum is None or time is None or duration is None:
             continue
-        values |= {f"{solver}.minimum": minimum, f"{solver}.time": time, f"{solver}.duration": duration}
-        parts.append(f"in {solver} by {-minimum / 1e6:.3g} MPa at t = {time:.4g} s, for {duration:.3g} s in total")
+        if minimum < -1e-6 * abs(scene.load.pressure) and duration > 0:
+            values |= {f"{solver}.minimum": minimum, f"{solver}.time": time, f"{solver}.duration": duration}
+            parts.append(f"in {solver} by {-minimum / 1e6:.3g} MPa at t = {time:.4g} s, for {duration:.3g} s in total")
     if parts:
-        yield Alarm(TENSION, scene.name, f"the locked contact carries tension, {'; '.join(parts)}", values)
+        yield alarm(TENSION, scene.name, values, solvers="; ".join(parts))
 
 
 def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
-    row = next((solvers[name] for name in by_role(Role.JUDGED) if name in solvers), None)
-    if row is None:
-        return
-    root = row.metrics.get("contact.least_root")
-    radius = row.metrics.get("contact.spectral_radius")
-    if not (isinstance(root, float) and isinstance(radius, float)) or root > FLIPPING:
+    row = first_row(solvers, Role.JUDGED)
+    root = number(row, "contact.least_root")
+    radius = number(row, "contact.spectral_radius")
+    if root is None or radius is None or root > FLIPPING:
         return
     steps = math.log(100) / -math.log(radius) if 0 < radius < 1 else math.inf
     decay = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
-    sentence = f"a root of the contact mode is {root:.4g}: the contact force rings from step to step and {decay}"
-    yield Alarm(RINGING, scene.name, sentence, {"root": root, "radius": radius})
+    yield alarm(RINGING, scene.name, {"root": root, "radius": radius}, decay=decay)
 
 
 def fixed_discount(scenes: Sequence[Scene]) -> Iterator[Alarm]:
@@ -164,8 +157,4 @@ def fixed_discount(scenes: Sequence[Scene]) -> Iterator[Alarm]:
             steps_by_discount.setdefault((scene_of(scene.name), scene.time.discount), set()).add(scene.time.step)
     for (name, gg), steps in steps_by_discount.items():
         if len(steps) > 1:
-            sentence = (
-                f"dt is varied at a fixed gg = {gg:g}, which acts per step: refining dt does not converge; state "
-                "gg_rate instead, gg = exp(-gg_rate dt)"
-            )
-            yield Alarm(DISCOUNT, name, sentence, {"gg": gg})
+            yield alarm(DISCOUNT, name, {"gg": gg})

@@ -1,10 +1,9 @@
-"""What else gives the damping that one parameter cannot give: the nearest that can be had, and what to change."""
+"""What else gives the damping that one parameter cannot give."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from functools import partial
 
 from validation.advice.search import Search
@@ -16,20 +15,10 @@ UNDAMPED = {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 1.0}  # average ac
 Make = Callable[[Scene], Search]
 
 
-@dataclass(frozen=True)
-class Alternative:
-    """The nearest damping ratio that the chosen parameter gives, and settings that give the target."""
-
-    nearest: float | None = None  # xi [1]; None where none is defined
-    nearest_at: float | None = None  # dt [s], gg [1] or delta [1] there
-    settings: Mapping[str, float] | None = None  # for Scene.with_values; None where nothing here gives it
-    words: str = ""
-
-
 def alternative(
     scene: Scene, solve_for: str, target: float, makes: Mapping[str, Make], frequency: float
-) -> Alternative:
-    """Return what can be had where no value of a parameter gives the target.
+) -> tuple[dict[str, float] | None, str]:
+    """Return settings that give the target where no value of a parameter does, None if nothing here does, and words.
 
     Parameters
     ----------
@@ -40,24 +29,19 @@ def alternative(
     frequency
         Of the first axial mode [rad/s].
     """
-    searches = {kind: makes[kind](scene) for kind in OPTIONS}
-    chosen = searches[solve_for]
-    near = min(chosen.ends(), key=lambda s: abs(chosen.at(s) - target), default=None)
-    nearest = Alternative() if near is None else Alternative(chosen.at(near), chosen.value(near))
-    for kind, search in searches.items():
+    for kind in OPTIONS:
+        search = makes[kind](scene)
         if kind != solve_for and (values := search.solutions(target)):
             settings = search.settings(min(values, key=partial(change, scene, kind, search)))
             words = f"Change the {OPTIONS[kind]} instead: {settings_text(settings)} gives it (--solve-for {kind})."
-            return replace(nearest, settings=settings, words=words)
+            return settings, words
     step = min(scene.time.step, 2 * math.pi / (PERIOD * frequency))
     for undamped in (UNDAMPED, UNDAMPED | {"time.step": step}):
         search = makes["gg"](scene.with_values(dict(undamped)))
         if values := search.solutions(target):
             settings = undamped | search.settings(min(values))
-            words = f"Change more than one: {settings_text(settings)} together give it."
-            return replace(nearest, settings=settings, words=words)
-    words = "No other dt, gg or scheme gives it either, nor does average acceleration with any gg."
-    return replace(nearest, words=words)
+            return settings, f"Change more than one: {settings_text(settings)} together give it."
+    return None, "No other dt, gg or scheme gives it either, nor does average acceleration with any gg."
 
 
 def change(scene: Scene, kind: str, search: Search, s: float) -> float:

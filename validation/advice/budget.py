@@ -86,28 +86,22 @@ def discounts(scene: Scene, dt: Array) -> Array:
 
 def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
     t = scene.time
-    if t.scheme != "newmark":
-        return _curves_of_scheme(scene, frequency, dt)
-    numerical = damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    algorithmic = damping_ratio(frequency * dt, t.alpha, t.delta, 1.0)
-    parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(numerical - algorithmic)}
+    omega = frequency * dt
+    if t.scheme == "newmark":
+        gg = discounts(scene, dt)
+        total = damping_ratio(omega, t.alpha, t.delta, gg)
+        algorithmic = damping_ratio(omega, t.alpha, t.delta, 1.0)
+        radius = spectral_radius(omega, t.alpha, t.delta, gg)
+    else:
+        stepping = Stepping.of(scene)
+        total = _ratios(stepping, frequency, dt)
+        algorithmic = _ratios(replace(stepping, gg=1.0, rate=None), frequency, dt)
+        radius = np.array([stepping.at(float(step)).spectral_radius(frequency * float(step)) for step in dt])
+    parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(total - algorithmic)}
     if scene.damping.present:
+        numerical = total
         total, radius = _viscous(scene, frequency, dt)
         parts["viscous"] = _listed(total - numerical)
-    else:
-        total = numerical
-        radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
-    return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
-
-
-def _curves_of_scheme(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
-    """Return the curves of a scheme that is not Newmark's."""
-    stepping = Stepping.of(scene)
-    undiscounted = replace(stepping, gg=1.0, rate=None)
-    total = _ratios(stepping, frequency, dt)
-    algorithmic = _ratios(undiscounted, frequency, dt)
-    radius = np.array([stepping.at(float(step)).spectral_radius(frequency * float(step)) for step in dt])
-    parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(total - algorithmic)}
     return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
 
 

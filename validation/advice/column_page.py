@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from validation.advice import columns, contact_page
+from validation.advice.plain import Line, in_columns
 from validation.runs.row import Row, Value
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -55,7 +56,7 @@ def page(
     yield f"{scene.name}: {scene.title or 'a column whose contacts open or slip'}"
     yield (f"{bound.contacts} contacts, dt = {t.step:g} s, {Stepping.of(scene).numbers}, gg = {t.discount:.6g}")
     yield ""
-    yield from contact_page.aligned(table(scene, data["runs"]))
+    yield in_columns(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
     yield from columns.advised(scene, bound)
@@ -63,9 +64,9 @@ def page(
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
 
 
-def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[contact_page.Line]:
+def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     """Return the runs side by side; a line that no run has a number for is left out."""
-    lines: list[contact_page.Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
     for line in contact_page.measured_lines(LINES, runs):
         if any(value != contact_page.NONE for value in line[1:]):
             lines.append(line)

@@ -18,7 +18,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from validation.advice.alarm import Alarm
+from validation.advice.alarm import Alarm, alarm
 from validation.scenes.column import ColumnSection, LayerSection
 from validation.scenes.scene import Scene
 from validation.theory import columns
@@ -135,43 +135,15 @@ def column_alarms(scene: Scene) -> Iterator[Alarm]:
         return
     t = scene.time
     if column.law == "frictional":
-        yield from _path(scene)
+        stepping = Stepping.of(scene)
+        if stepping.damps or t.discount < 1:
+            yield alarm(PATH, scene.name, {"delta": stepping.delta, "gg": t.discount, "step": t.step})
         return
     needed = columns.greatest_solves(bound.contacts)
     if column.solve_limit is not None and column.solve_limit < needed:
-        yield Alarm(
-            FEW_SOLVES,
-            scene.name,
-            f"{column.solve_limit} solves of the open-close iteration are allowed, where {bound.contacts} contacts can "
-            f"need {needed}; a shorter step does not help blocks that touch",
-            {"solve_limit": column.solve_limit, "needed": needed},
-        )
+        values = {"solve_limit": column.solve_limit, "needed": needed}
+        yield alarm(FEW_SOLVES, scene.name, values, contacts=bound.contacts)
     if t.step < bound.far_face_step:
-        yield Alarm(
-            FAR_FACE,
-            scene.name,
-            f"below a step of {bound.far_face_step:.3g} s a push at one face of a block of one strain moves its other "
-            "face the wrong way: contacts open before the wave arrives; more blocks a layer lower this step",
-            {"step": t.step, "far_face_step": bound.far_face_step},
-        )
+        yield alarm(FAR_FACE, scene.name, {"step": t.step, "far_face_step": bound.far_face_step})
     if t.scheme == "newmark" and t.delta == 0.5 and t.discount == 1:
-        yield Alarm(
-            GAINS,
-            scene.name,
-            "under delta = 1/2 without a discount every contact that opens gains energy, and a stack does not come to "
-            "rest; delta = 0.6 with alpha = 0.3025, or a smaller step, gains less",
-            {"delta": t.delta},
-        )
-
-
-def _path(scene: Scene) -> Iterator[Alarm]:
-    t = scene.time
-    stepping = Stepping.of(scene)
-    if stepping.damps or t.discount < 1:
-        yield Alarm(
-            PATH,
-            scene.name,
-            "what slips depends on the path: damping by scheme, gg and step changes the slip that remains, and can "
-            "turn its sign; compare with column-events or with alpha = 1/4, delta = 1/2",
-            {"delta": stepping.delta, "gg": t.discount, "step": t.step},
-        )
+        yield alarm(GAINS, scene.name, {"delta": t.delta})

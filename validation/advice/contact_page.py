@@ -10,6 +10,7 @@ from typing import Any
 
 from validation.advice import contact, friction
 from validation.advice.contact_alarms import contact_alarms
+from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.row import Row, Value
 from validation.scenes import features
@@ -30,7 +31,6 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-Line = tuple[str, ...]
 MetricRow = tuple[str, str, float, str]  # what a line is called, its metric, and how the value is scaled and written
 LINES = (
     ("switches", "switches.count", 1.0, ""),
@@ -149,15 +149,6 @@ def answer(
     }
 
 
-def plain(value: Any) -> Any:
-    """Return data in which None stands for what is not finite, such as w_c of a rigid contact."""
-    if isinstance(value, dict):
-        return {key: plain(part) for key, part in value.items()}
-    if isinstance(value, list):
-        return [plain(part) for part in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
     prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
@@ -183,7 +174,7 @@ def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> It
         f"gg = {t.discount:.6g}: w_c dt = {data['omega']:.3g}"
     )
     yield ""
-    yield from aligned(table(scene, data["runs"]))
+    yield in_columns(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
     if any(_number(run, MEAN_RATE) > 1 for run in data["runs"].values()):
@@ -327,10 +318,3 @@ def _depth(need: Mapping[str, Any], penetration: float) -> str:
         return ", for the load at rest and one unloaded landing"
     reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
     return f": the exact block then penetrates {need['depth']:.3g} m{reservation}"
-
-
-def aligned(lines: list[Line]) -> Iterator[str]:
-    """Yield lines whose cells stand below each other."""
-    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
-    for line in lines:
-        yield "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 from validation.advice import engines
 from validation.advice.engine_table import (
@@ -20,14 +19,16 @@ from validation.advice.engine_table import (
     MUJOCO_IMPEDANCES,
     MUJOCO_STEPS,
     PROGRAMS,
-    PYBULLET_SLOP,
     Program,
     Settings,
 )
+from validation.advice.limits import Limit, check_choice
+from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
 from validation.theory.soft_contact import (
+    PYBULLET_SLOP,
     Impedance,
     SoftContact,
     curve_rebounds,
@@ -75,7 +76,7 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class EngineAdvice:
+class EngineAdvice(PlainAnswer):
     """What to set in a program, and what that is."""
 
     program: str
@@ -84,9 +85,9 @@ class EngineAdvice:
     points: int  # contact points that share the body
     step: float | None  # h over which the contact is solved [s]
     settings: Settings
-    penetration: float | None  # at rest [m]
-    rebound: dict[str, float] | None  # over the phase: mean, low, high [-]; None where it is not known
-    hidden: float | None  # damping ratio that the steps add [-]; None where the contact does not vibrate
+    penetration: float | None = None  # at rest [m]
+    rebound: dict[str, float] | None = None  # over the phase: mean, low, high [-]; None where it is not known
+    hidden: float | None = None  # damping ratio that the steps add [-]; None where the contact does not vibrate
     stiffness: float | None = None  # of all points [N/m]
     damping: float | None = None  # of all points [N s/m]
     omega_step: float | None = None  # w h [-]
@@ -94,10 +95,6 @@ class EngineAdvice:
     stiffness_ratio: float | None = None  # of the contact over the block, k h / (E a) [-]
     defaults: dict[str, float | None] = field(default_factory=dict)  # of the program as it comes
     notes: tuple[str, ...] = ()
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def landing_of(scene: Scene) -> Landing:
@@ -197,13 +194,14 @@ def advise_landing(
     points: int | None = None,
 ) -> EngineAdvice:
     """Return what to set in a program for a landing; see `advise_engine`."""
-    if program not in PROGRAMS_ADVISED:
-        raise InputError(f"must be one of {', '.join(PROGRAMS_ADVISED)}", field="--for", value=repr(program))
+    check_choice("--for", program, PROGRAMS_ADVISED)
     if (targets.penetration, targets.restitution, targets.hidden) == (None, None, None):
         raise InputError(
             "one of them must be given", field="--penetration, --restitution, --hidden-damping", value="neither"
         )
-    _check(targets, speed, step, points)
+    stated = (targets.penetration, targets.restitution, targets.hidden, speed, step, points)
+    for limit, value in zip(LIMITS, stated, strict=True):
+        limit.check(value)
     described = PROGRAMS[program]
     if points is None:
         points = described.points if landing.box is not None else 1
@@ -215,7 +213,7 @@ def advise_landing(
             frequency = math.sqrt(max(landing.acceleration, 0.0) / targets.penetration) or 1.0
         step = FINE_STEP / frequency
     if speed is not None:
-        landing = Landing(landing.mass, landing.load, speed, landing.step, landing.box, landing.stiffness)
+        landing = replace(landing, speed=speed)
     if targets.restitution is not None and landing.speed <= 0:
         advice = "the restitution under a weight follows the speed: add --speed"
         raise InputError("must be given, the body of the scene does not land", field="--speed", advice=advice)
@@ -228,20 +226,14 @@ def advise_landing(
     return _ADVICE[program](question)
 
 
-def _check(targets: Targets, speed: float | None, step: float | None, points: int | None) -> None:
-    """Refuse targets out of their range; NaN holds no rule."""
-    limits = (
-        ("--penetration", targets.penetration, 0.0, math.inf, "must be positive"),
-        ("--hidden-damping", targets.hidden, 0.0, 1.0, "must be between 0 and 1"),
-        ("--speed", speed, 0.0, math.inf, "must be positive"),
-        ("--step", step, 0.0, math.inf, "must be positive"),
-        ("--points", points, 0, math.inf, "must be at least 1"),
-    )
-    for name, value, low, high, rule in limits:
-        if value is not None and not low < value < high:
-            raise InputError(rule, field=name, value=f"{value:g}")
-    if targets.restitution is not None and not 0 <= targets.restitution <= 1:
-        raise InputError("must be from 0 to 1", field="--restitution", value=f"{targets.restitution:g}")
+LIMITS = (
+    Limit("--penetration", "must be positive"),
+    Limit("--restitution", "must be from 0 to 1", below=1.0, ends=(0.0, 1.0)),
+    Limit("--hidden-damping", "must be between 0 and 1", below=1.0),
+    Limit("--speed", "must be positive"),
+    Limit("--step", "must be positive"),
+    Limit("--points", "must be at least 1"),
+)
 
 
 @dataclass(frozen=True)
@@ -273,9 +265,17 @@ class _Question:
         notes: list[str],
     ) -> EngineAdvice:
         """Return the advice of a contact."""
-        ratio = None
-        if contact is not None and self.landing.stiffness is not None:
-            ratio = contact.stiffness / self.landing.stiffness
+        known: dict[str, float | None] = {}
+        if contact is not None:
+            known = {
+                "penetration": contact.rest_penetration(self.landing.load),
+                "stiffness": contact.stiffness,
+                "damping": contact.damping,
+                "damping_ratio": contact.ratio,
+                "omega_step": None if step is None else contact.frequency * step,
+            }
+            if self.landing.stiffness is not None:
+                known["stiffness_ratio"] = contact.stiffness / self.landing.stiffness
         return EngineAdvice(
             program=self.program.name,
             version=self.program.version,
@@ -283,17 +283,18 @@ class _Question:
             points=self.points,
             step=step,
             settings=settings,
-            penetration=None if contact is None else contact.rest_penetration(self.landing.load),
             rebound=rebounds,
             hidden=hidden,
-            stiffness=None if contact is None else contact.stiffness,
-            damping=None if contact is None else contact.damping,
-            omega_step=None if contact is None or step is None else contact.frequency * step,
-            damping_ratio=None if contact is None else contact.ratio,
-            stiffness_ratio=ratio,
             defaults=defaults(self.program, self.landing, self.points),
             notes=tuple(notes),
+            **known,
         )
+
+    def spread(self, contact: SoftContact, step: float) -> dict[str, float] | None:
+        """Return mean, least and greatest rebound; None where nothing lands."""
+        if self.landing.speed <= 0:
+            return None
+        return engines.spread(contact.rebounds(step, self.relative_load(step)))
 
 
 def defaults(program: Program, landing: Landing, points: int) -> dict[str, float | None]:
@@ -303,7 +304,7 @@ def defaults(program: Program, landing: Landing, points: int) -> dict[str, float
     if program.name == "opensees":
         return {"penetration": None, "restitution": None, "hidden": 0.0}
     if program.name == "yade":
-        as_it_comes = SoftContact(1.0, 1.0, 0.0, implicit=False, local_damping=program.default("local_damping")[0])
+        as_it_comes = SoftContact.of_yade(1.0, 1.0, program.default("local_damping")[0])
         e = float(as_it_comes.rebounds(FINE_STEP).mean())
         return {"penetration": None, "restitution": e, "hidden": as_it_comes.numerical_ratio(FINE_STEP)}
     gravity = max(landing.acceleration, 0.0)
@@ -472,9 +473,7 @@ def _pybullet(question: _Question) -> EngineAdvice:
         step = min(step, longest)
 
     def contact_of(zeta: float) -> SoftContact:
-        c = 2 * zeta * landing.mass * w
-        is_box = question.points > 1
-        return SoftContact(landing.mass, k, c, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
+        return SoftContact.of_pybullet(landing.mass, k, 2 * zeta * landing.mass * w, question.points > 1)
 
     def ratio_at(h: float) -> float | None:
         return ratio_for(targets.restitution or 0.0, contact_of, h, question.relative_load(h))
@@ -511,15 +510,8 @@ def _pybullet(question: _Question) -> EngineAdvice:
             f"of a ball whose radius is {1 / PYBULLET_LOOKS_AHEAD:g} times {landing.speed * step:.4g} m at least"
         )
     return question.answer(
-        contact, settings, step, _spread(contact, question, step), contact.numerical_ratio(step), notes
+        contact, settings, step, question.spread(contact, step), contact.numerical_ratio(step), notes
     )
-
-
-def _spread(contact: SoftContact, question: _Question, step: float) -> dict[str, float] | None:
-    """Return mean, least and greatest rebound; None where nothing lands."""
-    if question.landing.speed <= 0:
-        return None
-    return engines.spread(contact.rebounds(step, question.relative_load(step)))
 
 
 def _mujoco(question: _Question) -> EngineAdvice:
@@ -565,13 +557,8 @@ def _mujoco_contact(question: _Question, penetration: float, step: float) -> tup
         w = math.sqrt((1 - together) * question.acceleration / penetration)
 
         def contact_of(zeta: float) -> SoftContact:
-            return SoftContact(
-                landing.mass,
-                landing.mass * w**2,
-                2 * zeta * landing.mass * w,
-                load_share=1 - together,
-                implicit=False,
-            )
+            spring = SoftContact.of_ratio(landing.mass, w, zeta)
+            return replace(spring, load_share=1 - together, implicit=False)
 
         if targets.restitution is None:
             return contact_of(math.sqrt(together / d))  # dampratio = 1
@@ -626,7 +613,7 @@ def _mujoco_answer(question: _Question, solution: tuple[float, SoftContact], ste
             f"the impedance {d:.6g} is the least from {IMPEDANCE:g} on with which timeconst has two steps (refsafe) "
             "and the steps have the restitution"
         )
-    return question.answer(contact, settings, step, _spread(contact, question, step), 0.0, notes)
+    return question.answer(contact, settings, step, question.spread(contact, step), 0.0, notes)
 
 
 def _yade(question: _Question) -> EngineAdvice:
@@ -662,17 +649,11 @@ def _yade(question: _Question) -> EngineAdvice:
     if alpha:
         notes.append(f"the weight is damped as well: what falls lands at {slower:.4g} of its speed")
     if targets.penetration is None:
-        unloaded = SoftContact(1.0, 1.0, 0.0, implicit=False, local_damping=alpha)
+        unloaded = SoftContact.of_yade(1.0, 1.0, alpha)
         unloaded_rebounds = engines.spread(unloaded.rebounds(FINE_STEP))
         notes.append(f"at w dt = {FINE_STEP:g} and without the weight; --penetration states kn")
-        return question.answer(
-            None,
-            settings,
-            None,
-            unloaded_rebounds,
-            unloaded.numerical_ratio(FINE_STEP),
-            [note for note in notes if note],
-        )
+        hidden = unloaded.numerical_ratio(FINE_STEP)
+        return question.answer(None, settings, None, unloaded_rebounds, hidden, notes)
     k = landing.load / targets.penetration
     w = math.sqrt(k / landing.mass)
     step = question.step if question.is_step_stated else FINE_STEP / w
@@ -683,12 +664,12 @@ def _yade(question: _Question) -> EngineAdvice:
             value=f"{step:g} s",
             advice=f"at most {2 / w:.4g} s; GlobalStiffnessTimeStepper takes {YADE_SAFETY * math.sqrt(2) / w:.4g} s",
         )
-    contact = SoftContact(landing.mass, k, 0.0, implicit=False, local_damping=alpha)
+    contact = SoftContact.of_yade(landing.mass, k, alpha)
     settings["normal_stiffness"] = k / question.points
     settings["dt"] = step
     notes.append("kn of FrictPhys; of a sphere of radius r on a wall of the same material young = kn / r")
     notes.append(f"stable below {2 / w:.4g} s; GlobalStiffnessTimeStepper takes {YADE_SAFETY * math.sqrt(2) / w:.4g} s")
-    rebounds = _spread(contact, question, step)
+    rebounds = question.spread(contact, step)
     return question.answer(contact, settings, step, rebounds, contact.numerical_ratio(step), notes)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from validation.advice.engine_table import (
@@ -15,8 +15,10 @@ from validation.advice.engine_table import (
     OPTIONAL,
     PARAMETERS,
     PROGRAMS,
-    PYBULLET_SLOP,
+    TRANSLATED,
 )
+from validation.advice.limits import Limit, check_choice
+from validation.advice.plain import PlainAnswer
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.theory.restitution import damping_ratio, restitution
@@ -26,7 +28,7 @@ RADIUS_TOLERANCE = 1e-12  # of the spectral radius of a step that keeps the ampl
 
 
 @dataclass(frozen=True)
-class Translation:
+class Translation(PlainAnswer):
     """One contact in the words of each engine and of the suite."""
 
     engine: str  # whose numbers were stated, or "spring"
@@ -48,10 +50,6 @@ class Translation:
     forms: dict[str, dict[str, float]]  # engine -> its parameters for this spring and dashpot
     scene: dict[str, float]  # keys of the scene of a block on two corners
     notes: tuple[str, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def translate(
@@ -106,8 +104,7 @@ def translate(
     >>> round(1e3 * contact.rest_penetration, 6), round(contact.determinant, 8)
     (0.2761, 0.05772068)
     """
-    if engine not in PARAMETERS:
-        raise InputError(f"must be one of {', '.join(PARAMETERS)}", field="engine", value=repr(engine))
+    check_choice("engine", engine, PARAMETERS)
     for name in parameters:
         if name not in PARAMETERS[engine]:
             rule = f"is no parameter of {engine}"
@@ -120,22 +117,20 @@ def translate(
         at_step = "" if step is None else f", step {step:.6g} s"
         stated_parameters = ", ".join(f"{name} = {_in_words(value)}" for name, value in parameters.items())
         notes.append(f"{program.title} as it comes: {stated_parameters}{at_step}")
-    missing = [name for name in PARAMETERS[engine] if name not in parameters and name not in OPTIONAL]
-    if engine == "mujoco" and missing == ["solimp"]:
+    described = TRANSLATED[engine].parameters
+    missing = [one for one in described if one.name not in parameters and one.name not in OPTIONAL]
+    if engine == "mujoco" and [one.name for one in missing] == ["solimp"]:
         missing = []  # dmax stands in its place
     if missing:
-        advice = _ABSENT.get(missing[0])
-        raise InputError(f"must be stated for {engine}", field=missing[0], advice=advice)
-    _require(points >= 1, "must be at least 1", "points", points)
+        raise InputError(f"must be stated for {engine}", field=missing[0].name, advice=missing[0].absent)
+    Limit("points", "must be at least 1").check(points)
     if box is not None:
         _require(len(box) == 2 and min(box) > 0, "must be a positive width and height", "box", box)
-    if step is not None:
-        _require(0 < step < math.inf, "must be positive", "step", step)
+    Limit("step", "must be positive").check(step)
     effective, weight = _masses(mass, block_mass, gravity)
     body = Body(effective, weight, step, points, lever(box, points), static)
-    contact = _CONTACTS[engine](body, parameters)
-    if contact.stiffness <= 0 or not math.isfinite(contact.stiffness):
-        raise InputError("must be positive and finite", field="stiffness", value=f"{contact.stiffness:g}")
+    contact = contact_of(engine, body, parameters)
+    Limit("stiffness").check(contact.stiffness)
     solimp = parameters.get("solimp")
     has_constant_numbers = solimp is None or solimp[0] == solimp[1]
     if not has_constant_numbers:
@@ -167,14 +162,6 @@ def _in_words(value: float | tuple[float, ...]) -> str:
     return " ".join(f"{number:g}" for number in value) if isinstance(value, tuple) else f"{value:g}"
 
 
-_ABSENT = {
-    "erp": "as it comes a contact of Bullet is rigid",
-    "contact_stiffness": "as it comes a contact of PyBullet is rigid: bodies stand 0.01 mm deep in each other",
-    "normal_stiffness": "Yade has no default: kn = E r of a sphere of radius r on a wall of the same E",
-    "penalty": "OpenSees has no default",
-}
-
-
 def _require(holds: bool, rule: str, field: str, value: object, advice: str | None = None) -> None:
     """Refuse a value; NaN holds no rule."""
     if not holds:
@@ -193,66 +180,58 @@ def _masses(mass: float | None, block_mass: float | None, gravity: float) -> tup
         )
     name, value = ("mass", mass) if mass is not None else ("block_mass", block_mass)
     total = float(value or 0.0)
-    _require(0 < total < math.inf, "must be positive and finite", name, total)
-    _require(0 <= gravity < math.inf, "must not be negative", "gravity", gravity)
+    Limit(name).check(total)
+    Limit("gravity", "must not be negative", ends=(0.0,)).check(gravity)
     effective = total if mass is not None else QUARTER * total
     return effective, total * gravity
 
 
-Parameters = Mapping[str, Any]
+def contact_of(engine: str, body: Body, parameters: Mapping[str, Any]) -> SoftContact:
+    """Return the contact that a body has with parameters of an engine.
+
+    Raises
+    ------
+    InputError
+        A parameter is out of its range.
+    """
+    for parameter in TRANSLATED[engine].parameters:
+        if parameter.limit is not None:
+            parameter.limit.check(parameters.get(parameter.name))
+    mass = body.mass
+    points = body.points
+    if engine == "box2d":
+        hertz = BOX2D_STATIC * parameters["hertz"] if body.static else parameters["hertz"]
+        return SoftContact.of_box2d(mass, hertz, parameters["damping_ratio"], points, body.lever)
+    if engine == "bullet":
+        if body.step is None:
+            advice = "erp and cfm are those of one step: --step 0.0041666667 for 240 a second"
+            raise InputError("must be stated for bullet", field="step", advice=advice)
+        return SoftContact.of_bullet(mass, parameters["erp"], parameters["cfm"] / points, body.step)
+    if engine == "pybullet":
+        stiffness = points * parameters["contact_stiffness"]
+        return SoftContact.of_pybullet(mass, stiffness, points * parameters["contact_damping"], points > 1)
+    if engine == "yade":
+        return SoftContact.of_yade(mass, points * parameters["normal_stiffness"], parameters["local_damping"])
+    if engine == "opensees":
+        return SoftContact(mass, points * parameters["penalty"], 0.0)
+    return _mujoco(body, parameters) if engine == "mujoco" else _spring(body, parameters)
 
 
-def _box2d(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of hertz and damping ratio."""
-    hertz = parameters["hertz"]
-    ratio = parameters["damping_ratio"]
-    _require(0 < hertz < math.inf, "must be positive and finite", "hertz", hertz)
-    _require(0 <= ratio < math.inf, "must not be negative", "damping_ratio", ratio)
-    rate = BOX2D_STATIC * hertz if body.static else hertz
-    return SoftContact.of_box2d(body.mass, rate, ratio, body.points, body.lever)
-
-
-def _bullet(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of erp and cfm."""
-    erp = parameters["erp"]
-    cfm = parameters["cfm"]
-    if body.step is None:
-        advice = "erp and cfm are those of one step: --step 0.0041666667 for 240 a second"
-        raise InputError("must be stated for bullet", field="step", advice=advice)
-    _require(0 < erp <= 1, "must be above 0 and at most 1", "erp", erp)
-    _require(0 < cfm < math.inf, "must be positive", "cfm", cfm, "cfm = 0 is a rigid contact: contact.stiffness = inf")
-    return SoftContact.of_bullet(body.mass, erp, cfm / body.points, body.step)
-
-
-def _pybullet(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of contactStiffness and contactDamping; a ball is braked ahead, a box once it overlaps."""
-    stiffness = parameters["contact_stiffness"]
-    damping = parameters["contact_damping"]
-    _require(0 < stiffness < math.inf, "must be positive and finite", "contact_stiffness", stiffness)
-    _require(0 <= damping < math.inf, "must not be negative", "contact_damping", damping)
-    k = body.points * stiffness
-    is_box = body.points > 1
-    c = body.points * damping
-    return SoftContact(body.mass, k, c, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
-
-
-def _mujoco(body: Body, parameters: Parameters) -> SoftContact:
+def _mujoco(body: Body, parameters: Mapping[str, Any]) -> SoftContact:
     """Return the contact of solref and solimp."""
     timeconst = parameters["timeconst"]
     dampratio = parameters["dampratio"]
     is_direct = timeconst < 0 and dampratio <= 0
     if not is_direct:
         advice = "(-stiffness, -damping) per mass is MuJoCo's other form, both not above 0"
-        _require(0 < timeconst < math.inf, "must be positive", "timeconst", timeconst, advice)
-        _require(0 < dampratio < math.inf, "must be positive", "dampratio", dampratio, advice)
+        Limit("timeconst", "must be positive", advice=advice).check(timeconst)
+        Limit("dampratio", "must be positive", advice=advice).check(dampratio)
     if body.step is not None and not is_direct:
         least = MUJOCO_STEPS * body.step
         advice = f"MuJoCo takes {least:g} instead (refsafe): state that, or a step of at most {timeconst / 2:g} s"
         _require(timeconst >= least, f"must be at least two steps, {least:g} s", "timeconst", timeconst, advice)
     if parameters.get("solimp") is None:
-        impedance = parameters.get("dmax", 0.95)
-        _require(0 < impedance < 1, "must be between 0 and 1", "dmax", impedance)
-        return SoftContact.of_mujoco(body.mass, timeconst, dampratio, impedance, 1.0, body.points)
+        return SoftContact.of_mujoco(body.mass, timeconst, dampratio, parameters.get("dmax", 0.95), 1.0, body.points)
     if "dmax" in parameters:
         raise InputError("must not be stated beside solimp, whose second number it is", field="dmax")
     numbers = tuple(parameters["solimp"])
@@ -268,47 +247,17 @@ def _mujoco(body: Body, parameters: Parameters) -> SoftContact:
     return SoftContact.of_mujoco(body.mass, timeconst, dampratio, impedance, share, body.points)
 
 
-def _yade(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of a normal stiffness, and the damping of all forces."""
-    stiffness = parameters["normal_stiffness"]
-    alpha = parameters["local_damping"]
-    _require(0 <= alpha < 1, "must be from 0 to below 1", "local_damping", alpha)
-    _require(0 < stiffness < math.inf, "must be positive and finite", "normal_stiffness", stiffness)
-    return SoftContact(body.mass, body.points * stiffness, 0.0, implicit=False, local_damping=alpha)
-
-
-def _opensees(body: Body, parameters: Parameters) -> SoftContact:
-    """Return the contact of a penalty."""
-    penalty = parameters["penalty"]
-    _require(0 < penalty < math.inf, "must be positive and finite", "penalty", penalty)
-    return SoftContact(body.mass, body.points * penalty, 0.0)
-
-
-def _spring(body: Body, parameters: Parameters) -> SoftContact:
+def _spring(body: Body, parameters: Mapping[str, Any]) -> SoftContact:
     """Return the contact of k and c, or of k and the restitution that it shall have."""
     stiffness = parameters["stiffness"]
-    damping = parameters.get("damping")
     e = parameters.get("restitution")
-    _require(0 < stiffness < math.inf, "must be positive and finite", "stiffness", stiffness)
-    if damping is not None and e is not None:
+    if e is None:
+        return SoftContact(body.mass, stiffness, parameters.get("damping", 0.0))
+    if "damping" in parameters:
         raise InputError("one of them can be stated", field="damping, restitution", value="both")
-    if e is not None:
-        _require(0 < e <= 1, "must be above 0 and at most 1", "restitution", e, "a dashpot always returns something")
-        return SoftContact.of_ratio(body.mass, math.sqrt(stiffness / body.mass), damping_ratio(e))
-    damping = 0.0 if damping is None else damping
-    _require(0 <= damping < math.inf, "must not be negative", "damping", damping)
-    return SoftContact(body.mass, stiffness, damping)
+    return SoftContact.of_ratio(body.mass, math.sqrt(stiffness / body.mass), damping_ratio(e))
 
 
-_CONTACTS = {
-    "box2d": _box2d,
-    "bullet": _bullet,
-    "pybullet": _pybullet,
-    "mujoco": _mujoco,
-    "yade": _yade,
-    "opensees": _opensees,
-    "spring": _spring,
-}
 OWN_STEPS = ("bullet", "pybullet", "mujoco", "yade", "spring")
 """Whose landing is that of `SoftContact.rebounds`; Box2D's relaxation takes the spring's speed again."""
 

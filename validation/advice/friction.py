@@ -20,15 +20,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
-from validation.advice.alarm import Alarm
+from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
 from validation.theory import friction
 from validation.theory.stepping import Stepping
 
@@ -122,49 +119,31 @@ def lines(scene: Scene, slides: Sliding) -> Iterator[str]:
 
 def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     """Yield the alarms of the judged method's run of a scene with friction, by its finished rows."""
-    name = next((name for name in by_role(Role.JUDGED) if name in rows), None)
-    if name is None or features.FRICTION not in features.of(scene):
+    row = first_row(rows, Role.JUDGED)
+    if row is None or features.FRICTION not in features.of(scene):
         return
-    yield from _stateless(scene, rows[name])
+    gg = scene.time.discount
+    if row.outcome in STATES:
+        yield alarm(STATELESS, scene.name, outcome=row.outcome.value)
     slides = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
-        sentence = (
-            "friction at a slipping corner is that of the iteration before: a stable block may creep, the faster the "
-            'finer the step; contact.rules = "consistent" avoids it'
-        )
-        yield Alarm(LAGS, scene.name, sentence)
+        yield alarm(LAGS, scene.name)
     if slides is not None and slides.stands:
-        yield from _creeps(scene, rows[name], slides)
+        yield from _creeps(scene, row, slides)
         yield from _hides(scene, slides)
-    elif slides is not None and slides.braked < (1 - NOTABLE) * slides.run_out and scene.time.discount < 1:
-        sentence = (
-            f"gg = {scene.time.discount:g} per step {slides.drag}: it cuts the run-out from "
-            f"{slides.run_out:.3g} m to {slides.braked:.3g} m"
-        )
+    elif slides is not None and slides.braked < (1 - NOTABLE) * slides.run_out and gg < 1:
         rate = {} if slides.rate is None else {"rate": slides.rate}
-        yield Alarm(BRAKES, scene.name, sentence, {**rate, "run_out": slides.run_out, "braked": slides.braked})
-
-
-def _stateless(scene: Scene, row: Row) -> Iterator[Alarm]:
-    if row.outcome in STATES:
-        sentence = (
-            f"{row.outcome.value} even after the step was cut: use a smaller time.step, contact.friction or "
-            "contact.shear_stiffness"
-        )
-        yield Alarm(STATELESS, scene.name, sentence)
+        values = {**rate, "run_out": slides.run_out, "braked": slides.braked}
+        yield alarm(BRAKES, scene.name, values, gg=gg, drag=slides.drag)
 
 
 def _creeps(scene: Scene, row: Row, slides: Sliding) -> Iterator[Alarm]:
     """Alarm where slip goes on after friction has had the time to stop a speed of g / w_n."""
-    rate = row.metrics.get("contact.slip_rate")
+    rate = number(row, "contact.slip_rate")
     stopped = STOPPING * slides.creep / -slides.acceleration if slides.acceleration < 0 else math.inf
-    if isinstance(rate, float) and rate > SLOW * slides.creep > 0 and scene.time.duration / 2 > stopped:
-        share = rate / slides.creep
-        sentence = (
-            f"the block is stable, {abs(scene.load.slope):g} deg below {slides.threshold:.4g} deg, and slips on by "
-            f"{1e3 * rate:.3g} mm/s, {share:.2g} times g / w_n"
-        )
-        yield Alarm(CREEPS, scene.name, sentence, {"rate": rate, "scale": slides.creep})
+    if rate is not None and rate > SLOW * slides.creep > 0 and scene.time.duration / 2 > stopped:
+        words = {"slope": abs(scene.load.slope), "threshold": slides.threshold, "speed": 1e3 * rate}
+        yield alarm(CREEPS, scene.name, {"rate": rate, "scale": slides.creep}, share=rate / slides.creep, **words)
 
 
 def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
@@ -173,9 +152,5 @@ def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
     phase = friction.normal_frequency(scene) * t.step
     damps = Stepping.of(scene).damps or t.discount < 1
     if scene.load.slope and damps and phase > COARSE and slides.creep > 0:
-        sentence = (
-            f"w_n dt = {phase:.3g}: the ringing of the normal springs, of the period {2 * np.pi * t.step / phase:.3g} "
-            "s, is damped before it can show; the exact block creeps at a speed that scales with g / w_n = "
-            f"{1e3 * slides.creep:.3g} mm/s"
-        )
-        yield Alarm(HIDES, scene.name, sentence, {"phase": phase, "scale": slides.creep})
+        values = {"phase": phase, "scale": slides.creep}
+        yield alarm(HIDES, scene.name, values, period=2 * math.pi * t.step / phase, speed=1e3 * slides.creep)

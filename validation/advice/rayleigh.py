@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from validation.advice.limits import Limit
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.theory.stepping import Stepping
@@ -86,13 +87,9 @@ def scheme_of(values: Mapping[str, float]) -> Stepping:
     if "step" not in values:
         raise InputError("is required", field="dt", value="none", advice="name a scene or give --dt")
     for name, value in values.items():
-        low_open = name == "step"
-        if not (math.isfinite(value) and value >= 0 and not (low_open and value == 0)):
-            raise InputError(
-                f"must be finite and {('positive' if low_open else 'not negative')}", field=name, value=f"{value:g}"
-            )
-    if values.get("gg", 1.0) > 1:
-        raise InputError("must be from 0 to 1", field="gg", value=f"{values['gg']:g}")
+        not_negative = Limit(name, "must be finite and not negative", ends=(0.0,))
+        (Limit(name, "must be finite and positive") if name == "step" else not_negative).check(value)
+    Limit("gg", "must be from 0 to 1", below=1.0, ends=(0.0, 1.0)).check(values.get("gg"))
     return Stepping(values["step"], values.get("alpha", 0.5), values.get("delta", 1.0), values.get("gg", 1.0))
 
 
@@ -345,9 +342,7 @@ def _solutions(
 def _check_points(*points: Point) -> None:
     """Refuse frequencies and ratios out of range."""
     for f, xi in points:
-        if not (math.isfinite(f) and f > 0):
-            raise InputError("a frequency must be finite and positive", field="damping", value=f"{f:g}")
-        if not (math.isfinite(xi) and 0 <= xi < 1):
-            raise InputError("a ratio must be from 0 to below 1", field="damping", value=f"{xi:g}")
+        Limit("damping", "a frequency must be finite and positive").check(f)
+        Limit("damping", "a ratio must be from 0 to below 1", below=1.0, ends=(0.0,)).check(xi)
     if len({f for f, _ in points}) < len(points):
         raise InputError("two frequencies must differ", field="damping", value=f"{points[0][0]:g} twice")

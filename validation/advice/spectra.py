@@ -11,14 +11,14 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dda.scheme import spectral, viscous
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
+from validation.advice.plain import PlainAnswer
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
 from validation.scenes import features
@@ -55,7 +55,7 @@ class ModeDamping:
 
 
 @dataclass(frozen=True)
-class Damping:
+class Damping(PlainAnswer):
     """Damping of a scene: modes of the DDA block, first axial mode first, and the reference's first mode."""
 
     scene: str
@@ -66,10 +66,6 @@ class Damping:
     references: dict[str, dict[str, float | None]]  # solver -> frequency and damping of its first axial mode
     sentence: str
     alias: float | None = None  # what samples show of the continuum's first mode where it lies beyond pi / dt [rad/s]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 def number(value: float) -> float | None:
@@ -110,18 +106,24 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     omega = frequency * t.step
     gg = t.discount
     if t.scheme != "newmark":
-        return _mode_damping_of_scheme(Stepping.of(scene), name, frequency)
-    total = damping_ratio(scene, frequency)
-    algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
-    numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
-    if scene.damping.present:
-        roots = np.array(viscous.eigenvalues(_viscous_scheme(scene), frequency))
-        radius = float(np.max(np.abs(roots)))
-        elongation = _elongation(omega, roots)
+        stepping = Stepping.of(scene)
+        numerical = stepping.damping_ratio(omega)
+        algorithmic = replace(stepping, gg=1.0).damping_ratio(omega)
+        roots = stepping.roots(omega)[:2]
+        radius = stepping.spectral_radius(omega)
+        elongation = stepping.period_error(omega)
     else:
+        numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
+        algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
         roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
         radius = float(spectral.spectral_radius(omega, t.alpha, t.delta, gg))
         elongation = float(spectral.period_elongation(omega, t.alpha, t.delta, gg))
+    total = numerical
+    if scene.damping.present:
+        total = damping_ratio(scene, frequency)
+        roots = np.array(viscous.eigenvalues(_viscous_scheme(scene), frequency))
+        radius = float(np.max(np.abs(roots)))
+        elongation = _elongation(omega, roots)
     return ModeDamping(
         name,
         frequency,
@@ -132,26 +134,7 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
         number(numerical - algorithmic),
         number(elongation),
         float(np.min(roots.real)),
-        number(total - numerical),
-    )
-
-
-def _mode_damping_of_scheme(stepping: Stepping, name: str, frequency: float) -> ModeDamping:
-    """Return the damping of a mode under a scheme that is not Newmark's, which takes no damping tables."""
-    omega = frequency * stepping.step
-    total = stepping.damping_ratio(omega)
-    algorithmic = replace(stepping, gg=1.0).damping_ratio(omega)
-    return ModeDamping(
-        name,
-        frequency,
-        number(total),
-        stepping.spectral_radius(omega),
-        omega,
-        number(algorithmic),
-        number(total - algorithmic),
-        number(stepping.period_error(omega)),
-        float(np.min(stepping.roots(omega)[:2].real)),
-        0.0,
+        number(total - numerical) if t.scheme == "newmark" else 0.0,
     )
 
 

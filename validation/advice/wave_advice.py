@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from validation.advice.limits import Limit
+from validation.advice.plain import PlainAnswer
 from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency, percent
@@ -30,6 +31,12 @@ from validation.theory.waves import Column
 
 MOST_BLOCKS = 10_000_000
 ROUNDING = 1e-12  # of a loss, a delay or a damping ratio that is none
+LIMITS = (
+    Limit("--fmax", "must be finite and positive"),
+    Limit("--wavelengths", "must be finite and positive"),
+    Limit("--loss", "must be above 0 and below 1", below=1.0),
+    Limit("--phase-error", "must be above 0 and below 1", below=1.0),
+)
 GRID = 400  # steps looked at, from 1e-6 periods to half a period
 
 
@@ -72,7 +79,7 @@ class Passage:
 
 
 @dataclass(frozen=True)
-class WaveAdvice:
+class WaveAdvice(PlainAnswer):
     """Blocks and step for a wave, what limits them, and what the present ones do."""
 
     scene: str
@@ -88,10 +95,6 @@ class WaveAdvice:
     limits_step: str
     sentence: str  # what the present ones do
     advice: str  # what is advised, or why nothing is
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,8 @@ def advise_wave(
         A number is out of range, or the scene is not linear or no such column, or its step samples the wave less than
         twice a period.
     """
-    _check(frequency, loss, wavelengths, phase_error)
+    for limit, value in zip(LIMITS, (frequency, wavelengths, loss, phase_error), strict=True):
+        limit.check(value)
     check_scene(scene)
     check_sampled(frequency, scene.time.step, "--fmax")
     features.refuse_damping(scene, "advise")
@@ -400,15 +404,3 @@ def _advised(scene: Scene, advised: Passage | None, height: str, largest: _Large
     }
     best = f"{percent(largest.least_loss)} is lost, at dt = {largest.least_loss_at:.3g} s"
     return f"No time step does: at best {best}; {cures[largest.limit]}."
-
-
-def _check(frequency: float, loss: float, wavelengths: float | None, phase_error: float) -> None:
-    """Refuse numbers out of range."""
-    if not (math.isfinite(frequency) and frequency > 0):
-        raise InputError("must be finite and positive", field="--fmax", value=f"{frequency:g}")
-    if not 0 < loss < 1:
-        raise InputError("must be above 0 and below 1", field="--loss", value=f"{loss:g}")
-    if wavelengths is not None and not (math.isfinite(wavelengths) and wavelengths > 0):
-        raise InputError("must be finite and positive", field="--wavelengths", value=f"{wavelengths:g}")
-    if not 0 < phase_error < 1:
-        raise InputError("must be above 0 and below 1", field="--phase-error", value=f"{phase_error:g}")

@@ -24,6 +24,7 @@ def claims(
 
     Example: [bold]dda-validate run literature && dda-validate claims --of literature[/bold]
     """
+    from validation.advice.limits import check_choice
     from validation.errors import InputError
     from validation.runs.files import write_atomically
     from validation.runs.results import Results
@@ -32,8 +33,7 @@ def claims(
     from validation.studies.paper.study import CLAIMS_OF_THE_PAPER
 
     registers = {register.study: register for register in (CLAIMS_OF_THE_PAPER, CLAIMS_OF_THE_LITERATURE)}
-    if of not in registers:
-        raise InputError(f"must be one of {', '.join(registers)}", field="--of", value=repr(of))
+    check_choice("--of", of, registers)
     register = registers[of]
     rows = [row for row in Results(results).manifest(of).get("derived", []) if row["scene"] == REGISTER]
     if not rows:

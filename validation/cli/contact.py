@@ -19,7 +19,7 @@ from validation.cli.app import (
     one_case,
     refuse_bad_input,
 )
-from validation.cli.printing.output import broken, echo, echo_json
+from validation.cli.printing.output import broken, echo_answer
 
 if TYPE_CHECKING:
     from validation.advice.columns import ColumnLimits
@@ -56,6 +56,7 @@ def contact(
     """
     from validation.advice import contact_page
     from validation.advice.columns import limits
+    from validation.advice.plain import plain
 
     case = one_case(scene, assignments)
     if (bounds := limits(case)) is not None:
@@ -69,24 +70,20 @@ def contact(
         rows, absent = _rows(scenes, progress)
         probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
         contact_answer = contact_page.answer(case, rows, error, penetration, probe)
-    if as_json:
-        echo_json(contact_page.plain(contact_answer | {"absent": absent}))
-    else:
-        echo("\n".join(contact_page.page(case, contact_answer, absent)))
+    echo_answer(plain(contact_answer | {"absent": absent}), contact_page.page(case, contact_answer, absent), as_json)
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
 def _of_column(case: Scene, bounds: ColumnLimits, as_json: bool) -> int:
     """Say what the contacts of a column did, and what its steps need."""
     from validation.advice import column_page, contact_page
+    from validation.advice.plain import plain
 
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(column_page.scenes(case), progress)
     data = column_page.answer(case, rows, bounds)
-    if as_json:
-        echo_json(contact_page.plain(data | {"absent": absent}))
-    else:
-        echo("\n".join(broken(line) for line in column_page.page(case, bounds, data, absent)))
+    lines = map(broken, column_page.page(case, bounds, data, absent))
+    echo_answer(plain(data | {"absent": absent}), lines, as_json)
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

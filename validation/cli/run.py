@@ -45,6 +45,7 @@ from validation.cli.app import (
     app,
     known_targets,
     one_case,
+    print_warnings,
     refuse_bad_input,
 )
 from validation.cli.printing.output import echo, echo_json
@@ -75,14 +76,14 @@ def list_command(
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
-    from validation.cli.printing.listing import LISTS, in_columns, short
-    from validation.cli.printing.output import terminal_width
-    from validation.errors import InputError
+    from validation.advice.limits import check_choice
+    from validation.advice.plain import in_columns
+    from validation.cli.printing.listing import LISTS, short
+    from validation.cli.printing.output import columns, terminal_width
 
-    if what is not None and what not in LISTS:
-        raise InputError(f"must be one of {', '.join(sorted(LISTS))}", field="list", value=repr(what))
     if what is not None:
-        echo(in_columns(LISTS[what](), terminal_width()))
+        check_choice("list", what, sorted(LISTS))
+        echo(columns(LISTS[what]()))
         return
     for title, lines in short().items():
         echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
@@ -127,12 +128,11 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.cli.printing.costs import print_before_run
     from validation.engine.shards import Shard
     from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.studies.catalogue import STUDIES, resolve
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     part = None if shard is None else Shard.parse(shard)
@@ -154,7 +154,11 @@ def run(
             "ranks": ranks,
         }
         raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
-    print_before_run(studies, quiet)
+    for study in studies:
+        if study.name not in STUDIES:  # the suite's own studies are extreme on purpose
+            for scene in study.scenes:
+                if not isinstance(scene, str):
+                    print_warnings(scene)
     runs, seconds = _run_studies(studies, store, machine, judging)
     answer_and_exit(runs, seconds, store, judging, before)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.cli.app import JsonOption, app
-from validation.cli.printing.listing import in_columns
-from validation.cli.printing.output import broken, echo, echo_json, terminal_width
+from validation.cli.printing.output import broken, columns, echo_answer, settings_text, spread
 
 if TYPE_CHECKING:
     from validation.advice.engines import Translation
@@ -83,7 +83,7 @@ def translate(
         "timeconst": timeconst,
         "dampratio": dampratio,
         "dmax": dmax,
-        "solimp": None if solimp is None else _numbers("--solimp", solimp),
+        "solimp": _numbers("--solimp", solimp),
         "contact_stiffness": contact_stiffness,
         "contact_damping": contact_damping,
         "normal_stiffness": normal_stiffness,
@@ -93,7 +93,6 @@ def translate(
         "damping": damping,
         "restitution": restitution,
     }
-    parameters = {name: value for name, value in stated.items() if value is not None}
     translation = engines.translate(
         engine,
         mass=mass,
@@ -101,28 +100,25 @@ def translate(
         step=step,
         gravity=gravity,
         points=points,
-        box=None if box is None else _numbers("--box", box),
+        box=_numbers("--box", box),
         static=static,
-        **parameters,
+        **{name: value for name, value in stated.items() if value is not None},
     )
-    if as_json:
-        echo_json(translation.as_dict())
-    else:
-        _print_translation(translation)
+    echo_answer(translation.as_dict(), _lines(translation), as_json)
 
 
-def _numbers(option: str, text: str) -> tuple[float, ...]:
+def _numbers(option: str, text: str | None) -> tuple[float, ...] | None:
     """Return the numbers of a list with commas."""
     from validation.errors import InputError
 
     try:
-        return tuple(float(word) for word in text.split(","))
+        return None if text is None else tuple(map(float, text.split(",")))
     except ValueError:
         raise InputError("must be numbers with commas between", field=option, value=repr(text)) from None
 
 
-def _print_translation(t: Translation) -> None:
-    """Print a translation: the spring, what it does, and the other engines' parameters."""
+def _lines(t: Translation) -> Iterator[str]:
+    """Yield a translation: the spring, what it does, and the other engines' parameters."""
     facts = [
         ("effective mass", f"{t.mass:.6g} kg"),
         ("stiffness", f"k = {t.stiffness:.6g} N/m, w = {t.frequency:.6g} rad/s"),
@@ -133,15 +129,12 @@ def _print_translation(t: Translation) -> None:
     if t.determinant is not None:
         facts.append(("a closed step", f"w h = {t.omega_step:.6g}, determinant {t.determinant:.7g}"))
     if t.rebound is not None:
-        rebound = t.rebound
-        facts.append(
-            ("rebound of the steps", f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}")
-        )
+        facts.append(("rebound of the steps", spread(t.rebound)))
     if t.numerical_ratio is not None:
         facts.append(("damping of the steps", f"{100 * t.numerical_ratio:.4g} % of critical"))
     for name, form in t.forms.items():
-        facts.append((PREFIXES[name], ", ".join(f"{key} = {value:.6g}" for key, value in form.items())))
-    facts.append(("scene, two corners", ", ".join(f"{key} = {value:.6g}" for key, value in t.scene.items())))
-    echo(in_columns(facts, terminal_width()))
+        facts.append((PREFIXES[name], settings_text(form)))
+    facts.append(("scene, two corners", settings_text(t.scene)))
+    yield columns(facts)
     for note in t.notes:
-        echo(broken(f"note: {note}"))
+        yield broken(f"note: {note}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.cli.app import SceneArgument, SetOption, app, one_case
-from validation.cli.printing.output import echo
+from validation.cli.printing.output import columns, echo
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
@@ -112,7 +112,6 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
 
 def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     """Say where the answers peak, and where the steps see an alias."""
-    from validation.cli.damping import print_table
     from validation.runs.history import DISPLACEMENT, PRESSURE
 
     exact_response = answers[EXACT]
@@ -133,7 +132,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
             rows.append((label, *displacement, *pressure))
     if len(rows) == 1:
         rows = [("no peak in this range",)]
-    print_table(rows)
+    echo(columns(rows))
     if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
 
@@ -251,7 +250,6 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     import numpy as np
 
     from validation.advice.rayleigh import hidden, matched, ratio
-    from validation.cli.damping import print_table
 
     leading = hidden(scheme)
     fitted = matched(scheme, *band)
@@ -260,12 +258,11 @@ def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
     for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
         least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
         rows.append((name, f"{damping.a0 + 0.0:.6g}", f"{damping.a1:.6g}", *least))
-    print_table(rows)
+    echo(columns(rows))
     frequency = np.geomspace(*band, 8)
-    columns = [frequency, *(100 * xi for xi in (ratio(scheme, frequency), leading.ratio(frequency)))]
-    echo("")
+    values = np.column_stack([frequency, 100 * ratio(scheme, frequency), 100 * leading.ratio(frequency)])
     heads = ("frequency [Hz]", "steady xi [%]", "leading order")
-    print_table([heads, *(tuple(f"{value:.5g}" for value in row) for row in zip(*columns, strict=True))])
+    echo(f"\n{columns([heads, *(tuple(f'{value:.5g}' for value in row) for row in values)])}")
 
 
 def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> None:

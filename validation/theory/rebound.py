@@ -204,31 +204,6 @@ def rebound_statistics(advance: Advance, gg: float = 1.0, count: int = 100) -> R
     return ReboundStatistics(float(e.mean()), float(e.min()), float(e.max()), float((e * e).mean()))
 
 
-def mode_damping(stages: Stages, omega: float, zeta: float, gg: float = 1.0) -> float:
-    """Return xi = -Re ln z / |ln z| of a mode on spring and dashpot that stay closed; nan without a complex pair."""
-    check(omega, gg, zeta)
-    k = omega * omega
-    c = 2 * zeta * omega
-    state = np.eye(3)  # columns: unit x, v, a at the start of the step; the force is -(k x + c v)
-    u = gg * state[1]
-    before = state
-    for stage in stages:
-        N0 = -(k * before[0] + c * before[1])
-        x = state[0] + stage.d_u * u + stage.d_g * before[1] + stage.e_0 * state[2] + stage.e_g * before[2]
-        v = u + stage.g_0 * state[2] + stage.g_g * before[2]
-        a = (stage.af * N0 - stage.am * before[2]) / (1 - stage.am)
-        weight = stage.equilibrium_weight
-        N1 = -(k * (x + stage.beta * a) + c * (v + stage.gamma * a))
-        a = a + weight * N1 / (1 + weight * (k * stage.beta + c * stage.gamma))
-        before = np.array([x + stage.beta * a, v + stage.gamma * a, a])
-    roots = np.linalg.eigvals(before)
-    pairs = roots[roots.imag > 0]
-    if not len(pairs):
-        return math.nan
-    exponent = np.log(pairs[np.argmax(np.abs(pairs))])
-    return float(-exponent.real / abs(exponent))
-
-
 def check(omega: float, gg: float, zeta: float) -> None:
     """Raise ValueError where a number is out of its range."""
     if not omega > 0:

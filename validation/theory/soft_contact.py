@@ -32,6 +32,8 @@ from numpy.typing import NDArray
 from validation.runs.history import Array
 
 Mask = NDArray[np.bool_]
+PYBULLET_SLOP = 1e-5
+"""Overlap [m] that PyBullet lets bodies have before a contact pushes."""
 PHASES = 200
 """Landings within a step that a rebound is taken over, any as likely as another."""
 LONGEST = 100_000
@@ -162,6 +164,16 @@ class SoftContact:
     def of_bullet(cls, mass: float, erp: float, cfm: float, step: float) -> SoftContact:
         """Return the contact of an error reduction and a constraint force mixing [m/(N s)] at a step h [s]."""
         return cls(mass, erp / (step * cfm), (1 - erp) / cfm, stops_ahead=True)
+
+    @classmethod
+    def of_pybullet(cls, mass: float, stiffness: float, damping: float, is_box: bool) -> SoftContact:
+        """Return the contact of contactStiffness and contactDamping; a ball is braked ahead, a box once it overlaps."""
+        return cls(mass, stiffness, damping, stops_ahead=not is_box, starts_inside=is_box, slop=PYBULLET_SLOP)
+
+    @classmethod
+    def of_yade(cls, mass: float, stiffness: float, local_damping: float) -> SoftContact:
+        """Return the contact of a normal stiffness, and the damping of all forces."""
+        return cls(mass, stiffness, 0.0, implicit=False, local_damping=local_damping)
 
     @classmethod
     def of_mujoco(

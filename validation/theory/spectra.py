@@ -69,16 +69,8 @@ def contact_frequency(scene: Scene) -> float:
 
 
 def critical_omega(scene: Scene) -> float:
-    """Limit of w dt beyond which one root passes -1.
-
-    Omega^2 = 2 (1 + gg) / [1/2 + gg (2 delta - 1/2) - 2 alpha (1 + gg)], infinite where the denominator is
-    not positive; for delta >= 1/2 no complex pair leaves the unit circle.
-    """
-    t = scene.time
-    if t.scheme != "newmark":
-        return Stepping.of(scene).critical_omega
-    below = 0.5 + t.discount * (2 * t.delta - 0.5) - 2 * t.alpha * (1 + t.discount)
-    return math.sqrt(2 * (1 + t.discount) / below) if below > EPS else math.inf
+    """Limit of w dt beyond which a root leaves the unit circle, infinite where none does."""
+    return Stepping.of(scene).critical_omega
 
 
 def spectral_radius(scene: Scene, frequency: float) -> float:

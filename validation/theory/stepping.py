@@ -23,8 +23,8 @@ W2 = w^2. A composite scheme [Bathe and Baig 2005; Noh and Bathe 2019] is a Rung
     Rg = (1 + g s/2) / (1 - g s/2),   R(s) = (1 + q0 s + q1 s Rg) / (1 - q2 s),   s = i w dt,
     q1 = (r + 1) / (2 g (r - 1) + 4),   q0 = (g - 1) q1 + 1/2,   q2 = 1/2 - g q1,
 
-whose step has the trace (1 + gg) Re R and the determinant gg |R|^2 where u = gg v enters the whole step; it has a
-response mode by mode but no W2, since its first solve sees the load at a share g of the step.
+whose step has the trace (1 + gg) Re R and the determinant gg |R|^2 where u = gg v enters the whole step; it has no W2,
+since its first solve sees the load at a share g of the step.
 Frequencies may be arrays; everything is in SI units.
 """
 
@@ -253,35 +253,6 @@ class Stepping:
             )
         return numbers
 
-    def modal_response(self, omega: ArrayLike, natural: float) -> Complex:
-        """Return D over the load of a unit mass [s^2] at angular frequencies w, for a mode's own frequency [rad/s]."""
-        w = np.asarray(omega, float)
-        if self.scheme != "composite":
-            return np.asarray(1 / (natural**2 - self.squared_frequency(w)), complex)
-        g, q0, q1, q2 = self.composite
-        dt = self.step
-        z = np.exp(1j * w * dt)
-        load = np.exp(1j * w * g * dt)
-        rates = np.array([[0.0, 1.0], [-(natural**2), 0.0]])
-        push = np.array([0.0, 1.0])
-        unit = np.eye(2)
-        start = np.diag([1.0, self.gg])
-        # y_g = G y0 + a unit load at both ends of the first part; y1 = H y0 + h
-        first = np.linalg.inv(unit - g * dt / 2 * rates)
-        G = first @ (unit + g * dt / 2 * rates)
-        last = np.linalg.inv(unit - q2 * dt * rates)
-        H = last @ (unit + q0 * dt * rates + q1 * dt * rates @ G) @ start
-        pushes = {
-            "start": last @ (q0 * dt * push + q1 * dt * rates @ first @ push * (g * dt / 2)),
-            "middle": last @ (q1 * dt * push + q1 * dt * rates @ first @ push * (g * dt / 2)),
-            "end": last @ (q2 * dt * push),
-        }
-        forcing = np.outer(np.ones_like(z), pushes["start"])
-        forcing = forcing + np.outer(load, pushes["middle"]) + np.outer(z, pushes["end"])
-        matrices = z.reshape(-1, 1, 1) * unit - H
-        answers = np.linalg.solve(matrices, forcing.reshape(-1, 2, 1))[:, 0, 0]
-        return np.asarray(answers.reshape(w.shape), complex)
-
     # ---- free vibration ------------------------------------------------------------------------------------------
 
     def roots(self, omega_dt: float) -> Complex:
@@ -333,10 +304,6 @@ class Stepping:
         """Return W / sqrt(l1 l2) - 1, of a complex pair W / |ln z| - 1; NaN where a root is not positive."""
         first, second = self._logarithms(omega_dt)
         return omega_dt / math.sqrt(abs(first * second)) - 1
-
-    def complex_frequency(self, omega: float) -> complex:
-        """Return w' [rad/s] of a mode of frequency w, whose free motion is e^{i w' t} at the steps; else NaN."""
-        return self._logarithms(omega * self.step)[0] / (1j * self.step)
 
     def _logarithms(self, omega_dt: float) -> tuple[complex, complex]:
         """Return ln z of the principal pair, not numbers where one is real and not positive."""

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
+
+from validation.advice.plain import Line
 
 if TYPE_CHECKING:
     from validation.metrics.catalogue import Metric
     from validation.scenes.scene import Scene
     from validation.studies.declaration import Study
 
-Line = tuple[str, ...]
 BREAK: Line = ()  # an empty line between two groups
-NARROW = 34  # characters: a last column with less room stands below its line
 
 
 def metrics() -> list[Line]:
@@ -82,9 +81,9 @@ def schemes() -> list[Line]:
     from validation.theory.schemes import CARDS
 
     lines: list[Line] = [("scheme", "parameters", "order", "solves", "description")]
-    for card in CARDS:
-        description = f"good: {card.good}. bad: {card.bad}. the same as: {card.aliases}"
-        lines += [BREAK, (card.name, card.parameters, card.order, str(card.solves), description)]
+    for name, card in CARDS.items():
+        description = "good: {good}. bad: {bad}. the same as: {aliases}".format(**card)
+        lines += [BREAK, (name, card["parameters"], card["order"], str(card["solves"]), description)]
     return lines
 
 
@@ -122,30 +121,3 @@ def short() -> dict[str, list[Line]]:
         "solvers": [(name, description) for name, _, description, _ in solvers()[1:]],
         "metrics": short_metrics()[1:],
     }
-
-
-def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = "") -> str:
-    """Return lines with their columns aligned.
-
-    The last column is as long as it likes, or wrapped to a width: beside the others, or below where there is no room.
-    """
-    widths = [max(map(len, column)) for column in zip(*filter(None, lines), strict=True)][:-1]
-    offset = len(indent) + sum(n + 2 for n in widths)
-    rows: list[str] = []
-    for line in lines:
-        rows += _rows(line, widths, indent, offset, width)
-    return "\n".join(rows)
-
-
-def _rows(line: Line, widths: Sequence[int], indent: str, offset: int, width: int | None) -> list[str]:
-    if not line:
-        return [""]
-    start = indent + "".join(cell.ljust(n + 2) for cell, n in zip(line[:-1], widths, strict=True))
-    if width is None or offset + len(line[-1]) <= width:
-        return [(start + line[-1]).rstrip()]
-    if width - offset >= NARROW:
-        return textwrap.wrap(
-            line[-1], width, initial_indent=start, subsequent_indent=" " * offset, break_on_hyphens=False
-        )
-    below = indent + "    "
-    return [start.rstrip(), *textwrap.wrap(line[-1], max(width, NARROW), initial_indent=below, subsequent_indent=below)]

@@ -6,13 +6,14 @@ import io
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import typer
 
+from validation.advice.plain import Line, in_columns
 from validation.runs.text import visible
 
 if TYPE_CHECKING:
@@ -39,6 +40,30 @@ def echo(text: str = "", err: bool = False) -> None:
 def echo_json(data: Any) -> None:
     """Print plain data as JSON."""
     echo(json.dumps(data, indent=1, allow_nan=False))
+
+
+def echo_answer(data: Any, lines: Iterable[str], as_json: bool) -> None:
+    """Print an answer as plain data, or its lines."""
+    if as_json:
+        echo_json(data)
+        return
+    for line in lines:
+        echo(line)
+
+
+def columns(lines: Sequence[Line]) -> str:
+    """Return lines with their columns aligned, the last one wrapped to a terminal."""
+    return in_columns(lines, terminal_width())
+
+
+def settings_text(settings: Mapping[str, float]) -> str:
+    """Return settings as ``--set`` takes them."""
+    return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())
+
+
+def spread(rebound: Mapping[str, float]) -> str:
+    """Return the range of a rebound over the phase in words."""
+    return f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}"
 
 
 @contextmanager

@@ -12,15 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from validation.advice.plain import Line, in_columns
 from validation.cli.printing import numbers
-from validation.cli.printing.listing import Line, in_columns
 from validation.scenes import features
 from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
-from validation.theory.schemes import aliases
 from validation.theory.stepping import Stepping
 
 INSIDE = 15  # characters of a block's width in the drawing
@@ -109,16 +108,13 @@ def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
 def _stepping(first: Scene) -> Iterator[Line]:
     """Yield the steps, the scheme and the damping of a scene that is stepped by it."""
     t = first.time
-    stepping = Stepping.of(first)
-    scheme = stepping.name
+    scheme = Stepping.of(first).name
     if t.scheme == "newmark":
         scheme = f"{SCHEMES.get((t.alpha, t.delta), 'Newmark')}, alpha = {t.alpha:.4g}, delta = {t.delta:g}"
     start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
     yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
     discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
     yield "scheme", f"{scheme}, {discount}"
-    for sentence in aliases(stepping):
-        yield "", sentence
     if first.damping.present:
         yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
 

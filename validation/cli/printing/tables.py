@@ -13,8 +13,8 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from validation.advice.plain import in_columns
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
-from validation.cli.printing.listing import in_columns
 from validation.cli.printing.output import console, echo
 from validation.gates.gate import Verdict, value_text
 from validation.metrics.values import NOT_REPORTED

@@ -1,0 +1,47 @@
+"""Numbers and words that users state: what they must be, and how one that is not is refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from validation.errors import InputError
+
+
+@dataclass(frozen=True)
+class Limit:
+    """An interval in which a number must lie, without its ends but for those that are allowed."""
+
+    field: str
+    rule: str = "must be positive and finite"
+    above: float = 0.0
+    below: float = math.inf
+    ends: tuple[float, ...] = ()
+    advice: str | None = None
+
+    def check(self, value: float | None) -> None:
+        """Refuse a number out of the interval; NaN lies in none. What is not stated is not looked at.
+
+        Raises
+        ------
+        InputError
+            With the rule.
+        """
+        if value is None or self.above < value < self.below or value in self.ends:
+            return
+        shown = f"{value:g}" if isinstance(value, float) else value
+        raise InputError(self.rule, field=self.field, value=shown, advice=self.advice)
+
+
+def check_choice(field: str, value: str, choices: Iterable[str]) -> None:
+    """Refuse a word that is none of some choices.
+
+    Raises
+    ------
+    InputError
+        With the choices.
+    """
+    listed = list(choices)
+    if value not in listed:
+        raise InputError(f"must be one of {', '.join(listed)}", field=field, value=repr(value))
