@@ -28,10 +28,10 @@ field: $(PEERS)  ## other people's programs on the problems, and their table; mi
 	$(BIN)/dda-validate report --results reports/field --out reports/field.pdf && exit $$status
 
 test: $(READY)  ## the tests and the accuracy gates, without the long ones
-	$(PYTEST) -n 2 --dist loadgroup -m "not long"
+	$(PYTEST) -n 2 --dist loadfile -m "not long"
 
 test-all: test  ## these, then the long ones: all seeded faults, all fifty histories
-	$(PYTEST) -n 2 --dist loadgroup -m long
+	$(PYTEST) -n 2 --dist loadfile -m long
 
 gates: $(READY)  ## the accuracy gates alone
 	$(PYTEST) -m validation

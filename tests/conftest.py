@@ -1,8 +1,7 @@
-"""Shared fixtures: a small scene as text, as a file, and the command line as a process; which tests go together."""
+"""Shared fixtures: a small scene as text and as a file, the command line as a process; which gates are long."""
 
 import copy
 import gc
-import importlib
 import importlib.util
 import io
 import os
@@ -11,8 +10,8 @@ import signal
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import redirect_stderr, redirect_stdout, suppress
+from collections.abc import Iterable, Iterator
+from contextlib import redirect_stderr, redirect_stdout
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
@@ -21,9 +20,6 @@ from typing import Any
 import pytest
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices: a second thread of BLAS only waits, and counts as work
-# Our packages assert nothing: pytest would rewrite them, and plain Python compile them once more.
-if rewriting := [finder for finder in sys.meta_path if hasattr(finder, "_must_rewrite")]:
-    rewriting[0]._must_rewrite -= {"dda", "fem_reference", "validation"}
 
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene, parse_scene
@@ -56,158 +52,17 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
     for value in ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
     for word in ("--set", value)
 ]
-TOGETHER = (  # modules whose tests share what takes long to make
-    "test_across",
-    "test_calibration",
-    "test_changes",
-    "test_claims",
-    "test_compare",
-    "test_compare_words",
-    "test_confusion",
-    "test_contact_pack",
-    "test_hostile_text",
-    "test_in_browser",
-    "test_invariants",
-    "test_judge",
-    "test_kept_numbers",
-    "test_literature",
-    "test_opened_chapters",
-    "test_other_versions",
-    "test_own_solver",
-    "test_pack",
-    "test_paper_chapter",
-    "test_readable",
-    "test_report",
-    "test_rotation_orders",
-    "test_rotation_solver",
-    "test_scheme_verdicts",
-    "test_site",
-    "test_site_program",
-    "test_slipping_pack",
-    "test_subblocks_chapter",
-    "test_sweeps",
-    "test_submissions",
-    "test_turning_chapter",
-    "test_user_solvers",
-    "test_walls",
-    "test_work_precision",
-    "test_columns_chapter",
-)
-
-
-GATE = "test_gate["  # with which the names of gates begin
-
-# Of a scene those gates are short whose cases together have every value of each axis and every kind of gate; of these
-# scenes, whose axes change together or whose cases take long, the gates of the named cases.
-SHORT_CASES = {
-    "two-codes-constant": ("block.poisson=0,block.hypothesis=plane stress,time.start=zero",),
-    "two-codes-average": ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",),
-    "subblocks-axial": ("block.pattern=triangles,block.subdivide=4x4",),
-    "subblocks-rocking": ("block.pattern=triangles,block.subdivide=4x4",),
-    "stiff-contact": (
-        "time.alpha=0.5,contact.stiffness=1e+10",
-        "time.alpha=0.5,contact.stiffness=1e+16",
-        "time.alpha=0.5625,contact.stiffness=1e+13",
-    ),
-    "corner-springs": ("fem.elements=4", "fem.elements=32"),
-    "rocking-release": ("block.height=4",),
-    "rocking-swing": ("block.height=2,block.tilt=22.5",),
-    "rocking-pulse": ("block.width=1.1128737204581363", "block.width=0.9945715989724925"),
-    "slope-base": ("contact.stiffness=1e+10,contact.shear_stiffness=4e+09",),
-    "unlocked": ("contact.stiffness=1e+08", "contact.stiffness=1e+11"),
-    "unlocked-ledger": ("contact.stiffness=1e+09", "contact.stiffness=1e+11"),
-    "impact": ("contact.stiffness=1e+08", "contact.stiffness=1e+11", "contact.stiffness=1e+21"),
-    "bouncing-bar": ("contact.stiffness=450", "contact.stiffness=450000"),
-}
-
-
 # Long are scenes of seconds (an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has
 # tests of its own, columns of many switches), other numbers of a family whose first ones are short (joints, schemes),
 # and a second process of the distributed solver.
 LONG_GATES = re.compile(
     r"(slope-quake-exact|subblocks-locking|work-precision|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
     r"|columns-(slips|spall|spall-bars|shaken)|columns-joint-0\.(1|5|75|9)"
+    r"|methods-(impact|locked|refined)-(?!constant|average|ch-0\.5|tr-bdf2)[\w.-]+"
     r"|methods-\w+-(ch-0|ch-0\.8|bathe-half|bathe-0\.5|implicit-euler|nine-sixteenths))(?=[:\[])"
     r"|.*:fenicsx:2-"
 )
-
-
-def short_gates(names: Sequence[str]) -> set[str]:
-    """Return the gates of the short tests among those of these ids: some cases of each scene."""
-    names = [name for name in names if not LONG_GATES.match(name)]
-    cases: dict[str, dict[str, set[str]]] = {}
-    for name in names:
-        scene, values, kind = parts_of(name)
-        cases.setdefault(scene, {}).setdefault(values, {*values.split(",")}).add(kind)
-    short = {scene: {"", *(SHORT_CASES.get(scene) or _covering(marks))} for scene, marks in cases.items()}
-    return {name for name in names if parts_of(name)[1] in short[parts_of(name)[0]]}
-
-
-def parts_of(name: str) -> tuple[str, str, str]:
-    """Return the scene of a gate's id, the values of its case, and what it asks for of which solvers."""
-    scene, values, kind = re.fullmatch(r"([^\[:]+)(?:\[([^\]]*)\])?:(.+)", name).groups(default="")
-    return scene, values, re.sub(r"\(.*?\)", "", kind)  # a case that it is held against is named in brackets
-
-
-def _covering(marks: Mapping[str, set[str]]) -> list[str]:
-    """Return few cases that have all marks of any, the one with the most new ones first."""
-    left, found = set().union(*marks.values()), []
-    while left:
-        found.append(max(marks, key=lambda case: len(marks[case] & left)))
-        left -= marks[found[-1]]
-    return found
-
-
-def group_of(nodeid: str) -> str:
-    """Name the group of a test: its module where tests share, the scene of a gate, otherwise the test itself.
-
-    Tests that run FEniCSx are one group, since each worker of the tests would start a process of it.
-    """
-    path, _, name = nodeid.partition("::")
-    if "fenicsx" in nodeid:
-        return "fenicsx"
-    if name.startswith(GATE):
-        return re.split(r"[\[:]", name.removeprefix(GATE))[0]
-    return path if Path(path).stem in TOGETHER else nodeid
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """Keep groups on one worker, the largest first; marks do not reach pytest-xdist from pytest 9.2 on.
-
-    Single tests come last, in the order of collection, so that no worker waits for the other's last group.
-    """
-    if config.getvalue("dist") != "loadgroup":
-        return None
-    from xdist.scheduler import LoadScopeScheduling
-
-    class Groups(LoadScopeScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            return group_of(nodeid)
-
-        def _assign_work_unit(self, node: object) -> None:
-            """Forget finished groups: after each test pytest-xdist counts what is pending in all of them."""
-            assigned = self.assigned_work[node]
-            self.assigned_work[node] = {name: tests for name, tests in assigned.items() if not all(tests.values())}
-            super()._assign_work_unit(node)
-
-    return Groups(config, log)
-
-
-def pytest_collection(session: pytest.Session) -> None:
-    """Import the test modules from the last one on in every second worker, where all tests are collected.
-
-    In a fresh clone the assertions of all test modules are rewritten, which takes longer than to collect them. Workers
-    that begin at both ends of the list do half of it each and read the rest from the files that the other has written.
-    """
-    config = session.config
-    worker = getattr(config, "workerinput", {}).get("workerid", "gw0")
-    if int(worker.removeprefix("gw")) % 2 and [Path(path).name for path in config.args] == config.getini("testpaths"):
-        for path in sorted((config.rootpath / "tests").rglob("test_*.py"), reverse=True):
-            if (path.parent / "conftest.py").exists():
-                continue  # which says from where its modules import, and is read where they are collected
-            with suppress(Exception, pytest.skip.Exception):  # told where the module is collected
-                importlib.import_module(".".join(path.relative_to(config.rootpath).with_suffix("").parts))
+GATE = re.compile(r"test_gate\[(?P<name>(?P<scene>[^\[:]+)(?:\[[^\]]*\])?:(?P<kind>.+))\]")
 
 
 @pytest.hookimpl(wrapper=True, specname="pytest_collection")
@@ -226,15 +81,24 @@ def pytest_rest_while_collecting() -> Iterator[None]:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the gates of all but a few cases as long, and let Hypothesis draw without the constants of our sources."""
-    gates = {item.name.removeprefix(GATE).removesuffix("]"): item for item in items if item.name.startswith(GATE)}
-    for name in gates.keys() - short_gates([*gates]):
-        gates[name].add_marker(pytest.mark.long)
-    _draw_without_constants()
+    """Mark the gates of all but the first case of each scene and kind as long.
+
+    The kind is what a gate asks for of which solvers; a case that it is held against is named in brackets.
+    """
+    short: set[tuple[str, str]] = set()
+    for item in items:
+        gate = GATE.fullmatch(item.name)
+        if gate is None:
+            continue
+        kind = (gate["scene"], re.sub(r"\(.*?\)", "", gate["kind"]))
+        if kind in short or LONG_GATES.match(gate["name"]):
+            item.add_marker(pytest.mark.long)
+        else:
+            short.add(kind)
 
 
-def _draw_without_constants() -> None:
-    """Let Hypothesis draw without the constants of our sources.
+def pytest_collection_finish() -> None:
+    """Let Hypothesis draw without the constants of our sources, for which it has no setting.
 
     They would make the examples depend on which modules a process has imported, and on any edit, for the time of
     parsing every source.

@@ -21,7 +21,6 @@ from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status, Verdict
-from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.studies.own_solver.gates import applying, asked, cases, gates, recipes, study_of
 from validation.studies.own_solver.session import Session, plain
@@ -30,10 +29,7 @@ from validation.studies.own_solver.session import Session, plain
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each gate; with ``--dda-solver`` of those on `dda` only."""
     selected_gates = gates() if metafunc.config.getoption("--dda-solver", None) is None else applying()
-    parameters = []
-    for name, (_, gate) in selected_gates.items():
-        parameters.append(pytest.param(name, marks=pytest.mark.xdist_group(scene_of(gate.scene)), id=name))
-    metafunc.parametrize("name", parameters)
+    metafunc.parametrize("name", list(selected_gates))
 
 
 @pytest.fixture(scope="session")

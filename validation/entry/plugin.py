@@ -42,8 +42,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marker, so that the gates run under strict markers in any project."""
     config.addinivalue_line("markers", "validation: the accuracy gates of dda-validation, one test a gate")
-    # pytest-xdist registers it as well; without xdist the gates still carry it.
-    config.addinivalue_line("markers", "xdist_group(name): tests that one worker of pytest-xdist runs together")
     if user := config.getoption("--dda-solver", None):
         if sentence := shadowed():
             raise pytest.UsageError(sentence)

@@ -95,21 +95,6 @@ def stops_itself(scene):
     os.kill(os.getpid(), signal.SIGSTOP)
 
 
-def stops_its_guard(scene):
-    os.kill(os.getppid(), signal.SIGSTOP)
-    time.sleep(60)
-
-
-def kills_its_guard(scene):
-    os.kill(os.getppid(), signal.SIGKILL)
-    time.sleep(60)
-
-
-def terminates_its_guard(scene):
-    os.kill(os.getppid(), signal.SIGTERM)
-    time.sleep(60)
-
-
 def kills_its_group(scene):
     os.killpg(0, signal.SIGKILL)
 

@@ -48,11 +48,6 @@ def prints_without_end(scene):
     return sound(scene)
 
 
-def leaves_a_daemon(scene):
-    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"], start_new_session=True)
-    return sound(scene)
-
-
 def changes_directory(scene):
     os.chdir("/")
     return sound(scene)

@@ -1,4 +1,4 @@
-"""Processes in which other code runs: a worker that is asked, the guard that ends it, the one of users' solvers.
+"""Processes in which other code runs: a worker that is asked, the one of users' solvers.
 
 No scene is read here but by the worker of users' solvers.
 """

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import io
 import json
 import os
+import queue
 import re
-import select
+import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import IO, Any
 
-GUARD = Path(__file__).with_name("guard.py")
+GRACE = 0.7  # s for exit hooks of a worker whose starter has ended
 LONGEST_ANSWER = 2**30  # bytes of an answer: ten million steps of four columns
-PIECE_SIZE = 2**16  # bytes read at a time, and kept of standard error
-TAIL_PIECES = 64  # of what a dead worker left in its standard error
+WAITING_LINES = 16  # of what a worker writes and nobody has asked for
+PIECE_SIZE = 2**16  # bytes that are kept of standard error
 EXIT_TIMEOUT = 0.5  # s for a process that has closed its output
-GUARD_TIMEOUT = 3.0  # s for a guard to end what it guards
 TAIL_LINES = 3  # lines of a dead worker's standard error that are worth telling
 ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
 LAUNCHER_LINE = re.compile(
@@ -44,70 +45,38 @@ def stderr_tail(text: str) -> str:
     return " | ".join((error_lines or other_lines)[-TAIL_LINES:]) or "no message"
 
 
-class Lines:
-    """What has come through a pipe so far, to be taken line by line."""
-
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._searched = 0
-
-    def add(self, piece: bytes) -> None:
-        """Take a piece.
-
-        Raises
-        ------
-        WorkerDied
-            The line is longer than any answer.
-        """
-        self._buffer += piece
-        if len(self._buffer) > LONGEST_ANSWER:
-            raise WorkerDied(f"its answer is longer than {LONGEST_ANSWER} bytes")
-
-    def next(self) -> bytes | None:
-        """Return the first line, or None where it is not whole yet."""
-        end = self._buffer.find(b"\n", self._searched)
-        if end < 0:
-            self._searched = len(self._buffer)
-            return None
-        line = bytes(self._buffer[:end])
-        del self._buffer[: end + 1]
-        self._searched = 0
-        return line
-
-
 class Worker:
-    """A process, with whatever processes it starts, that answers requests until this one ends.
+    """A process in a session of its own that answers requests until this one ends, however it ends.
 
-    Between the two stands a guard, which ends the worker and its descendants with this process, however it ends.
+    Its standard input closes with this process, which `serve` takes for the end. Threads read what it writes, so that
+    it never waits for a reader, and a reader of ours never for it.
     """
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
-        watched, lifeline = os.pipe()
-        self._process = subprocess.Popen(
-            [sys.executable, "-I", "-S", str(GUARD), str(watched), *command],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            env=dict(environment),
-            pass_fds=(watched,),
-            start_new_session=True,
-            bufsize=0,
-        )
-        os.close(watched)
-        self._lifeline = os.fdopen(lifeline, "wb", buffering=0)
-        self._lines = Lines()
+        pipe = subprocess.PIPE
+        try:
+            self._process: Any = subprocess.Popen(
+                command, 0, stdin=pipe, stdout=pipe, stderr=pipe, env=dict(environment), start_new_session=True
+            )
+        except OSError as error:
+            raise WorkerDied(f"cannot be started: {command[0]}: {error.strerror}") from None
+        self._lines: queue.Queue[bytes] = queue.Queue(WAITING_LINES)
         self._stderr = b""
         self._request_number = 0
-        for stream in self._streams():
-            os.set_blocking(stream.fileno(), False)
+        _in_thread(self._read_answers, io.BufferedReader(self._process.stdout))
+        self._stderr_reader = _in_thread(self._read_stderr, self._process.stderr)
 
-    def _streams(self) -> tuple[IO[bytes], IO[bytes], IO[bytes]]:
-        stdin = self._process.stdin
-        stdout = self._process.stdout
-        stderr = self._process.stderr
-        if stdin is None or stdout is None or stderr is None:
-            raise ValueError("worker: must have three pipes, got fewer")
-        return stdin, stdout, stderr
+    def _read_answers(self, stream: IO[bytes]) -> None:
+        with stream:
+            while line := stream.readline(LONGEST_ANSWER):
+                self._lines.put(line)
+        self._lines.put(b"")
+
+    def _read_stderr(self, stream: IO[bytes]) -> None:
+        """Keep the end of what the worker writes to its standard error."""
+        with stream:
+            while piece := stream.read(PIECE_SIZE):
+                self._stderr = (self._stderr + piece)[-PIECE_SIZE:]
 
     def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
         """Send a request and wait for its answer, at most `limit` seconds.
@@ -123,99 +92,59 @@ class Worker:
         """
         self._request_number += 1
         deadline = None if limit is None else time.monotonic() + limit
-        unsent = json.dumps({**request, "id": self._request_number}).encode() + b"\n"
-        while (answer := self._answer()) is None:
-            unsent = self._exchange(unsent, deadline)
-            if deadline is not None and time.monotonic() > deadline:
-                raise WorkerHangs(f"no answer within {limit:g} s")
-        return answer
-
-    def _exchange(self, unsent: bytes, deadline: float | None) -> bytes:
-        """Wait until something moves; return what is left to be sent."""
-        stdin, stdout, stderr = self._streams()
-        remaining = None if deadline is None else max(0.0, deadline - time.monotonic())
-        readable = [stdout] if stderr.closed else [stdout, stderr]
-        writable = [stdin] if unsent else []
-        ready, free, _ = select.select(readable, writable, [], remaining)
-        if free:
-            with contextlib.suppress(BlockingIOError):
-                unsent = self._send(unsent)
-        if stderr in ready:
-            self._read_stderr()
-        if stdout in ready and (piece := _read(stdout)) is not None:
-            if not piece:
+        _in_thread(self._send, json.dumps({**request, "id": self._request_number}).encode() + b"\n")
+        while True:
+            try:
+                line = self._lines.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
+            except queue.Empty:
+                raise WorkerHangs(f"no answer within {limit:g} s") from None
+            if not line:
                 raise WorkerDied(f"the process ended with status {self._status()}: {self._tail()}")
-            self._lines.add(piece)
-        return unsent
-
-    def _send(self, data: bytes) -> bytes:
-        """Send what the pipe takes and return the rest, nothing where nobody reads any more."""
-        try:
-            return data[os.write(self._streams()[0].fileno(), data) :]
-        except BrokenPipeError:
-            return b""
-
-    def _read_stderr(self) -> None:
-        """Keep the end of what the worker writes to its standard error, so that it neither waits nor fills a disk."""
-        stream = self._streams()[2]
-        if (piece := _read(stream)) is not None:
-            self._stderr = (self._stderr + piece)[-PIECE_SIZE:]
-            if not piece:
-                stream.close()
-
-    def _tail(self) -> str:
-        stream = self._streams()[2]
-        for _ in range(TAIL_PIECES):
-            if stream.closed or not select.select([stream], [], [], 0)[0]:
-                break
-            self._read_stderr()
-        return stderr_tail(self._stderr.decode(errors="replace"))
-
-    def _answer(self) -> dict[str, Any] | None:
-        """Return the answer to the latest request where all of it is here."""
-        while (line := self._lines.next()) is not None:
             try:
                 answer = dict(json.loads(line))
             except (ValueError, TypeError, RecursionError):
-                raise WorkerDied(f"no answer but {line[:60].decode(errors='replace')!r}: {self._tail()}") from None
+                raise WorkerDied(f"no answer but {line[:60].decode(errors='replace').rstrip()!r}: {self._tail()}") from None
             if answer.pop("id", None) == self._request_number:
                 return answer
-        return None
+
+    def _send(self, data: bytes) -> None:
+        """Send a request, in a thread of its own: a worker that hangs may not read what a pipe cannot hold."""
+        with contextlib.suppress(OSError, ValueError):  # nobody reads any more
+            while data:
+                data = data[self._process.stdin.write(data) :]
+
+    def _tail(self) -> str:
+        self._stderr_reader.join(EXIT_TIMEOUT)
+        return stderr_tail(self._stderr.decode(errors="replace"))
 
     def _status(self) -> int:
-        """Return the status of a process that has ended, or has closed its output and is ended for it."""
+        """Return the status, as a shell tells it, of a process that has closed its output and is ended for it."""
         try:
-            return self._process.wait(timeout=EXIT_TIMEOUT)
+            status: int = self._process.wait(timeout=EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:
-            return self.kill()
+            status = self.kill()
+        return status if status >= 0 else 128 - status
 
     def close(self) -> None:
-        """End the process: its input ends, and so does it, or is ended by its guard."""
-        for stream in (*self._streams(), self._lifeline):
-            with contextlib.suppress(OSError):
-                stream.close()
-        self._wait()
+        """End the process, whose exit hooks have `GRACE` seconds."""
+        self._process.stdin.close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=GRACE)
+        self.kill()
 
     def kill(self) -> int:
-        """End the process and all that it started, at once; return its status."""
-        with contextlib.suppress(OSError, ValueError):
-            self._lifeline.write(b"!")
-        return self._wait()
-
-    def _wait(self) -> int:
-        try:
-            return self._process.wait(timeout=GUARD_TIMEOUT)
-        except subprocess.TimeoutExpired:  # somebody has stopped the guard; the worker is killed with it
-            self._process.kill()
-            return self._process.wait()
+        """End the process and what it has started in its group, at once; return its status."""
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.stdin.close()
+        status: int = self._process.wait()
+        return status
 
 
-def _read(stream: IO[bytes]) -> bytes | None:
-    """Return what a pipe holds, nothing at its end, None where there is nothing yet."""
-    try:
-        return os.read(stream.fileno(), PIECE_SIZE)
-    except BlockingIOError:
-        return None
+def _in_thread(function: Callable[..., None], *arguments: Any) -> threading.Thread:
+    thread = threading.Thread(target=function, args=arguments, daemon=True)
+    thread.start()
+    return thread
 
 
 workers: dict[tuple[int, tuple[str, ...]], Worker] = {}  # the workers, by process and command
@@ -244,28 +173,40 @@ def ask(
     try:
         return workers[key].ask(request, limit)
     except BaseException:
-        worker = workers.pop(key)  # dead, hanging, or interrupted with an answer on its way
-        worker.kill()
-        worker.close()
+        workers.pop(key).kill()  # dead, hanging, or interrupted with an answer on its way
         raise
+
+
+# ---- on the other side ----------------------------------------------------------------------------------------------
 
 
 def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
     """Answer requests from standard input until it ends; what else is printed goes to standard error.
 
-    Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing.
+    Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing. The
+    group of this process ends with it: after its exit hooks, or `GRACE` seconds after the end of its input.
     """
-    requests = os.fdopen(os.dup(0))
+    requests: queue.SimpleQueue[str] = queue.SimpleQueue()
+    _in_thread(_take_requests, os.fdopen(os.dup(0)), requests)
+    atexit.register(os.killpg, 0, signal.SIGKILL)  # the first one is called last
     answers = os.fdopen(os.dup(1), "w")
     process = os.getpid()
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    for line in requests:
+    while line := requests.get():
         request = json.loads(line)
         reply = json.dumps({**answer(request), "id": request["id"]})
         if os.getpid() != process:
             os._exit(0)
         answers.write(reply + "\n")
         answers.flush()
+
+
+def _take_requests(stream: IO[str], requests: queue.SimpleQueue[str]) -> None:
+    for line in stream:
+        requests.put(line)
+    requests.put("")
+    time.sleep(GRACE)
+    os.killpg(0, signal.SIGKILL)
