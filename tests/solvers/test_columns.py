@@ -11,7 +11,7 @@ from validation.advice.spectra import damping
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.engine.case import Case
-from validation.scenes import drive, features
+from validation.scenes import drive
 from validation.scenes.scene import Scene, parse_scene
 
 SITE = """
@@ -164,14 +164,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
-
-
-def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
-    """A feature is one that columns can have, or it looks at a table that they have not."""
-    for feature in features.FEATURES:
-        if not feature.of_columns and not feature.of_boxes:
-            with pytest.raises(InputError, match="got a scene of a column"):
-                feature.present(site)
 
 
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:
