@@ -81,7 +81,9 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Sce
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
     with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
         check_names(asked, "mine.toml")
-    swept = parse_scene(asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml")
+    swept = parse_scene(
+        asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml"
+    )
     check_names(swept, "mine.toml")  # one of its cases is linear
 
 
