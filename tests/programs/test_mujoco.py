@@ -101,9 +101,15 @@ def test_a_program_that_is_not_there_is_told(name: str, monkeypatch: pytest.Monk
 def test_says_what_it_is() -> None:
     assert set(MuJoCo().about) == {"program", "version", "recipe", "model", "settings"}
     assert MuJoCo().about["settings"] != AsItComes().about["settings"]
-    beyond = {features.RAMP, features.SUB_BLOCKS, features.DEAD_BAND, features.RIGID, features.LAGGED, features.DAMPING}
+    beyond = features.COURSES | {
+        features.SUB_BLOCKS,
+        features.DEAD_BAND,
+        features.RIGID,
+        features.LAGGED,
+        features.DAMPING,
+    }
     beyond |= {features.ADAPTIVE, features.RIGID_BLOCKS, features.RIGID_JOINTS} | features.OF_MOVING_COLUMN
-    beyond |= features.SCHEMES | features.CONTACT_METHODS
+    beyond |= features.COURSES | features.SCHEMES | features.CONTACT_METHODS
     assert MuJoCo.handles == {feature.name for feature in features.FEATURES} - beyond
 
 

@@ -11,53 +11,10 @@ from validation.advice.spectra import damping
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.engine.case import Case
-from validation.scenes import drive, features
+from validation.scenes import drive
 from validation.scenes.scene import Scene, parse_scene
 
-SITE = """
-[column]
-motion = "shear"
-base = "transmitting"
-base_density = 2400.0
-base_speed = 800.0
-heights = [0.0, 7.0, 10.0, 18.0]
-
-[[column.layer]]
-thickness = 10.0
-density = 2000.0
-young = 5.0e8
-poisson = 0.3
-blocks = 12
-
-[[column.layer]]
-thickness = 8.0
-density = 1800.0
-young = 2.0e8
-poisson = 0.3
-blocks = 12
-
-[[column.joint]]
-height = 10.0
-stiffness = 1.0e8
-
-[input]
-shape = "ricker"
-velocity = 0.1
-frequency = 4.0
-
-[time]
-step = 4.0e-3
-steps = 500
-alpha = 0.25
-delta = 0.5
-
-[fem]
-elements = 1
-degree = 1
-
-[run]
-columns = ["displacement", "contact_pressure", "displacement_1", "displacement_3", "stress_2", "stress_4"]
-"""
+SITE = Path(__file__).with_name("site.toml").read_text(encoding="utf-8")
 BASES = {
     "half-space": {},
     "jointed half-space": {"column.joint": [{"height": 0.0, "stiffness": 3e8}, {"height": 10.0, "stiffness": 1e8}]},
@@ -164,14 +121,6 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
-
-
-def test_no_feature_is_overlooked_in_a_column(site: Scene) -> None:
-    """A feature is one that columns can have, or it looks at a table that they have not."""
-    for feature in features.FEATURES:
-        if not feature.of_columns and not feature.of_boxes:
-            with pytest.raises(InputError, match="got a scene of a column"):
-                feature.present(site)
 
 
 def test_what_asks_for_a_block_refuses_a_column(site: Scene) -> None:

@@ -176,5 +176,5 @@ def test_a_height_without_a_contact_has_no_gap(column: dict[str, Any], columns: 
 def test_an_explicit_step_of_welded_faces_is_refused() -> None:
     joint = {"height": 2.0, "stiffness": 1e9}
     scene = scene_of({"stiffness": None, "joint": [joint]}, ["displacement"]).with_values({"time.alpha": 0.0})
-    with pytest.raises(InputError, match="stiffness: must be finite"):
-        get_solver("dda").prepare(scene).history_run(None)
+    with pytest.raises(ValueError, match="stiffness: must be finite"):
+        get_solver("dda").prepare(scene).history_run()

@@ -47,13 +47,13 @@ class Jointed(Solver):
 @pytest.fixture
 def jointed(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     """Return a scene with a feature that is one line of the table, and register its solver by another line."""
-    feature = features.Feature(JOINTS, lambda scene: scene.block.density == 7.0, linear=False)
+    feature = features.Feature(JOINTS, 'block.hypothesis = "plane strain"', linear=False)
     monkeypatch.setattr(features, "FEATURES", (*features.FEATURES, feature))
     monkeypatch.setitem(registry.BUILT_IN, "jointed", f"{__name__}:Jointed")
     seams.IMPORTED_SOLVER.wrap(
         monkeypatch, lambda sound: lambda target: Jointed if target.endswith(":Jointed") else sound(target)
     )
-    return load_scene(scene_file).with_values({"block.density": 7.0})
+    return load_scene(scene_file).with_values({"block.hypothesis": "plane strain"})
 
 
 def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed: Scene, tmp_path, monkeypatch) -> None:
@@ -81,7 +81,9 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Sce
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
     with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
         check_names(asked, "mine.toml")
-    swept = parse_scene(asked.definition() | {"sweep": {"block.density": [7.0, 8.0]}}, "mine.toml")
+    swept = parse_scene(
+        asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml"
+    )
     check_names(swept, "mine.toml")  # one of its cases is linear
 
 

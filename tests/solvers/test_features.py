@@ -37,7 +37,7 @@ SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few ot
     features.SUB_BLOCKS: SUB_BLOCKS,
     features.OFF_CENTRE: {"load.traction": 1e5},
     features.WEIGHT: {"load.gravity": 9.81},
-    features.RAMP: {"load.ramp": 0.01},
+    "ramped load": {"load.ramp": 0.01},
     features.BASE_MOTION: MOVED,
     features.UNILATERAL: OPEN,
     features.DEAD_BAND: OPEN | {"contact.band": [1e-3, 0.0]},
@@ -60,13 +60,13 @@ SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few ot
 # Newmark's scheme is stepped by all; others by these, and by none of what is exact in time, which takes them all.
 OTHER_SCHEMES = {
     *("dda", "fem", "bar"),
-    *("continuum", "layers", "block-events", "bar-events", "column-events", "bars-events"),
+    *("continuum", "layers", "block-events", "bar-events", "column-events", "bars-events", "rigid-exact"),
 }
 TAKES: dict[str, set[str]] = {
     features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum"},
     features.OFF_CENTRE: {"dda", "fem", "fenicsx", "block-events"},
     features.WEIGHT: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
-    features.RAMP: {"dda", "fem", "bar"},
+    "ramped load": {"dda", "fem", "bar"},
     features.BASE_MOTION: {"dda", "fem", "fenicsx", "block-events"},
     features.UNILATERAL: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
     features.DEAD_BAND: {"dda"},

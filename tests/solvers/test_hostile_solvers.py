@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -60,49 +61,9 @@ def told(row: Row, outcome: Outcome, said: str) -> bool:
     return row.outcome is outcome and said in "; ".join(row.notes) and sum(map(len, row.notes)) < 1000
 
 
-SURVIVED = [  # by the process; the last one leaves it fit for little
-    ("deadly:forks", Outcome.COMPLETED, ""),
-    ("deadly:forks_and_stays", Outcome.COMPLETED, ""),
-    ("hostile:leaves_a_thread", Outcome.COMPLETED, ""),
-    ("hostile:leaves_an_exit_hook", Outcome.COMPLETED, ""),
-    ("hostile:exits_in_a_thread", Outcome.COMPLETED, ""),
-    ("hostile:prints", Outcome.COMPLETED, ""),
-    ("hostile:prints_without_end", Outcome.COMPLETED, ""),
-    ("hostile:changes_directory", Outcome.COMPLETED, ""),
-    ("deadly:answers_another_request", Outcome.COMPLETED, ""),
-    ("hostile:interrupts", Outcome.RAISED, "KeyboardInterrupt"),
-    ("hostile:ends_a_generator", Outcome.RAISED, "GeneratorExit: no more"),
-    ("hostile:raises_what_has_no_text", Outcome.RAISED, "Nameless, whose text raises RuntimeError"),
-    ("hostile:raises_half_a_character", Outcome.RAISED, r"half \udc80 of \ud800 a character, \x1b[31mred"),
-    ("hostile:raises_a_book", Outcome.RAISED, "ValueError: xxx"),
-    ("hostile:recurses", Outcome.RAISED, "RecursionError: "),
-    ("hostile:wants_memory", Outcome.RAISED, "Unable to allocate"),
-    ("hostile:not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 1"),
-    ("hostile:infinite", Outcome.OVERFLOW, "displacement at step 1"),
-    ("hostile:texts", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of <U5"),
-    (
-        "hostile:complex_numbers",
-        Outcome.RAISED,
-        "TypeError: displacement must hold real numbers, got an array of complex128",
-    ),
-    ("hostile:dates", Outcome.RAISED, "TypeError: displacement must hold real numbers, got an array of datetime64"),
-    ("hostile:nothing_in_it", Outcome.NOT_A_NUMBER, "displacement at step 1"),
-    ("hostile:scalar", Outcome.WRONG_SHAPE, "displacement has shape (), not (50,)"),
-    ("hostile:square", Outcome.WRONG_SHAPE, "displacement has shape (50, 50), not (50,)"),
-    ("hostile:ragged", Outcome.RAISED, "ValueError: setting an array element with a sequence"),
-    ("hostile:odd_names", Outcome.COMPLETED, ""),
-    ("hostile:names_of_half_characters", Outcome.WRONG_SHAPE, r"no column displacement, got \udc80"),
-    ("hostile:Static", Outcome.COMPLETED, ""),
-    (
-        "hostile:SubnormalStatic",
-        Outcome.COMPLETED,
-        "static: must be zero or a normal number, got -1e-320 for displacement",
-    ),
-    ("hostile:LeastStatic", Outcome.COMPLETED, ""),
-    ("hostile:UndefinedStatic", Outcome.COMPLETED, "static: must be zero or a normal number, got nan for displacement"),
-    ("hostile:TextStatic", Outcome.RAISED, "could not convert string to float"),
-    ("hostile:OddModes", Outcome.COMPLETED, ""),
-    ("hostile:collects_itself", Outcome.COMPLETED, ""),
+SURVIVED = [
+    (target, Outcome(outcome), said)
+    for target, outcome, said in tomllib.loads(Path(__file__).with_name("hostile_solvers.toml").read_text())["survived"]
 ]
 FATAL = [  # to the process
     pytest.param("deadly:writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),

@@ -6,6 +6,7 @@ goes with its load; to ask again, for less, or without savings gives the same nu
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,87 +21,11 @@ from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import NotReported
 from validation.solvers.registry import BUILT_IN, get_solver
 
-SQUARE = {"side": 2.0, "density": 2700.0, "young": 1e9}
-SPRINGS = {"stiffness": 1e9}
-OPENS = SPRINGS | {"law": "unilateral"}
-RUBS = OPENS | {"shear_stiffness": 4e8, "friction": 15.0}
 TIME = {"step": 2e-3, "steps": 12}
 USUAL = ("displacement", "contact_pressure")
-ASIDE = (*USUAL, "horizontal_displacement")
-LAYERS = [
-    {"thickness": 2.0, "density": 2000.0, "young": 2e9, "blocks": 4},
-    {"thickness": 1.0, "density": 1800.0, "young": 5e8, "blocks": 4},
-]
-COLUMN = {"motion": "pressure", "layer": LAYERS, "base": "transmitting", "base_density": 2400.0, "base_speed": 900.0}
-THROWN = [layer | {"blocks": 1, "velocity": velocity} for layer, velocity in zip(LAYERS, (0.2, -0.5), strict=True)]
-BARS = [{"thickness": 6.0, "density": 2000.0, "young": 1e9, "blocks": 2, "velocity": -0.5}]  # few travel times long
-HALF_SINE = {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}
-RICKER = {"shape": "ricker", "velocity": 0.1, "frequency": 120.0}
-SCENES: dict[str, dict[str, Any]] = {
-    "locked": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL},
-    "lateral": {
-        "block": {"vertices": [[0.3, 0.1], [2.3, 0.4], [1.9, 1.6], [0.5, 1.4]], "density": 2400.0, "young": 2e9,
-                  "poisson": 0.2, "base": 0, "top": 2},
-        "contact": {"stiffness": 3e9, "shear_stiffness": 1e9},
-        "load": {"pressure": 3e6, "traction": 4e5, "gravity": 9.81},
-        "columns": ASIDE,
-    },
-    "sub-blocks": {
-        "block": SQUARE | {"subdivide": [2, 3], "glue_ratio": 20.0, "poisson": 0.25},
-        "contact": SPRINGS, "load": {"pressure": 5e6, "traction": 2e5}, "columns": ASIDE,
-    },
-    "shaken": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 1e6, "base_motion": ""}, "columns": ASIDE},
-    "ramped": {"block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6, "ramp": 0.01}, "columns": USUAL},
-    "opening in a ramp": {
-        "block": SQUARE, "contact": OPENS, "load": {"pressure": -5e5, "gravity": 9.81, "ramp": 0.01}, "columns": USUAL,
-    },
-    "damped": {
-        "block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL,
-        "damping": {"mass": 20.0, "stiffness": 3e-4},
-    },
-    "adaptive": {
-        "block": SQUARE, "contact": SPRINGS, "load": {"pressure": 5e6}, "columns": USUAL,
-        "damping": {"kinetic": "adaptive", "floor": 0.5},
-    },
-    "opening": {"block": SQUARE, "contact": OPENS, "load": {"pressure": 5e6, "gravity": 9.81}, "columns": USUAL},
-    "opening sub-blocks": {
-        "block": SQUARE | {"subdivide": [1, 2], "glue_ratio": 5.0}, "contact": OPENS, "load": {"pressure": 5e6},
-        "columns": USUAL,
-    },
-    "landing": {
-        "block": SQUARE | {"velocity": -1.0}, "contact": OPENS | {"gap": 5e-3}, "load": {"gravity": 9.81},
-        "columns": USUAL,
-    },
-    "sliding": {"block": SQUARE, "contact": RUBS, "load": {"gravity": 9.81, "slope": 28.9}, "columns": ASIDE},
-    "lagged": {
-        "block": SQUARE, "contact": RUBS | {"rules": "lagged", "band": [1e-3, 1e-6]},
-        "load": {"gravity": 92.6, "slope": 20.0}, "columns": ASIDE,
-    },
-    "turning": {
-        "block": {"width": 2.0, "height": 4.0, "density": 2700.0, "young": 1e12, "tilt": 13.0},
-        "contact": RUBS | {"stiffness": 1e11, "shear_stiffness": 4e10, "friction": 45.0},
-        "load": {"gravity": 9.81}, "columns": (*ASIDE, "rotation"), "geometry": "updated",
-    },
-    "column": {"column": COLUMN, "input": RICKER, "columns": USUAL},
-    "column that opens": {
-        "column": {"motion": "pressure", "law": "unilateral", "layer": THROWN, "stiffness": 4e8, "gap": 1e-3,
-                   "gravity": 9.81},
-        "input": RICKER, "columns": USUAL,
-    },
-    "column that slips": {
-        "column": {"motion": "shear", "law": "frictional", "layer": THROWN, "stiffness": 4e8, "strength": 1e5},
-        "input": RICKER, "columns": USUAL,
-    },
-    "bars that open": {
-        "column": {"motion": "pressure", "law": "unilateral", "layer": BARS, "stiffness": 4e8, "gap": 1e-3,
-                   "gravity": 9.81},
-        "input": HALF_SINE, "columns": USUAL,
-    },
-    "bars that slip": {
-        "column": {"motion": "shear", "law": "frictional", "layer": BARS, "stiffness": 4e8, "strength": 1e5},
-        "input": HALF_SINE, "columns": USUAL,
-    },
-}  # fmt: skip
+SCENES: dict[str, dict[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8")
+)
 NOT_LINEAR = (
     "opening in a ramp",
     "adaptive",

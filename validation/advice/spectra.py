@@ -204,10 +204,10 @@ def highest_frequency(scene: Scene) -> float:
     InputError
         DDA refuses the scene, or its model does not fit into memory.
     """
-    limit = checked("dda", scene).prepare(scene).step_limit()
-    if limit is None:
+    frequency = checked("dda", scene).prepare(scene).highest_frequency()
+    if frequency is None:
         raise NotReported("dda reports no limit of the step")
-    return limit.highest_frequency()
+    return frequency
 
 
 def damping(scene: Scene, references: bool = False) -> Damping:

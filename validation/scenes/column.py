@@ -168,6 +168,16 @@ class ColumnSection(Section):
             raise ValueError("base = 'free' goes with law = 'unilateral' or 'frictional' only, got 'bonded'")
 
     @property
+    def has_rigid_blocks(self) -> bool:
+        """Whether the blocks of a layer are rigid."""
+        return any(math.isinf(layer.young) for layer in self.layer)
+
+    @property
+    def has_rigid_joints(self) -> bool:
+        """Whether a contact is rigid."""
+        return any(math.isinf(contact.stiffness) for contact in self.contacts)
+
+    @property
     def height(self) -> float:
         """Height of the column [m]."""
         return sum(layer.thickness for layer in self.layer)

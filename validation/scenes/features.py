@@ -1,39 +1,32 @@
 """Features of scenes: what a scene has beyond one block under a centred pressure on locked springs.
 
-A solver says which of them it handles; a scene that has another one is refused by name. A new feature is one line here.
+A solver says which of them it handles; a scene that has another one is refused by name. A new feature is one line
+here, or `feature` of a key of the loads.
 """
 
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from validation.errors import InputError
+from validation.scenes.keys import is_fulfilled, keys_of
 from validation.scenes.scene import Scene
+from validation.scenes.tables import LoadSection
 
 
 @dataclass(frozen=True)
 class Feature:
-    """A word, the test that a scene has it, and whether the motion stays linear with it."""
+    """A word, what the tables of a scene say where it has it, and whether the motion stays linear with it."""
 
     name: str
-    present: Callable[[Scene], bool]
+    when: str  # `table.key` that is not at its default, or `table.key = "word"`, as in `Key.needs`
     linear: bool = True
-    of_columns: bool = False  # whether a column can have it; the others are of a block, its contact and its load
-    of_boxes: bool = False  # whether rigid boxes can have it
-
-
-def _law(scene: Scene) -> str | None:
-    """Return the law of a column's springs."""
-    return None if scene.column is None else scene.column.law
 
 
 Apart = tuple[tuple[str, frozenset[str]], ...]  # a feature to those that a solver does not take together with it
 
 SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION = "sub-blocks", "off-centre load", "own weight", "base motion"
-RAMP = "ramped load"
 UNILATERAL, DEAD_BAND, RIGID = "unilateral contact", "dead bands", "rigid contact"
 FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "large rotation"
 COLUMN = "column"
@@ -44,53 +37,39 @@ DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 DASHPOTS, IMPACT, AUGMENTED = "contact dashpots", "impact law", "augmented Lagrangian"
 GENERALISED_ALPHA, LEAPFROG, COMPOSITE = "generalised-alpha scheme", "leapfrog scheme", "composite scheme"
+
+OF_LOADS = tuple(Feature(key.feature, f"load.{name}") for name, _, key in keys_of(LoadSection) if key.feature)
 FEATURES = (
-    Feature(SUB_BLOCKS, lambda scene: scene.block.subdivide is not None),
-    Feature(OFF_CENTRE, lambda scene: scene.load.eccentricity != 0 or scene.load.traction != 0),
-    Feature(WEIGHT, lambda scene: scene.load.gravity != 0),
-    Feature(RAMP, lambda scene: scene.load.ramp > 0),
-    Feature(BASE_MOTION, lambda scene: scene.load.base_motion is not None),
-    Feature(UNILATERAL, lambda scene: scene.contact.law == "unilateral", linear=False),
-    Feature(DEAD_BAND, lambda scene: any(scene.contact.band), linear=False),
-    # The law of an impact is one of velocities; a rigid stop in displacements turns back as its steps happen to.
-    Feature(
-        RIGID,
-        lambda scene: math.isinf(scene.contact.stiffness) and scene.contact.rule != "impact",
-        linear=False,
-    ),
-    Feature(FRICTION, lambda scene: scene.contact.friction is not None, linear=False),
-    Feature(LAGGED, lambda scene: scene.contact.rules == "lagged", linear=False),
-    Feature(SLOPE, lambda scene: scene.load.slope != 0),
-    Feature(
-        ROTATION, lambda scene: scene.contact.law == "unilateral" and scene.run.geometry == "updated", linear=False
-    ),
-    Feature(COLUMN, lambda scene: scene.column is not None, of_columns=True),
-    Feature(UNILATERAL_COLUMN, lambda scene: _law(scene) == "unilateral", linear=False, of_columns=True),
-    Feature(FRICTIONAL_COLUMN, lambda scene: _law(scene) == "frictional", linear=False, of_columns=True),
-    Feature(
-        RIGID_BLOCKS,
-        lambda scene: scene.column is not None and any(math.isinf(layer.young) for layer in scene.column.layer),
-        linear=False,
-        of_columns=True,
-    ),
-    Feature(
-        RIGID_JOINTS,
-        lambda scene: scene.column is not None and any(math.isinf(one.stiffness) for one in scene.column.contacts),
-        linear=False,
-        of_columns=True,
-    ),
-    Feature(RIGID_BOXES, lambda scene: scene.rigid is not None, linear=False, of_boxes=True),
-    Feature(DAMPING, lambda scene: scene.damping.present, of_columns=True),
-    Feature(ADAPTIVE, lambda scene: scene.damping.kinetic == "adaptive", linear=False, of_columns=True),
-    Feature(IMPLICIT, lambda scene: scene.contact.rule == "implicit", linear=False),
-    Feature(CONSERVING, lambda scene: scene.contact.rule == "energy-conserving", linear=False),
-    Feature(DASHPOTS, lambda scene: scene.contact.has_dashpots, linear=False),
-    Feature(IMPACT, lambda scene: scene.contact.rule == "impact", linear=False),
-    Feature(AUGMENTED, lambda scene: scene.contact.rule == "augmented", linear=False),
-    Feature(GENERALISED_ALPHA, lambda scene: scene.time.scheme in ("chung-hulbert", "hht", "wbz"), of_columns=True),
-    Feature(LEAPFROG, lambda scene: scene.time.scheme == "leapfrog", of_columns=True),
-    Feature(COMPOSITE, lambda scene: scene.time.scheme == "composite", of_columns=True),
+    Feature(SUB_BLOCKS, "block.subdivide"),
+    Feature(OFF_CENTRE, "load.off_centre"),
+    Feature(WEIGHT, "load.gravity"),
+    *OF_LOADS,
+    Feature(BASE_MOTION, "load.base_motion"),
+    Feature(UNILATERAL, 'contact.law = "unilateral"', linear=False),
+    Feature(DEAD_BAND, "contact.band", linear=False),
+    Feature(RIGID, "contact.is_rigid_stop", linear=False),
+    Feature(FRICTION, "contact.friction", linear=False),
+    Feature(LAGGED, 'contact.rules = "lagged"', linear=False),
+    Feature(SLOPE, "load.slope"),
+    Feature(ROTATION, 'run.geometry = "updated"', linear=False),
+    Feature(COLUMN, "column.layer"),
+    Feature(UNILATERAL_COLUMN, 'column.law = "unilateral"', linear=False),
+    Feature(FRICTIONAL_COLUMN, 'column.law = "frictional"', linear=False),
+    Feature(RIGID_BLOCKS, "column.has_rigid_blocks", linear=False),
+    Feature(RIGID_JOINTS, "column.has_rigid_joints", linear=False),
+    Feature(RIGID_BOXES, "rigid.box", linear=False),
+    Feature(DAMPING, "damping.present"),
+    Feature(ADAPTIVE, 'damping.kinetic = "adaptive"', linear=False),
+    Feature(IMPLICIT, 'contact.rule = "implicit"', linear=False),
+    Feature(CONSERVING, 'contact.rule = "energy-conserving"', linear=False),
+    Feature(DASHPOTS, "contact.has_dashpots", linear=False),
+    Feature(IMPACT, 'contact.rule = "impact"', linear=False),
+    Feature(AUGMENTED, 'contact.rule = "augmented"', linear=False),
+    Feature(GENERALISED_ALPHA, 'time.scheme = "chung-hulbert" or "hht" or "wbz"'),
+    Feature(LEAPFROG, 'time.scheme = "leapfrog"'),
+    Feature(COMPOSITE, 'time.scheme = "composite"'),
 )
+COURSES = frozenset(feature.name for feature in OF_LOADS)  # loads that do not act in full from t = 0 on
 OF_MOVING_COLUMN = frozenset({UNILATERAL_COLUMN, FRICTIONAL_COLUMN})
 LOADS = frozenset({OFF_CENTRE, WEIGHT, BASE_MOTION})
 RULES = frozenset({IMPLICIT, CONSERVING})  # of the time step: an exact motion has none
@@ -106,12 +85,8 @@ FIRST = frozenset({SUB_BLOCKS, OFF_CENTRE, WEIGHT, BASE_MOTION})  # older than t
 
 
 def _present(scene: Scene) -> tuple[Feature, ...]:
-    candidates = {
-        "block": [feature for feature in FEATURES if not feature.of_boxes],
-        "column": [feature for feature in FEATURES if feature.of_columns],
-        "rigid": [feature for feature in FEATURES if feature.of_boxes],
-    }
-    return tuple(feature for feature in candidates[scene.kind] if feature.present(scene))
+    tables = scene.tables()
+    return tuple(feature for feature in FEATURES if is_fulfilled(feature.when, "", tables))
 
 
 def of(scene: Scene) -> tuple[str, ...]:
@@ -187,15 +162,15 @@ def refuse_damping(scene: Scene, what: str) -> None:
 
 
 def refuse_ramp(scene: Scene, what: str) -> None:
-    """Refuse a scene with a ramp where the answer knows loads only that act at once.
+    """Refuse a scene with a ramp, or a load of another course, where the answer knows loads only that act at once.
 
     Raises
     ------
     InputError
-        The load rises in a ramp.
+        A load does not act in full from t = 0 on.
     """
-    if scene.load.ramp:
-        raise InputError(f"{what} takes loads that act at once only", source=scene.name, value="a ramp")
+    if courses := COURSES & {*of(scene)}:
+        raise InputError(f"{what} takes loads that act at once only", source=scene.name, value=", ".join(courses))
 
 
 def refuse_column(scene: Scene, what: str) -> None:

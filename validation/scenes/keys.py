@@ -6,6 +6,7 @@ goes with, the table of `list keys`, the page of `show`, and labels and data of 
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
-_REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w-]+"(?: or "[\w-]+")*))?$')
+_REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w -]+"(?: or "[\w -]+")*))?$')
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class Key:
     text: str  # what it is, in words
     symbol: str | None = None  # that of the text and the figures; "" where the value says enough, None: its name
     needs: tuple[str, ...] = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
+    feature: str = ""  # of a key of the loads: what a scene has where it is not at its default
 
 
 class Section(BaseModel):
@@ -67,7 +69,7 @@ def check_needs(tables: Mapping[str, Section]) -> None:
         for inside, entry in [("", table), *_entries(table)]:
             for name, value, key in stated(entry):
                 for requirement in key.needs:
-                    if not _fulfilled(requirement, place, tables):
+                    if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"
                         raise ValueError(f"{rule}, got {_short(value)} without it")
 
@@ -80,17 +82,30 @@ def _entries(table: Section) -> Iterator[tuple[str, Section]]:
             yield from ((f"{name}.", entry) for entry in value if isinstance(entry, Section))
 
 
-def _fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) -> bool:
-    parts = _REQUIREMENT.match(requirement)
-    if parts is None:
-        raise ValueError(f"needs: must be a key, or key = word, got {requirement!r}")
-    field, words = parts.groups()
-    section, _, name = field.rpartition(".")
+def is_fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) -> bool:
+    """Whether tables say what a requirement asks for, of keys in a table unless it names another one.
+
+    What a requirement without words names may be a property of the table, too: then it is fulfilled where that is true.
+    """
+    section, name, words = _parsed(requirement)
     table = tables.get(section or place)
     if table is None:
         return False
     value = stated_value(table, name)
-    return value != type(table).model_fields[name].default if words is None else f'"{value}"' in words.split(" or ")
+    if words:
+        return value in words
+    field = type(table).model_fields.get(name)
+    return bool(value) if field is None else value != field.default
+
+
+@functools.cache
+def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
+    """Return table, key and words of a requirement."""
+    parts = _REQUIREMENT.match(requirement)
+    if parts is None:
+        raise ValueError(f"needs: must be a key, or key = word, got {requirement!r}")
+    section, _, name = parts[1].rpartition(".")
+    return section, name, tuple(re.findall(r'"(.*?)"', parts[2] or ""))
 
 
 def described(name: str, value: object, key: Key) -> str:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
 
 from validation.errors import InputError
+from validation.runs.history import Array
 from validation.scenes.keys import Key, Section
 from validation.scenes.outline import Point, area, check_polygon, convex_quadrilateral
 
@@ -251,6 +253,11 @@ class ContactSection(Section):
             raise ValueError(f"friction does not go with {method}, got {self.friction:g} deg")
 
     @property
+    def is_rigid_stop(self) -> bool:
+        """Whether a rigid stop acts on displacements, and turns back as its steps happen to; an impact has a law."""
+        return math.isinf(self.stiffness) and self.rule != "impact"
+
+    @property
     def has_dashpots(self) -> bool:
         """Whether dashpots stand beside the springs, by their damping ratio or by the rebound that they leave."""
         return self.damping_ratio > 0 or (self.rule == "newmark" and self.restitution is not None)
@@ -273,7 +280,10 @@ class LoadSection(Section):
     slope: Annotated[Angle, Key("deg", "of the base: gravity acts as g (sin, -cos) in x and y", "β", ("gravity",))] = (
         0.0
     )
-    ramp: Annotated[NonNegative, Key("s", "in which pressure, traction and gravity rise linearly from zero")] = 0.0
+    ramp: Annotated[
+        NonNegative,
+        Key("s", "in which pressure, traction and gravity rise linearly from zero", feature="ramped load"),
+    ] = 0.0
     base_motion: Annotated[str | None, Key("", "CSV file with the header time,x or time,y or time,x,y, in s and m")] = (
         None
     )
@@ -285,9 +295,25 @@ class LoadSection(Section):
         return self
 
     @property
+    def numbers(self) -> dict[str, float]:
+        """The loads by their names, which are those of both solver packages."""
+        return self.model_dump(exclude={"base_motion"})
+
+    @property
+    def off_centre(self) -> bool:
+        """Whether pressure or traction would turn the block."""
+        return self.eccentricity != 0 or self.traction != 0
+
+    @property
     def centred(self) -> bool:
         """Whether a centred pressure is all there is."""
-        return self.eccentricity == self.traction == self.gravity == 0 and self.base_motion is None
+        return not self.off_centre and self.gravity == 0 and self.base_motion is None
+
+    def acted(self, time: Array) -> Array:
+        """Return how long the loads would act in full to give the impulse that they have given by each time [s]."""
+        if self.ramp == 0:
+            return time
+        return np.where(time < self.ramp, time**2 / (2 * self.ramp), time - self.ramp / 2)
 
 
 class TimeSection(Section):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ from validation.solvers.columns.layers import time_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
 from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
-from validation.solvers.translation import check_columns, naming, no_fields, switches_between_steps, to_run
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -50,12 +49,10 @@ class NewmarkBar(Prepared):
         """Return the scheme of the scene."""
         return scheme_of(self.scene)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields(self.name, self.scene, fields)
         check_columns(self.scene, BAR_COLUMNS)
-        with naming(self.scene):
-            return to_run(self.scene, self.history())
+        return to_run(self.scene, self.history())
 
     def history(self) -> fem_reference.Result:
         """Return the history under the Newmark scheme."""
@@ -73,12 +70,11 @@ class NewmarkBar(Prepared):
         """Raise: the bar has no matrix and modes without end."""
         raise NotReported("bar: the exact bar has no matrix and no largest frequency")
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space."""
         from fem_reference.exact.vibration import response
 
-        with naming(self.scene):
-            return response(self.bar, self.scheme, frequencies, BAR_COLUMNS, exact)
+        return response(self.bar, self.scheme, frequencies, BAR_COLUMNS, exact)
 
 
 class OpeningBar(Prepared):
@@ -93,11 +89,10 @@ class OpeningBar(Prepared):
         with naming(scene):
             self.bar = Exact.of(problem_of(scene), scene.contact.gap, scene.block.velocity)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields(self.name, self.scene, fields)
         check_columns(self.scene, OPENING_COLUMNS)
-        with naming(self.scene), np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):
             result = self.bar.solve(self.scheme, self.scene.time.steps)
         self.result = result
         force = result.contact_pressure * self.bar.width / 2
@@ -115,23 +110,17 @@ class OpeningBar(Prepared):
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
         result = self.result
-        step = self.scheme.step
         force = result.contact_pressure * self.bar.width
-        end_weight = opened.end_weight(self.scene)
-        if end_weight is None:
-            impulse = opened.impulse_of_momentum(self.scene, result.velocity)
-        else:
-            impulse = opened.impulse_of_force(force, step, end_weight)
         return opened.record(
             self.scene,
             time=result.time,
             force=force,
-            impulse=impulse,
+            impulse=opened.impulse_of_contact(self.scene, force, result.velocity),
             penetration=np.maximum(0.0, -result.gap),
             gap=np.maximum(0.0, result.gap),
             open_share=1 - result.closed,
             velocity=result.velocity,
-            rebounds=opened.rebounds(np.array([result.gap]), step),
+            rebounds=opened.rebounds(np.array([result.gap]), self.scheme.step),
         )
 
 
@@ -139,10 +128,12 @@ class ExactBar(Solver):
     """Exact in space, in time a scheme's."""
 
     name = "bar"
-    handles: frozenset[str] = features.SCHEMES | frozenset(
-        {features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING, features.RAMP}
+    handles: frozenset[str] = (
+        features.SCHEMES
+        | features.COURSES
+        | frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.WEIGHT, features.DAMPING})
     )
-    apart = ((features.RAMP, frozenset({features.UNILATERAL})), *features.DAMPING_APART)
+    apart = ((features.UNILATERAL, features.COURSES), *features.DAMPING_APART)
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread: tuple[str, ...] = OF_SUB_BLOCKS
     sources: tuple[str, ...] = ("fem_reference",)
@@ -198,9 +189,9 @@ class ContinuousBar(NewmarkBar):
             exact_modes.append(Mode(mode.frequency, mode.share, factors, None, True))
         return tuple(exact_modes)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time."""
-        return super().response(frequencies, exact=True)
+        return super().amplitudes(frequencies, exact=True)
 
 
 def _factors(w: float, half_rate: float, step: float) -> tuple[complex, complex]:

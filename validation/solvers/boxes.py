@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.contract import Prepared
-from validation.solvers.translation import naming, no_fields
 
 YOUNG = 1.0e9  # Pa, of the blocks, and N/m, of their springs: p = 1E, where the scene gives no stiffness
 OWN_STEP = 2.0e-3  # s: the step of the damping study that this suite began with
@@ -55,11 +53,9 @@ class BlocksOfBoxes(Prepared):
         # A box has two corners on the ground.
         self.corner_stiffness = YOUNG if self.rigid.stiffness is None else self.rigid.stiffness / 2
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields("dda", self.scene, fields)
-        with naming(self.scene):
-            return self._alone() if len(self.rigid.box) == 1 else self._pile()
+        return self._alone() if len(self.rigid.box) == 1 else self._pile()
 
     def _alone(self) -> Run:
         """Run one box as a block that may turn by any angle."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import enum
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
@@ -14,11 +16,22 @@ from validation.runs.modes import Mode, Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.limits import StepLimit, check_step
+from validation.solvers.limits import check_step
+from validation.solvers.translation import naming
 
 
 class NotReported(LookupError):
     """A solver does not offer this part of the contract."""
+
+
+Completed = TypeVar("Completed")
+
+
+def completed(result: Completed | None) -> Completed:
+    """Return what a run has left; refused where the scene was not run."""
+    if result is None:
+        raise NotReported("the scene was not run")
+    return result
 
 
 class Role(enum.StrEnum):
@@ -51,15 +64,15 @@ class LineStyle:
 class Prepared:
     """A scene that a solver has built once; everything is asked of it.
 
-    What steps by the scene's scheme defines `history_run` and, where the scheme can be unstable, `step_limit`; what
-    steps by none may define `run` itself. The others raise `NotReported` where the solver does not offer them, and are
-    asked of linear scenes only: what opens or slips has no modes, no spectrum, no response to one frequency and no
-    single static solution.
+    What steps by the scene's scheme defines `history_run` and, where the scheme can be unstable, `highest_frequency`.
+    The others raise `NotReported` where the solver does not offer them, and are asked of linear scenes only: what opens
+    or slips has no modes, no spectrum, no response to one frequency and no single static solution.
     """
 
     scene: Scene
-
     keeps_contact_record = False  # whether `contact_record` will be asked for; set before `run`
+    has_fields = False  # whether it can write displacement and stress fields
+    fields: Path | None = None  # file for these fields
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene; `fields` names a file for displacement and stress fields.
@@ -67,21 +80,28 @@ class Prepared:
         Raises
         ------
         InputError
-            The step exceeds the limit of a conditionally stable scheme and the scene does not allow it.
+            The step exceeds the limit of a conditionally stable scheme and the scene does not allow it, the solver
+            refuses a value, or it has no fields.
         """
-        limit = self.step_limit()
-        if limit is not None:
-            check_step(self.scene, limit)
+        if fields is not None and not self.has_fields:
+            rule = "needs the solver fem, a locked contact and a constant gg"
+            raise InputError(rule, source=self.scene.name, field="--fields", value=fields)
+        self.fields = fields
+        check_step(self.scene, self.highest_frequency)
         try:
-            return self.history_run(fields)
+            with naming(self.scene):
+                return self.history_run()
         except OverflowError as error:  # of plain floats, where an array would have become infinite
             return Run(Outcome.OVERFLOW, notes=(str(error),))
 
-    def step_limit(self) -> StepLimit | None:
-        """Return what limits the step of a conditionally stable scheme; None where nothing does or it is not known."""
+    def highest_frequency(self) -> float | None:
+        """Return the largest frequency of the model, contacts closed and sticking [rad/s]; infinite on a rigid stop.
+
+        None where it is not known, or where nothing limits the step. Conditionally stable schemes alone ask for it.
+        """
         return None
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Make the steps of a scene whose step is within the limit, or is allowed to exceed it."""
         raise NotImplementedError
 
@@ -108,6 +128,12 @@ class Prepared:
         phase with the amplitudes that the scene gives them; where the base moves, under its motion alone, for 1 m along
         its direction. They are as the scene's scheme steps them, or as the same model answers that is `exact` in time.
         """
+        check_step(self.scene, self.highest_frequency)
+        with naming(self.scene):
+            return self.amplitudes(frequencies, exact)
+
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
+        """Return the response of a scene whose step is within the limit, or is allowed to exceed it."""
         raise NotReported("no frequency response is reported")
 
     def switches(self) -> tuple[Switch, ...]:
@@ -234,28 +260,10 @@ class PreparedByFunction(Prepared):
         self.solver = solver
         self.scene = scene
         self.full = full
+        for part in ("static", "modes", "diagnostics", "response"):
+            if getattr(type(solver), part) is not getattr(Solver, part):
+                setattr(self, part, partial(getattr(solver, part), scene))
 
     def run(self, fields: Path | None = None) -> Run:
         """Call the solver's function."""
         return self.solver.solve(self.scene, full=self.full, fields=fields)
-
-    def static(self) -> Mapping[str, float]:
-        """Return what the solver reports."""
-        return self.solver.static(self.scene) if self._has("static") else super().static()
-
-    def modes(self) -> tuple[Mode, ...]:
-        """Return what the solver reports."""
-        return self.solver.modes(self.scene) if self._has("modes") else super().modes()
-
-    def diagnostics(self) -> Mapping[str, float]:
-        """Return what the solver reports."""
-        return self.solver.diagnostics(self.scene) if self._has("diagnostics") else super().diagnostics()
-
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
-        """Return what the solver reports."""
-        if not self._has("response"):
-            return super().response(frequencies, exact)
-        return self.solver.response(self.scene, frequencies, exact)
-
-    def _has(self, part: str) -> bool:
-        return getattr(type(self.solver), part) is not getattr(Solver, part)

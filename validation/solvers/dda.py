@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,13 +15,12 @@ from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import block_of, dda_limit, load_of
+from validation.solvers.blocks.closed import block_of, load_of
 from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import check_columns, naming, no_fields, to_run
+from validation.solvers.translation import check_columns, naming, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -67,15 +65,13 @@ class OneBlock(Prepared):
             self.model = model_of(scene)
             self.scheme = scheme_of(scene)
 
-    def history_run(self, fields: Path | None) -> Run:
-        """Run the scene; DDA has no fields."""
+    def history_run(self) -> Run:
+        """Run the scene."""
         import dda
 
-        no_fields("dda", self.scene, fields)
         adaptive = features.ADAPTIVE in features.of(self.scene)
         check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS) if adaptive else dda.COLUMNS)
-        with naming(self.scene):
-            return to_run(self.scene, self.solve_steps(self.scene.time.steps, self.scene.run.columns))
+        return to_run(self.scene, self.solve_steps(self.scene.time.steps, self.scene.run.columns))
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps; a discount may follow the kinetic energy."""
@@ -85,10 +81,6 @@ class OneBlock(Prepared):
             floor = self.scene.damping.floor
             return dda.solve_adaptive(self.model, self.scheme, steps, columns, floor, self.full)
         return dda.solve(self.model, self.scheme, steps, columns, self.full)
-
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the highest frequency that the load reaches."""
-        return dda_limit(self.highest_frequency)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency of the modes that the load reaches [rad/s]."""
@@ -114,14 +106,12 @@ class OneBlock(Prepared):
 
         return vars(dda.diagnostics(self.model, self.scheme))
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, mode by mode."""
         import dda
 
-        check_step(self.scene, self.step_limit())
         along = base_direction(self.scene)
-        with naming(self.scene):
-            return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+        return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 class SubBlocks(OneBlock):
@@ -163,14 +153,12 @@ class SubBlocks(OneBlock):
         """Raise: diagnostics are those of one whole block."""
         raise NotReported("dda reports diagnostics of a whole block only")
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response of the system."""
         import dda
 
-        check_step(self.scene, self.step_limit())
         along = base_direction(self.scene)
-        with naming(self.scene):
-            return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+        return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 # Dashpots, impact law and augmented Lagrangian are of the corners of one block, which open at once.
@@ -184,9 +172,10 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RAMP, features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES}
+        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES}
         | features.OF_MOVING_COLUMN
         | features.LOADS
+        | features.COURSES
         | features.RULES
         | features.SCHEMES
         | features.CONTACT_METHODS
@@ -196,9 +185,9 @@ class DDA(Solver):
         (features.DASHPOTS, NOT_WITH_METHODS),
         (features.AUGMENTED, NOT_WITH_METHODS),
         (features.IMPACT, NOT_WITH_METHODS | {features.BASE_MOTION}),
-        (features.SUB_BLOCKS, features.RULES | {features.RIGID, features.LAGGED, features.RAMP}),
-        (features.CONSERVING, frozenset({features.BASE_MOTION, features.RAMP})),
-        (features.ADAPTIVE, frozenset({features.SUB_BLOCKS, features.RAMP})),
+        (features.SUB_BLOCKS, features.RULES | features.COURSES | {features.RIGID, features.LAGGED}),
+        (features.CONSERVING, features.COURSES | {features.BASE_MOTION}),
+        (features.ADAPTIVE, features.COURSES | {features.SUB_BLOCKS}),
         *features.DAMPING_APART,
     )
     sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "rigid", "time", "run")
@@ -256,7 +245,7 @@ class Printed(OneBlock):
 
         return dda.solve_textbook(self.model, self.scheme, steps, columns)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Raise: the printed recursion is no M D'' + K D = F where mu is not zero."""
         raise NotReported("dda-textbook reports no frequency response: the printed recursion is stepped only")
 

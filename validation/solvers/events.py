@@ -6,7 +6,6 @@ import itertools
 import math
 import operator
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -20,8 +19,8 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.translation import check_columns, naming, no_fields
+from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
+from validation.solvers.translation import check_columns
 
 if TYPE_CHECKING:
     from fem_reference.events import bar_events, block_events
@@ -122,9 +121,8 @@ class Motion(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the motion that was run."""
-        if self.switch_events is None:
-            raise NotReported(f"{self.name}: the scene was not run")
-        return tuple(Switch(event.time, event.corner, *KINDS[event.kind]) for event in self.switch_events)
+        events = completed(self.switch_events)
+        return tuple(Switch(event.time, event.corner, *KINDS[event.kind]) for event in events)
 
     def enclosures(self) -> list[tuple[str, str, str, float]]:
         """Return corner, kind, decimal digits of the midpoint and radius [s] of each switch that is enclosed."""
@@ -168,16 +166,14 @@ class Motion(Prepared):
         """Whether a corner is closed just after t = 0."""
         raise NotImplementedError
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields(self.name, self.scene, fields)
         check_columns(self.scene, self.names)
         from fem_reference.events.switches import HorizonError, NoContactStateError
 
         began = perf_counter()
         try:
-            with naming(self.scene):
-                columns = dict(zip(self.names, self.solve_motion(), strict=True))
+            columns = dict(zip(self.names, self.solve_motion(), strict=True))
         except NoContactStateError as error:
             return Run(Outcome.NO_CONTACT_STATE, notes=(f"{error}; any other load, however near, has one",))
         except HorizonError as error:
@@ -270,8 +266,7 @@ class BlockMotion(Motion):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; its impulse is that of the momentum, m (V - V0) + F t."""
-        if self.switch_events is None:
-            raise NotReported(f"{self.name}: the scene was not run")
+        completed(self.switch_events)
         t = self.sampling_instants(*"MN")
         push = opened.resultant_load(self.scene)
         state = self.motion.at(t)
@@ -347,8 +342,7 @@ class BarMotion(Motion):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
-        if self.switch_events is None:
-            raise NotReported(f"{self.name}: the scene was not run")
+        completed(self.switch_events)
         t = self.sampling_instants("base")
         width = self.motion.problem.width
         state = self.motion.at(t)

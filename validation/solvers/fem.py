@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.runs.contact import LOST, STORED, ContactRecord
@@ -18,8 +17,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
-from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps, to_run
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -43,7 +41,6 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
     b = scene.block
     f = scene.fem
     c = scene.contact
-    q = scene.load
     record = base_record(scene)
     motion = None if record is None else fem_reference.Motion(*map(tuple, (record.time, record.x, record.y)))
     with naming(scene):
@@ -57,19 +54,14 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
             hypothesis=b.hypothesis,
             stiffness=c.stiffness,
             shear_stiffness=c.shear,
-            pressure=q.pressure,
             elements=f.per_side,
             degree=f.degree,
             mesh=f.mesh,
             foundation=f.foundation,
             cells=f.cells,
             patch_width=f.patch_width,
-            eccentricity=q.eccentricity,
-            traction=q.traction,
-            gravity=q.gravity,
             motion=motion,
-            slope=q.slope,
-            ramp=q.ramp,
+            **scene.load.numbers,
         )
 
 
@@ -87,20 +79,18 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
         )
 
 
-def mesh_limit(problem: fem_reference.Problem, model: Callable[[], Model | None]) -> StepLimit:
-    """Return the limit of the scheme at the largest frequency of a mesh on a locked base."""
+def locked_frequency(problem: fem_reference.Problem, model: Model | None = None) -> float:
+    """Return the largest frequency of a mesh on a locked base [rad/s]."""
     import fem_reference
-    from fem_reference.scheme.limits import critical_omega
 
-    return StepLimit(critical_omega, lambda: fem_reference.highest_frequency(problem, model=model()))
+    return fem_reference.highest_frequency(problem, model=model)
 
 
-def opening_limit(problem: fem_reference.Problem, full: bool) -> StepLimit:
-    """Return the limit of the scheme while every point of a base that may open is closed and sticks."""
+def opening_frequency(problem: fem_reference.Problem, full: bool) -> float:
+    """Return the largest frequency while every point of a base that may open is closed and sticks [rad/s]."""
     from fem_reference.contact.frequency import highest_closed_frequency
-    from fem_reference.scheme.limits import critical_omega
 
-    return StepLimit(critical_omega, lambda: highest_closed_frequency(problem, full))
+    return highest_closed_frequency(problem, full)
 
 
 def to_modes(modes: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
@@ -131,29 +121,30 @@ class Mesh(Prepared):
         self.building = time.perf_counter() - began
         return model
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the mesh's largest frequency."""
-        return mesh_limit(self.problem, lambda: self.model)
+    @property
+    def has_fields(self) -> bool:  # type: ignore[override]
+        """Whether it can write fields: with a constant discount."""
+        return features.ADAPTIVE not in features.of(self.scene)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def highest_frequency(self) -> float:
+        """Return the mesh's largest frequency [rad/s]."""
+        return locked_frequency(self.problem, self.model)
+
+    def history_run(self) -> Run:
         """Run the scene."""
         import fem_reference
 
         steps = self.scene.time.steps
         columns = self.scene.run.columns
+        result: fem_reference.Result | fem_reference.AdaptiveResult
         if features.ADAPTIVE in features.of(self.scene):
-            no_fields("fem with self-adaptive damping", self.scene, fields)
             check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
             floor = self.scene.damping.floor
-            with naming(self.scene):
-                result = fem_reference.solve_adaptive(
-                    self.problem, self.scheme, steps, columns, floor, model=self.model
-                )
-            return to_run(self.scene, result, built=self.building)
-        check_columns(self.scene, fem_reference.COLUMNS)
-        with naming(self.scene):
+            result = fem_reference.solve_adaptive(self.problem, self.scheme, steps, columns, floor, model=self.model)
+        else:
+            check_columns(self.scene, fem_reference.COLUMNS)
             result = fem_reference.solve(
-                self.problem, self.scheme, steps, columns, full=self.full, fields=fields, model=self.model
+                self.problem, self.scheme, steps, columns, full=self.full, fields=self.fields, model=self.model
             )
         return to_run(self.scene, result, built=self.building)
 
@@ -175,15 +166,13 @@ class Mesh(Prepared):
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response of the mesh."""
         from fem_reference.history.response import response
 
-        check_step(self.scene, self.step_limit())
         columns = (DISPLACEMENT, PRESSURE)
         along = base_direction(self.scene)
-        with naming(self.scene):
-            return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
+        return response(self.problem, self.scheme, frequencies, columns, along, exact, self.model)
 
 
 # J, in the order of `STORED` and `LOST`
@@ -208,20 +197,19 @@ class OpeningMesh(Prepared):
             velocity = scene.block.velocity
             self.contact = Unilateral(c.gap, velocity, glue, c.solve_limit, c.cut, c.rule, friction=friction)
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme while every point of the base is closed."""
-        return opening_limit(self.problem, self.full)
+    def highest_frequency(self) -> float:
+        """Return the largest frequency while every point of the base is closed [rad/s]."""
+        return opening_frequency(self.problem, self.full)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
-        no_fields("fem with unilateral contact", self.scene, fields)
         check_columns(self.scene, UNILATERAL_COLUMNS)
         result = self._solved((*self.scene.run.columns, "contact_pressure"))
         self.pressed = result.columns["contact_pressure"] > 0
         self.time = result.time
-        return opened_run(self.scene, result, result.columns)
+        return to_run(self.scene, result)
 
     def _solved(self, columns: tuple[str, ...]) -> UnilateralResult:
         from fem_reference.history.unilateral import solve_unilateral
@@ -239,21 +227,15 @@ class OpeningMesh(Prepared):
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         result = self._solved(UNILATERAL_COLUMNS)
-        scheme = self.scheme
         columns = result.columns
         energies = zip((*STORED, *LOST), (*ENERGY_COLUMNS, *LOSS_COLUMNS), strict=True)
         force = columns["contact_pressure"] * self.scene.block.base_length
-        end_weight = opened.end_weight(self.scene)
-        if end_weight is None:
-            impulse = opened.impulse_of_momentum(self.scene, columns["velocity"])
-        else:
-            impulse = opened.impulse_of_force(force, scheme.step, end_weight)
         slip = None if self.contact.friction is None else columns["largest_slide"]
         return opened.record(
             self.scene,
             time=result.time,
             force=force,
-            impulse=impulse,
+            impulse=opened.impulse_of_contact(self.scene, force, columns["velocity"]),
             penetration=columns["largest_penetration"],
             gap=columns["largest_gap"],
             slip=slip,
@@ -271,6 +253,7 @@ class FiniteElements(Solver):
     name = "fem"
     handles = (
         features.LOADS
+        | features.COURSES
         | features.SCHEMES
         | frozenset(
             {
@@ -285,11 +268,14 @@ class FiniteElements(Solver):
                 features.RIGID_JOINTS,
                 features.DAMPING,
                 features.ADAPTIVE,
-                features.RAMP,
             }
         )
     )
-    apart = ((features.RAMP, frozenset({features.UNILATERAL, features.ADAPTIVE})), *features.DAMPING_APART)
+    apart = (
+        (features.UNILATERAL, features.COURSES),
+        (features.ADAPTIVE, features.COURSES),
+        *features.DAMPING_APART,
+    )
     sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)

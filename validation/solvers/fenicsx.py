@@ -27,10 +27,9 @@ from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, mesh_limit, opening_limit, problem_of
-from validation.solvers.limits import StepLimit
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, locked_frequency, opening_frequency, problem_of
 from validation.solvers.processes.worker import ask
-from validation.solvers.translation import check_columns, no_fields, switches_between_steps, tension_note
+from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 INSTALL_HINT = (
@@ -200,28 +199,25 @@ class RemoteMesh(Prepared):
         self.solver = solver
         self.scene = scene
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the largest frequency of the same mesh, every point of its base closed."""
+    def highest_frequency(self) -> float:
+        """Return the largest frequency of the same mesh, every point of its base closed [rad/s]."""
         problem = problem_of(self.scene)
         if features.UNILATERAL in features.of(self.scene):
-            return opening_limit(problem, full=True)
-        return mesh_limit(problem, lambda: None)
+            return opening_frequency(problem, full=True)
+        return locked_frequency(problem)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         scene = self.scene
-        no_fields(self.solver.name, scene, fields)
         opens = features.UNILATERAL in features.of(scene)
-        solver_columns = OPENING_COLUMNS if opens else COLUMNS
-        check_columns(scene, solver_columns)
+        check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
         if missing := self.solver.missing():
             return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:
             raise InputError(self.answer["refused"], source=scene.name)
-        if "raised" in self.answer:
-            return Run(Outcome.RAISED, notes=(str(self.answer["raised"]),))
-        if "inapplicable" in self.answer:
-            return Run(Outcome.NOT_APPLICABLE, notes=(str(self.answer["inapplicable"]),))
+        for word, outcome in (("raised", Outcome.RAISED), ("inapplicable", Outcome.NOT_APPLICABLE)):
+            if word in self.answer:
+                return Run(outcome, notes=(str(self.answer[word]),))
         return self._run(self.answer)
 
     def _run(self, answer: Mapping[str, Any]) -> Run:
@@ -260,7 +256,6 @@ def request(scene: Scene) -> dict[str, Any]:
     c = scene.contact
     t = scene.time
     f = scene.fem
-    q = scene.load
     record = base_record(scene)
     displacement_of_steps = None
     table = None
@@ -280,11 +275,7 @@ def request(scene: Scene) -> dict[str, Any]:
         "hypothesis": b.hypothesis,
         "stiffness": c.stiffness,
         "shear_stiffness": c.shear,
-        "pressure": q.pressure,
-        "eccentricity": q.eccentricity,
-        "traction": q.traction,
-        "gravity": q.gravity,
-        "slope": q.slope,
+        **scene.load.numbers,
         "moved": displacement_of_steps,
         "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
 
 
-@dataclass(frozen=True)
-class StepLimit:
-    """What limits the step of a conditionally stable scheme."""
-
-    # Newmark's of (alpha, delta, gg): the largest stable w dt [-], or infinity
-    critical: Callable[[float, float, float], float]
-    highest_frequency: Callable[[], float]  # [rad/s], contacts closed and sticking; infinite on a rigid stop
-
-
-def check_step(scene: Scene, limit: StepLimit) -> None:
+def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> None:
     """Refuse a step beyond the limit of a conditionally stable scheme.
 
     A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the
@@ -30,8 +21,9 @@ def check_step(scene: Scene, limit: StepLimit) -> None:
     ----------
     scene
         The scene with its scheme.
-    limit
-        The solver package's own limit; its largest frequency is asked for by conditionally stable schemes only.
+    highest_frequency
+        Of the solver's model [rad/s], None where nothing limits its step; asked for by conditionally stable schemes
+        only.
 
     Raises
     ------
@@ -40,13 +32,12 @@ def check_step(scene: Scene, limit: StepLimit) -> None:
     """
     t = scene.time
     stepping = Stepping.of(scene)
-    if t.scheme == "newmark":
-        omega = min(limit.critical(t.alpha, t.delta, gg) for gg in discounts(scene))
-    else:
-        omega = stepping.critical_omega
+    omega = min(replace(stepping, gg=gg).critical_omega for gg in discounts(scene))
     if math.isinf(omega) or t.allow_unstable:
         return
-    frequency = limit.highest_frequency()
+    frequency = highest_frequency()
+    if frequency is None:
+        return
     largest_step = omega / frequency
     if t.step <= largest_step * (1 + 1e-12):
         return

@@ -82,6 +82,22 @@ def end_weight_of_column(scene: Scene) -> float:
     return scene.time.delta if scene.time.scheme == "newmark" else 0.5
 
 
+def impulse_of_contact(scene: Scene, force: Array, velocity: Array) -> Array:
+    """Return the impulse of a contact from t = 0 on [N s]: of its force where that is a sum over the steps' ends.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    force, velocity
+        Contact force [N] and velocity of the centre of mass, upwards [m/s], at the end of each step, shape (steps,).
+    """
+    weight = end_weight(scene)
+    if weight is None:
+        return impulse_of_momentum(scene, velocity)
+    return impulse_of_force(force, scene.time.step, weight)
+
+
 def impulse_of_force(force: Array, step: float, late: float) -> Array:
     """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s].
 
@@ -110,10 +126,7 @@ def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
     """
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
     gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
-    time = scene.time.step * np.arange(1, len(velocity) + 1)
-    ramp = scene.load.ramp
-    if ramp > 0:  # the load rises to F in the ramp: less than F t by F ramp / 2 at its end
-        time = np.where(time < ramp, time**2 / (2 * ramp), time - ramp / 2)
+    time = scene.load.acted(scene.time.step * np.arange(1.0, len(velocity) + 1))
     return np.asarray(gained + resultant_load(scene) * time, dtype=np.float64)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,46 +15,29 @@ from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 
 
-def to_run(scene: Scene, result: Any, notes: tuple[str, ...] = (), built: float = 0.0) -> Run:
+def to_run(scene: Scene, result: Any, columns: Mapping[str, Array] | None = None, built: float = 0.0) -> Run:
     """Translate the `Result` of a solver package; the two packages share no class, only the names of the fields.
-
-    `built` is the time that was spent on the model before [s].
-    """
-    history = History(result.time, {name: result.columns[name] for name in scene.run.columns})
-    work = {
-        "unknowns": result.unknowns,
-        "nonzeros": result.nonzeros,
-        "factorisations": result.factorisations,
-        "solves": result.solves,
-        "steps": scene.time.steps,
-    }
-    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
-    tension = tension_note(history) if scene.column is None else ()
-    return Run(
-        Outcome.COMPLETED,
-        history,
-        work,
-        seconds,
-        (*notes, *result.notes, *tension),
-        getattr(result, "estimate", None),
-    )
-
-
-def opened_run(scene: Scene, result: Any, columns: Mapping[str, Array]) -> Run:
-    """Translate a result with unilateral contact; a history that ended early keeps its outcome's name.
 
     Parameters
     ----------
     scene, result
-        The scene and the `Result` of a solver package.
+        The scene and the result; one of contact that opens has an outcome, by which a history may have ended early.
     columns
-        Column name to values at each step; those that the scene asks for are kept.
+        Column name to values at each step, where they are not those of the result; those that the scene asks for are
+        kept.
+    built
+        The time that was spent on the model before [s].
     """
-    history = History(result.time, {name: columns[name] for name in scene.run.columns})
-    counted = ("unknowns", "nonzeros", "factorisations", "solves")
-    work = {name: int(getattr(result, name)) for name in counted} | {"steps": len(result.time)}
-    seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
-    return Run(Outcome(result.outcome), history, work, seconds, result.notes)
+    values = result.columns if columns is None else columns
+    history = History(result.time, {name: values[name] for name in scene.run.columns})
+    work = {name: int(getattr(result, name)) for name in ("unknowns", "nonzeros", "factorisations", "solves")}
+    work["steps"] = len(result.time)
+    seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
+    outcome = getattr(result, "outcome", None)
+    notes = result.notes
+    if outcome is None and scene.column is None:
+        notes = (*notes, *tension_note(history))
+    return Run(Outcome(outcome or "completed"), history, work, seconds, notes, getattr(result, "estimate", None))
 
 
 def switches_between_steps(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
@@ -111,15 +93,3 @@ def check_columns(scene: Scene, solver_columns: tuple[str, ...]) -> None:
             field="run.columns",
             value=repr(unknown[0]),
         )
-
-
-def no_fields(name: str, scene: Scene, fields: Path | None) -> None:
-    """Refuse to write fields where a solver has no mesh.
-
-    Raises
-    ------
-    InputError
-        A file for the fields is asked for.
-    """
-    if fields is not None:
-        raise InputError("needs the solver fem, which has a mesh", source=scene.name, field="--fields", value=name)

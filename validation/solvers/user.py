@@ -28,7 +28,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
 from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
-from validation.solvers.translation import no_fields, tension_note
+from validation.solvers.translation import tension_note
 
 TIME_LIMIT = 300.0  # s a case beside the steps
 # s of a case of rigid boxes, of which a study has dozens, and s more for each second of motion, box and halving of the
@@ -97,27 +97,24 @@ class UserSolver(Solver):
 
     def parts(self) -> frozenset[str]:
         """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""
-        try:
-            answer = ask(self.command(), environment(), {"parts": sorted(PARTS)}, base_limit())
-        except (WorkerHangs, WorkerDied):  # as its first run will do, and say
-            return PARTS
-        return frozenset(answer.get("parts", PARTS))
+        return frozenset(self._asked({"parts": sorted(PARTS)}).get("parts", PARTS))
 
     def load_error(self) -> str | None:
         """Return None, or why the solver cannot be loaded."""
-        try:
-            answer = ask(self.command(), environment(), {"parts": []}, base_limit())
-        except (WorkerHangs, WorkerDied) as error:
-            return one_line(str(error))
+        answer = self._asked({"parts": []})
         return one_line(str(answer["raised"])) if "raised" in answer else None
 
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
+        statements = self._asked({"about": list(ABOUT)}).get("about") or {}
+        return {name: one_line(str(text)) for name, text in dict(statements).items()}
+
+    def _asked(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Return the answer to a request that runs no scene; a worker that dies or hangs has "raised" that."""
         try:
-            answer = ask(self.command(), environment(), {"about": list(ABOUT)}, base_limit())
-        except (WorkerHangs, WorkerDied):
-            return {}
-        return {name: one_line(str(text)) for name, text in dict(answer.get("about") or {}).items()}
+            return ask(self.command(), environment(), request, base_limit())
+        except (WorkerHangs, WorkerDied) as error:
+            return {"raised": str(error)}
 
 
 class UserScene(Prepared):
@@ -128,9 +125,8 @@ class UserScene(Prepared):
         self.scene = scene
         self._answer: dict[str, Any] = {}
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene in the solver's own process."""
-        no_fields(self.solver.name, self.scene, fields)
         start = perf_counter()
         limit = base_limit(self.scene) + ALLOWANCE * self.scene.time.steps
         request = {"scene": self.scene.definition(), "features": features.of(self.scene)}

@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from validation.scenes.scene import Scene
-from validation.solvers.limits import StepLimit
 
 if TYPE_CHECKING:
     import dda
 
 # A locked corner must have a shear spring; one so soft stands for none and moves no digit of the largest frequency.
 FRICTIONLESS = 1e-12  # of the normal stiffness
-
-
-def dda_limit(highest_frequency: Callable[[], float]) -> StepLimit:
-    """Return the limit of the scheme of `dda` at a largest frequency."""
-    import dda
-
-    return StepLimit(dda.spectral.critical_omega, highest_frequency)
 
 
 def closed_corners(stiffness: float, shear: float) -> dda.Contact:
@@ -43,16 +34,7 @@ def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
     """Return the loads of a scene, over a base that moves or not."""
     import dda
 
-    q = scene.load
-    return dda.Load(
-        pressure=q.pressure,
-        eccentricity=q.eccentricity,
-        traction=q.traction,
-        gravity=q.gravity,
-        motion=motion,
-        slope=q.slope,
-        ramp=q.ramp,
-    )
+    return dda.Load(motion=motion, **scene.load.numbers)
 
 
 def closed_model(scene: Scene) -> dda.TwoBlockModel:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,16 +15,9 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import (
-    block_of,
-    dda_limit,
-    load_of,
-    opening_frequency,
-    opening_system_frequency,
-)
-from validation.solvers.contract import NotReported, Prepared
-from validation.solvers.limits import StepLimit
-from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
+from validation.solvers.blocks.closed import block_of, load_of, opening_frequency, opening_system_frequency
+from validation.solvers.contract import Prepared, completed
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -62,22 +54,20 @@ class OpeningBlock(Prepared):
 
         return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, self.options)
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme while the block stands on both corners."""
-        return dda_limit(lambda: opening_frequency(self.scene, self.scheme))
+    def highest_frequency(self) -> float:
+        """Return the largest frequency of the block on both corners [rad/s]."""
+        return opening_frequency(self.scene, self.scheme)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         import dda
 
-        no_fields("dda", self.scene, fields)
         passes = (PASSES,) if self.options.rule == "augmented" else ()
         check_columns(self.scene, (*dda.COLUMNS, *OPENING, *passes))
         model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
-        with naming(self.scene):
-            result = self.solve(model_columns)
+        result = self.solve(model_columns)
         self.result = result
-        return opened_run(self.scene, result, {**result.columns, **self._contact(result)})
+        return to_run(self.scene, result, {**result.columns, **self._contact(result)})
 
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
@@ -89,23 +79,16 @@ class OpeningBlock(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        result = self.result
+        result = completed(self.result)
         return switches_between_steps(
             {"M": result.closed_m.astype(float), "N": result.closed_n.astype(float)}, result.time
         )
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        end_weight = opened.end_weight(self.scene)
-        if end_weight is None:
-            impulse = opened.impulse_of_momentum(self.scene, self.result.velocity)
-        else:
-            impulse = opened.impulse_of_force(self.result.normal.sum(axis=0), self.scheme.step, end_weight)
-        return record_of_steps(self.scene, self.result, impulse)
+        result = completed(self.result)
+        impulse = opened.impulse_of_contact(self.scene, result.normal.sum(axis=0), result.velocity)
+        return record_of_steps(self.scene, result, impulse)
 
 
 def law_of(scene: Scene) -> dda.Unilateral:
@@ -178,9 +161,9 @@ class OpeningSubBlocks(OpeningBlock):
             columns, rows = b.subdivide or (1, 1)
             self.opening = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme while all points of the base are closed."""
-        return dda_limit(lambda: opening_system_frequency(self.scene))
+    def highest_frequency(self) -> float:
+        """Return the largest frequency of the sub-blocks while all points of the base are closed [rad/s]."""
+        return opening_system_frequency(self.scene)
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""

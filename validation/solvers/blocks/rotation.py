@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.runs.contact import ContactRecord
@@ -12,11 +11,10 @@ from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.blocks.closed import block_of, dda_limit, load_of, rolling_frequency
+from validation.solvers.blocks.closed import block_of, load_of, rolling_frequency
 from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, law_of, record_of_steps
-from validation.solvers.contract import NotReported, Prepared
-from validation.solvers.limits import StepLimit
-from validation.solvers.translation import check_columns, naming, no_fields, opened_run, switches_between_steps
+from validation.solvers.contract import Prepared, completed
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     import dda
@@ -60,29 +58,27 @@ class RollingBlock(Prepared):
             )
             self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme while the block stands on any of its edges."""
-        return dda_limit(lambda: rolling_frequency(self.scene, self.scheme))
+    def highest_frequency(self) -> float:
+        """Return the largest frequency of the block on any of its edges [rad/s]."""
+        return rolling_frequency(self.scene, self.scheme)
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         import dda
         from dda.rotation.solution import solve_rolling
 
-        no_fields("dda", self.scene, fields)
         check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))
         requested_columns = self.scene.run.columns
         model_columns = [name for name in requested_columns if name in dda.COLUMNS]
-        with naming(self.scene):
-            result = solve_rolling(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
+        result = solve_rolling(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
         self.result = result
         corner_columns = of_corners(result)
         columns = {name: corner_columns[name] for name in requested_columns if name in ROLLING_COLUMNS}
-        return opened_run(self.scene, result, result.columns | columns)
+        return to_run(self.scene, result, result.columns | columns)
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base corners M and N, and of the others by number, between the steps."""
-        result = self._completed_result()
+        result = completed(self.result)
         names = dict(zip(result.base_contacts, "MN", strict=True))
         closed = result.closed.astype(float)
         return switches_between_steps(
@@ -91,13 +87,8 @@ class RollingBlock(Prepared):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
-        result = self._completed_result()
+        result = completed(self.result)
         return record_of_steps(self.scene, result, result.impulse, list(result.base_contacts))
-
-    def _completed_result(self) -> RollingResult:
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        return self.result
 
 
 def of_corners(result: RollingResult) -> dict[str, Array]:

@@ -16,7 +16,7 @@ from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.scene import Scene
 from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
-from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
 from validation.solvers.events import KINDS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
@@ -99,9 +99,8 @@ class BarsOfColumn(Motion):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the motion that was run; a contact is named by its height."""
-        if self.switch_events is None:
-            raise NotReported(f"{self.name}: the scene was not run")
-        return tuple(Switch(event.time, event.corner, *KINDS[event.kind.split()[0]]) for event in self.switch_events)
+        events = completed(self.switch_events)
+        return tuple(Switch(event.time, event.corner, *KINDS[event.kind.split()[0]]) for event in events)
 
     def starts_closed(self, corner: str) -> bool:
         """Whether a contact is closed just after t = 0."""

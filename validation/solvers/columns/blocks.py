@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
@@ -22,11 +21,9 @@ from validation.scenes.column import ColumnSection
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.blocks.closed import dda_limit
 from validation.solvers.columns.names import amplitude, column_of
-from validation.solvers.contract import NotReported, Prepared
-from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import naming, no_fields, opened_run, to_run
+from validation.solvers.contract import NotReported, Prepared, completed
+from validation.solvers.translation import naming, to_run
 
 
 def dda_column(section: ColumnSection) -> Column:
@@ -60,29 +57,25 @@ class BlockColumn(Prepared):
         with naming(scene):
             self.column = dda_column(self.section)
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the column's highest frequency: glue, joints and base springs included."""
-        return dda_limit(lambda: highest_frequency(self.column))
+    def highest_frequency(self) -> float:
+        """Return the column's highest frequency: glue, joints, contacts and base springs included [rad/s]."""
+        return highest_frequency(self.column)
 
     def drive(self) -> Drive:
         """Return what drives the column at t = 0 and at the end of every stage."""
         return Drive(**vars(motion_at(self.scene, self.scheme.instants(self.scene.time.steps))))
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields("dda with a column", self.scene, fields)
-        with naming(self.scene):
-            result = solve_column(self.column, self.scheme, self.drive(), self.scene.run.columns, self.section.heights)
+        result = solve_column(self.column, self.scheme, self.drive(), self.scene.run.columns, self.section.heights)
         return to_run(self.scene, result)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
-        check_step(self.scene, self.step_limit())
         excited_end = self.scene.input.at
-        with naming(self.scene):
-            amplitudes = column_response(
-                self.column, self.scheme, frequencies, excited_end, (DISPLACEMENT, PRESSURE), exact
-            )
+        amplitudes = column_response(
+            self.column, self.scheme, frequencies, excited_end, (DISPLACEMENT, PRESSURE), exact
+        )
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
 
 
@@ -91,30 +84,24 @@ class ContactColumn(BlockColumn):
 
     result: ColumnContactResult | None = None
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme while all contacts are closed."""
-        return dda_limit(lambda: highest_frequency(self.column))
-
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
-        no_fields("dda with a column", self.scene, fields)
         self.result = self.solved(self.keeps_contact_record)
-        return opened_run(self.scene, self.result, self.result.columns)
+        return to_run(self.scene, self.result)
 
     def solved(self, energies: bool) -> ColumnContactResult:
         """Make the steps; the energies take longer than these."""
         names = list(dict.fromkeys((*self.scene.run.columns, PRESSURE)))
         options = ColumnOptions(self.section.solve_limit, self.section.settled, states=True, energies=energies)
-        with naming(self.scene):
-            return solve_contact_column(self.column, self.scheme, self.drive(), names, self.section.heights, options)
+        return solve_contact_column(self.column, self.scheme, self.drive(), names, self.section.heights, options)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Raise: what opens or slips has no frequency response."""
         raise NotReported("dda: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the changes of the contacts' states between the steps of the history that was run."""
-        result = self._result()
+        result = completed(self.result)
         switches = []
         for joint in self.column.joints:
             name = f"{joint.height:g} m"
@@ -129,7 +116,7 @@ class ContactColumn(BlockColumn):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contacts did in the history that was run; its steps are made again where energies lack."""
-        result = self._result()
+        result = completed(self.result)
         if result.record is None:
             result = self.solved(energies=True)
         record = np.asarray(result.record)
@@ -154,8 +141,3 @@ class ContactColumn(BlockColumn):
             cuts=np.zeros(len(result.time)),
             slip=record[FURTHEST, 1:],
         )
-
-    def _result(self) -> ColumnContactResult:
-        if self.result is None:
-            raise NotReported("dda: the scene was not run")
-        return self.result

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,9 +18,8 @@ from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import amplitude, column_of
-from validation.solvers.contract import NotReported, Prepared
-from validation.solvers.limits import StepLimit, check_step
-from validation.solvers.translation import naming, no_fields, opened_run, to_run
+from validation.solvers.contract import NotReported, Prepared, completed
+from validation.solvers.translation import naming, to_run
 
 if TYPE_CHECKING:
     from fem_reference.column.contacts import ColumnContactResult, ContactColumn
@@ -71,43 +69,33 @@ class LineColumn(Prepared):
         self.elements = [layer.blocks * scene.fem.per_side for layer in section.layer]
         self.heights = section.heights
 
-    def step_limit(self) -> StepLimit:
-        """Return the limit of the scheme at the largest frequency of the elements, all springs closed."""
+    def highest_frequency(self) -> float:
+        """Return the largest frequency of the elements, all springs closed [rad/s]."""
         from fem_reference.column.frequency import highest_frequency
-        from fem_reference.scheme.limits import critical_omega
 
-        degree = self.scene.fem.degree
-        return StepLimit(critical_omega, lambda: highest_frequency(self.ground, self.elements, degree))
+        return highest_frequency(self.ground, self.elements, self.scene.fem.degree)
 
     def drive(self) -> Excitation:
         """Return what drives the column at t = 0 and at the end of every stage of every step."""
         return excitation(self.scene, self.scheme.stage_times(self.scene.time.steps))
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         from fem_reference.column.stepping import solve_line
 
-        no_fields("fem with a column", self.scene, fields)
         degree = self.scene.fem.degree
         columns = self.scene.run.columns
-        drive = self.drive()
-        with naming(self.scene):
-            result = solve_line(self.ground, self.elements, degree, self.scheme, drive, columns, self.heights)
+        result = solve_line(self.ground, self.elements, degree, self.scheme, self.drive(), columns, self.heights)
         return to_run(self.scene, result)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
         from fem_reference.column.vibration import line_response
 
         degree = self.scene.fem.degree
         on_top = self.scene.input.at == "top"
         columns = (DISPLACEMENT, PRESSURE)
-        check_step(self.scene, self.step_limit())
-
-        with naming(self.scene):
-            amplitudes = line_response(
-                self.ground, self.elements, degree, self.scheme, frequencies, on_top, columns, exact
-            )
+        amplitudes = line_response(self.ground, self.elements, degree, self.scheme, frequencies, on_top, columns, exact)
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
 
 
@@ -122,25 +110,22 @@ class ContactLineColumn(LineColumn):
         springs = [(one.height, one.stiffness) for one in self.column.contacts if np.isfinite(one.stiffness)]
         self.ground = replace(self.column.ground, joints=tuple(springs))
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         from fem_reference.column.contacts import solve_contacts
 
-        no_fields("fem with a column", self.scene, fields)
         names = list(dict.fromkeys((*self.scene.run.columns, PRESSURE)))
-        drive = self.drive()
         degree = self.scene.fem.degree
-        with naming(self.scene):
-            self.result = solve_contacts(self.column, self.elements, degree, self.scheme, drive, names, self.heights)
-        return opened_run(self.scene, self.result, self.result.columns)
+        self.result = solve_contacts(self.column, self.elements, degree, self.scheme, self.drive(), names, self.heights)
+        return to_run(self.scene, self.result)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Raise: what opens or slips has no frequency response."""
         raise NotReported("fem: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the changes of the contacts' states between the steps of the history that was run."""
-        result = self._result()
+        result = completed(self.result)
         switches = []
         opens = self.column.law == "unilateral"
         for contact, states in zip(self.column.contacts, result.states, strict=True):
@@ -153,7 +138,7 @@ class ContactLineColumn(LineColumn):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contacts did in the history that was run; the elements report no energies."""
-        result = self._result()
+        result = completed(self.result)
         column = self.column
         masses = np.array([stratum.density * stratum.thickness for stratum in column.ground.strata])
         velocities = np.array(column.velocities)
@@ -176,8 +161,3 @@ class ContactLineColumn(LineColumn):
             cuts=np.zeros(len(result.time)),
             slip=None if opens else np.abs(result.openings).max(axis=0),
         )
-
-    def _result(self) -> ColumnContactResult:
-        if self.result is None:
-            raise NotReported("fem: the scene was not run")
-        return self.result

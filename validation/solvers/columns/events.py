@@ -17,7 +17,7 @@ from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.drive import read_record
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
-from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
 from validation.solvers.events import Motion
 from validation.solvers.translation import naming
 
@@ -176,11 +176,10 @@ class ColumnEventMotion(Motion):
 
         Energies are told where nothing drives the column and no half-space takes them.
         """
-        if self.switch_events is None:
-            raise NotReported(f"{self.name}: the scene was not run")
+        events = completed(self.switch_events)
         problem = self.problem
         contacts = [contact.joint for contact in self.motion.model.contacts]
-        t = self.sampling_instants(*dict.fromkeys(event.corner for event in self.switch_events))
+        t = self.sampling_instants(*dict.fromkeys(event.corner for event in events))
         state = self.motion.at(t)
         start = self.motion.at([0.0])
         masses = np.array([block.density * block.height for block in problem.blocks])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import OF_COLUMN, amplitude, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver
-from validation.solvers.translation import naming, no_fields, to_run
+from validation.solvers.translation import to_run
 
 if TYPE_CHECKING:
     import fem_reference
@@ -41,29 +40,24 @@ class ExactColumn(Prepared):
         self.ground = ground_of(scene)
         self.scheme = time_of(scene)
 
-    def run(self, fields: Path | None = None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene."""
         from fem_reference.exact.layers import solve_layers
         from validation.solvers.columns.elements import excitation
 
-        no_fields("layers", self.scene, fields)
         steps = self.scene.time.steps
         columns = self.scene.run.columns
         heights = column_of(self.scene).heights
-        with naming(self.scene):
-            result = solve_layers(
-                self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights
-            )
+        result = solve_layers(self.ground, self.scheme, steps, lambda t: excitation(self.scene, t), columns, heights)
         return to_run(self.scene, result)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time; at rest it is that of next to nothing."""
         from fem_reference.exact.layers import amplitudes
         from fem_reference.scheme.harmonic import squares
 
         f = np.maximum(np.atleast_1d(np.asarray(frequencies, float)), STILL)
-        with naming(self.scene):
-            W2 = squares(f, self.scheme, exact=True)
+        W2 = squares(f, self.scheme, exact=True)
         w = 2 * np.pi * f
         names = (DISPLACEMENT, PRESSURE)
         under_base_motion, under_pressure = amplitudes(self.ground, w, names, squared=W2)

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -18,9 +17,8 @@ from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
 from validation.scenes.scene import Scene
-from validation.solvers.contract import LineStyle, Role, Solver
+from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.rigid.rocking import friction_needed
-from validation.solvers.translation import no_fields
 from validation.theory.boxes import ShakenBox, SpringImpact, critical_spin, greatest_rotation, return_time
 from validation.theory.rocking import Rectangle
 
@@ -43,7 +41,7 @@ class RigidExact(Solver):
     """Exact motions of rigid boxes, with Coulomb's friction and Newton's restitution."""
 
     name = "rigid-exact"
-    handles = frozenset({features.RIGID_BOXES})
+    handles = features.SCHEMES | {features.RIGID_BOXES}
     sections = ("rigid", "time", "run")
     sources = ("validation.theory.boxes", "validation.theory.rocking", "fem_reference.exact.rocking")
     role = Role.TRUTH
@@ -55,9 +53,20 @@ class RigidExact(Solver):
         motion = motion_of(scene)
         return motion if isinstance(motion, str) else None
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Take the scene."""
+        return ExactBoxes(scene)
+
+
+class ExactBoxes(Prepared):
+    """Rigid boxes whose motion is known."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    def history_run(self) -> Run:
         """Return the motion at the scene's steps."""
-        no_fields(self.name, scene, fields)
+        scene = self.scene
         start = perf_counter()
         motion = motion_of(scene)
         if isinstance(motion, str):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +28,7 @@ LARGEST = float(np.finfo(float).max)
 class PreciseBlock(OneBlock):
     """A whole block in sixty-digit arithmetic; there is nothing to save."""
 
-    def history_run(self, fields: Path | None) -> Run:
+    def history_run(self) -> Run:
         """Run the scene; what a double cannot hold is infinite from there on."""
         from validation.solvers.sixty_digits import block
 
@@ -43,7 +42,7 @@ class PreciseBlock(OneBlock):
         notes = ("sixty-digit arithmetic",)
         return Run(Outcome.COMPLETED, History(instants, columns), {"steps": steps}, seconds, notes)
 
-    def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Raise: doubles are not sixty digits."""
         raise NotReported("sixty digits are stepped only: no frequency response is reported")
 
