@@ -98,6 +98,8 @@ def models():
     damped = replace(plain.contact, damping=0.2 * plain.contact.stiffness * 1e-4)
     yield replace(plain, contact=damped), SCHEMES[0], {}
     yield replace(plain, contact=damped), named_scheme("composite", step=DT), {}
+    for name, values in (("chung-hulbert", {"rho_inf": 0.6}), ("leapfrog", {})):
+        yield rubbing_model(1), named_scheme(name, step=DT / 10, gg=0.99, **values), {}
     yield plain, SCHEMES[0], {"rule": "augmented"}
     rigid = replace(plain.contact, stiffness=np.inf)
     yield replace(plain, contact=rigid), Scheme(0.25, 0.5, 0.99, DT), {"rule": "impact", "restitution": 0.3}
@@ -122,12 +124,15 @@ def test_sub_blocks_are_the_same_compiled_and_plain(always, monkeypatch):
 def test_a_block_that_turns_is_the_same_compiled_and_plain(always, monkeypatch):
     for seed in (2, 3, 5, 9, 11):
         model, dt = random_rolling(seed)
-        check_same(*pair(functools.partial(solve_rolling, model, Scheme(0.5, 1.0, 0.99, dt), 80), monkeypatch))
+        scheme = named_scheme("composite", step=dt, gg=0.99) if seed == 11 else Scheme(0.5, 1.0, 0.99, dt)
+        check_same(*pair(functools.partial(solve_rolling, model, scheme, 80), monkeypatch))
 
 
-def test_a_short_history_does_not_import_numba():
+def test_importing_costs_numpy_only_and_a_short_history_no_numba():
     code = (
         "import sys; from dda import *; "
+        "others = {'scipy', 'skfem', 'matplotlib', 'validation', 'fem_reference'}; "
+        "assert not others & set(sys.modules); "
         "b = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)); "
         "r = solve_unilateral(UnilateralModel(b, Unilateral(1e9), 5e6), Scheme(0.5, 1.0, 1.0, 1e-4), 100); "
         "assert 'plain Python' in r.notes[-1]; print('numba' in sys.modules)"
@@ -167,17 +172,13 @@ def ran(seconds=1.0):
     return how, kept.tolist()
 
 
-def test_compiled_code_is_kept_and_read_again(fresh, monkeypatch):
+def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(fresh, monkeypatch):
     assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
     kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}
     assert len(kept) == 2
     monkeypatch.setattr(compiled, "loops", {})
     assert ran() == (compiled.COMPILED, [2.5, 3.5, 4.5])
     assert {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")} == kept
-
-
-def test_a_broken_cache_is_made_anew(fresh, monkeypatch):
-    ran()
     for path in fresh.rglob("*.nb?"):
         path.write_bytes(b"nothing that numba knows")
     monkeypatch.setattr(compiled, "loops", {})
@@ -239,23 +240,6 @@ def test_a_hundred_thousand_steps_of_a_block_that_opens_are_compiled_on_the_firs
     assert [compiled.is_worthwhile(*one) for one in estimates] == [False, True, False, True]
     monkeypatch.setattr(compiled, "cache_directory", lambda: None)
     assert not any(compiled.is_worthwhile(*one) for one in estimates)
-
-
-def optional_loop(numbers, more, kept):
-    """A loop that numba can compile only where it leaves out what None makes needless."""
-    for i in range(len(kept)):
-        kept[i] = halved(numbers.size)
-        if more is not None:
-            kept[i] += float(str(more.size))  # a number from a text, which numba does not know
-
-
-def test_what_is_none_is_left_out_of_compiled_code(fresh):
-    kept = np.zeros(3)
-    assert compiled.run_loop(optional_loop, (Numbers(5.0), None), (), (kept,), 1.0)[2] == compiled.COMPILED
-    assert kept.tolist() == [2.5] * 3
-    more = Numbers(11.0)
-    assert compiled.run_loop(optional_loop, (Numbers(5.0), more), (), (kept,), 1.0)[2] == compiled.PLAIN
-    assert kept.tolist() == [13.5] * 3
 
 
 def other_loop(numbers, kept):

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.unilateral_checks import DT, apart, random_model, size
 
 import dda.contact.dashpot as dashpot
@@ -34,7 +35,8 @@ from validation.theory.restitution import restitution
 
 MASS = 1.3 * 0.9 * 2350.0
 V = 0.7
-PHASES = midpoints(8)
+PHASES = midpoints(6)
+RATES = [(0.3, 0.3), (1.3, 0.7), (4.0, 0.1)]  # w dt, zeta
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
 ECCENTRIC = {"eccentricity": 0.3}
 STORED = ("kinetic", "strain", "springs", "load")
@@ -81,22 +83,10 @@ SCHEMES = {
 }
 
 
-@pytest.mark.parametrize("name", SCHEMES)
-@pytest.mark.parametrize(("omega", "zeta"), [(0.3, 0.3), (1.3, 0.7), (4.0, 0.1)])
+@pytest.mark.parametrize(("name", "omega", "zeta"), thinned([(n, *x) for n in SCHEMES for x in RATES], 2))
 def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, omega, zeta):
     scheme, table = SCHEMES[name]
     check_rebounds(scheme, spring_steps(table, omega, zeta=zeta), omega, zeta=zeta)
-
-
-def test_the_explicit_schemes_rebound_from_dashpots_too():
-    """Of a block whose strain rings at W = 0.9: it lands rigid to the share p/E of its speed."""
-    young = MASS * (0.9 / 1e-3) ** 2 / 12
-    for scheme, table in (
-        (named_scheme("leapfrog", step=1e-3), stages.LEAPFROG),
-        (Scheme(0.0, 0.5, 1.0, 1e-3, "consistent"), stages.newmark(0.0, 0.5)),
-    ):
-        advance = spring_steps(table, 0.03, zeta=0.2)
-        check_rebounds(scheme, advance, 0.03, tolerance=2e-3, zeta=0.2, young=young)
 
 
 @pytest.mark.parametrize("zeta", [0.1, 0.3, 0.9, 1.5])
@@ -140,51 +130,26 @@ def check_laws(seed, scheme):
     assert result.energies["dashpot"][-1] > 0
 
 
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("name", ["constant", "average", "ch-0.5", "composite"])
+@pytest.mark.parametrize(
+    ("seed", "name"), thinned([(s, n) for s in range(6) for n in ("constant", "average", "ch-0.5", "composite")], 5)
+)
 def test_random_blocks_keep_law_and_energy_of_their_dashpots(seed, name):
     check_laws(seed, replace(SCHEMES[name][0], step=DT, gg=1.0 if seed % 2 else 0.98))
 
 
-def test_dashpots_that_vanish_leave_the_springs_as_they_are():
-    for seed in range(4):
-        model = random_model(seed, glued=False)
-        weak = replace(model, contact=replace(model.contact, damping=1e-9 * math.sqrt(model.contact.stiffness)))
-        for scheme in (Scheme(0.5, 1.0, 1.0, DT), average(DT)):
-            runs = [solve_unilateral(one, scheme, 60) for one in (model, weak)]
-            assert apart(runs[1].normal, runs[0].normal) < 1e-8
-
-
-def test_the_papers_block_lands_on_dashpots():
-    """Peaks [MPa] of an independent program: zeta = 0.2 of the landing block, a quarter of its mass on 2p."""
-    c = 0.2 * math.sqrt(2e9 * 10800.0) / 2
-    for alpha, delta, peaks in ((0.25, 0.5, (10.9545, 11.1816)), (0.5, 1.0, (9.1924, 10.4417))):
-        for dt, peak in zip((1e-3, 2e-4), peaks, strict=True):
-            model = replace(PAPER, contact=Unilateral(1e9, damping=c))
-            result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt, "consistent"), round(0.02 / dt))
-            assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=51.0)
-
-
-@pytest.mark.parametrize(
-    ("factor", "exact"),
-    [
-        (1.0, (-0.007091142840408282, -0.012469235605322147, -0.002286939442794178)),
-        (4.0, (-0.0065689190516521265, -0.010418340409922422, -0.0055421519546203935)),
-    ],
-)
-def test_two_corners_on_dashpots_move_as_the_exact_block(factor, exact):
+def test_two_corners_on_dashpots_move_as_the_exact_block():
     """Displacement at 5, 10 and 20 ms under an eccentric load, by exact events on balls."""
-    c = factor * 0.2 * math.sqrt(2e9 * 10800.0) / 2
+    exact = (-0.0065689190516521265, -0.010418340409922422, -0.0055421519546203935)
+    c = 4 * 0.2 * math.sqrt(2e9 * 10800.0) / 2
     model = replace(PAPER, contact=Unilateral(1e9, damping=c), **ECCENTRIC)
-    n = 2000
-    for name in ("average", "ch-0.5", "composite"):
+    n = 1000
+    for name in ("ch-0.5", "composite"):
         scheme = replace(SCHEMES[name][0], step=0.02 / n)
         v = solve_unilateral(model, scheme, n, ("displacement",)).columns["displacement"]
-        assert v[[n // 4 - 1, n // 2 - 1, n - 1]] == pytest.approx(exact, abs=4e-6)
+        assert v[[n // 4 - 1, n // 2 - 1, n - 1]] == pytest.approx(exact, abs=1.6e-5)
 
 
-@pytest.mark.parametrize("name", ["average", "ch-0.5", "composite"])
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize(("seed", "name"), [(0, "ch-0.5"), (1, "composite"), (1, "average")])
 def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(seed, name):
     model = damped_model(seed)
     scheme = replace(SCHEMES[name][0], step=DT)
@@ -260,19 +225,6 @@ def test_the_restitution_counts_from_the_rate_before_the_impact():
     check_restitution_under_load()
 
 
-@pytest.mark.parametrize(("e", "peaks"), [(0.0, (10.98, 28.89, 106.0)), (1.0, (26.7, 82.5, 322.9))])
-def test_pressure_of_impulses_grows_as_the_step_falls(e, peaks):
-    for dt, peak in zip((1e-3, 2e-4, 5e-5), peaks, strict=True):
-        model = replace(PAPER, contact=Unilateral(math.inf))
-        result = solve_unilateral(model, average(dt), round(0.1 / dt), options=impulses(e))
-        assert result.columns["contact_pressure"].max() == pytest.approx(peak * 1e6, abs=6e4)
-        total, lost = balance(result)
-        assert np.max(np.abs(total + lost)) < 1e-12 * size(result)
-        assert e < 1 or np.max(np.abs(total)) < 1e-12 * size(result)
-        assert e == 1 or result.energies["impact"][-1] > 0.3 * 5e4
-        assert result.impulses == pytest.approx(dt * result.normal, rel=1e-15)
-
-
 def test_impulses_tend_to_the_plastic_answer_and_displacements_on_a_rigid_stop_do_not():
     """Exact (piecewise closed form): v at 0.01, 0.02 and 0.05 s, and m/4 times the speed of the first landing."""
     exact = np.array([-0.00350963748, -0.00744841152, -0.00275254957])
@@ -284,11 +236,11 @@ def test_impulses_tend_to_the_plastic_answer_and_displacements_on_a_rigid_stop_d
         times = np.array([n // 5, 2 * n // 5, n]) - 1
         return result, np.max(np.abs(result.columns["displacement"][times] - exact)) / np.max(np.abs(exact))
 
-    errors = [run(n, 0.25, 0.5, UnilateralOptions("impact", restitution=0.0)) for n in (800, 12800)]
-    assert errors[0][1] < 0.03 and errors[1][1] < 0.004
-    landing = np.flatnonzero(errors[1][0].impulses[0])[0]
-    assert 2 * errors[1][0].impulses[0][landing] == pytest.approx(10145.031, rel=1e-2)
-    assert min(run(n, 0.5, 1.0)[1] for n in (800, 1600, 3200, 6400, 12800)) > 0.015
+    result, error = run(6400, 0.25, 0.5, UnilateralOptions("impact", restitution=0.0))
+    assert error < 0.01
+    landing = np.flatnonzero(result.impulses[0])[0]
+    assert 2 * result.impulses[0][landing] == pytest.approx(10145.031, rel=1e-2)
+    assert run(3200, 0.5, 1.0)[1] > 0.015
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -348,8 +300,7 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
 
 
-@pytest.mark.parametrize("name", SCHEMES)
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(("seed", "name"), thinned([(s, n) for s in (1, 2) for n in SCHEMES], 3))
 def test_passes_of_every_scheme_lead_to_its_rigid_stop(name, seed):
     model = random_model(seed, glued=False)
     scheme = replace(SCHEMES[name][0], step=DT)
@@ -369,6 +320,8 @@ def test_kanes_force_enters_the_velocity_whole():
 # ---- what excludes each other ----------------------------------------------------------------------------------------
 
 DAMPED = Unilateral(1e9, damping=1e5)
+RIGID = Unilateral(math.inf)
+RETURNED = {"rule": "impact", "restitution": 0.5}
 GOOD = average(1e-3)
 
 
@@ -413,37 +366,12 @@ def test_options_out_of_range(options, field):
         ({"contact": DAMPED}, GOOD, {"rule": "energy-conserving"}, "damping"),
         ({"contact": DAMPED}, GOOD, {"rule": "augmented"}, "damping"),
         ({"contact": replace(DAMPED, shear=1e9)} | ECCENTRIC, GOOD, {}, "damping"),
-        (
-            {"contact": Unilateral(math.inf)},
-            Scheme(0.5, 1.0, 1.0, 1e-3),
-            {"rule": "impact", "restitution": 0.5},
-            "rule",
-        ),
-        ({}, GOOD, {"rule": "impact", "restitution": 0.5}, "rule"),
-        (
-            {"contact": Unilateral(math.inf)},
-            named_scheme("composite", step=1e-3),
-            {"rule": "impact", "restitution": 0.5},
-            "rule",
-        ),
-        (
-            {"contact": Unilateral(math.inf, shear=1e9)} | ECCENTRIC,
-            GOOD,
-            {"rule": "impact", "restitution": 0.5},
-            "rule",
-        ),
-        (
-            {"contact": Unilateral(math.inf, shear=1e9, friction=0.3)},
-            GOOD,
-            {"rule": "impact", "restitution": 0.5},
-            "rule",
-        ),
-        (
-            {"contact": Unilateral(math.inf), "motion": BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 0.1]])},
-            GOOD,
-            {"rule": "impact", "restitution": 0.5},
-            "rule",
-        ),
+        ({"contact": RIGID}, Scheme(0.5, 1.0, 1.0, 1e-3), RETURNED, "rule"),
+        ({}, GOOD, RETURNED, "rule"),
+        ({"contact": RIGID}, named_scheme("composite", step=1e-3), RETURNED, "rule"),
+        ({"contact": replace(RIGID, shear=1e9)} | ECCENTRIC, GOOD, RETURNED, "rule"),
+        ({"contact": replace(RIGID, shear=1e9, friction=0.3)}, GOOD, RETURNED, "rule"),
+        ({"contact": RIGID, "motion": BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 0.1]])}, GOOD, RETURNED, "rule"),
         ({"contact": Unilateral(math.inf)}, GOOD, {"rule": "augmented"}, "rule"),
         ({"contact": Unilateral(1e9, band=(1e-6, 0.0))}, GOOD, {"rule": "augmented"}, "rule"),
         ({"contact": Unilateral(1e9, shear=1e9)} | ECCENTRIC, GOOD, {"rule": "augmented"}, "rule"),

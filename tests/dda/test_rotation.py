@@ -12,7 +12,7 @@ from oracles.rolling import random_rolling
 
 import dda.rotation.solution as solution
 import dda.rotation.step as step
-from dda import BaseMotion, Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions
+from dda import BaseMotion, Block, Load, Material, Scheme, Unilateral, UnilateralModel
 from dda import solve_unilateral as solve_small
 from dda.contact.kernel import NONE
 from dda.rotation.body import FIRST_ORDER, turned
@@ -116,21 +116,6 @@ def test_small_motion_is_the_limit_of_small_loads():
         rotation = np.max(np.abs(small.columns["rotation"]))
     ratio = np.array(off[0]) / np.array(off[1])
     assert np.all(np.array(off[0]) < 20 * 2 * rotation) and np.all(ratio > 1.7) and np.all(ratio < 2.3)
-
-
-def test_energies_of_small_motion_are_the_same():
-    law, scheme = Unilateral(1e9, 1e9), Scheme(*CONSTANT, 0.99, 1e-3)
-    small = solve_small(
-        UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), law, 5e3, eccentricity=0.3, gravity=9.81),
-        scheme,
-        100,
-        options=UnilateralOptions(energies=True),
-    )
-    load = Load(5e3, 0.3, gravity=9.81)
-    turned = solve_rolling(RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), law, load), scheme, 100)
-    size = max(np.max(np.abs(values)) for values in small.energies.values())
-    for name in (*STORED, *LOST[:3]):
-        assert np.max(np.abs(turned.energies[name] - small.energies[name])) < 1e-6 * size, name
 
 
 def test_a_base_that_moves_steadily_is_a_block_that_flies_the_other_way():

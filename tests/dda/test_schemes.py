@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults.steps import notices
-from oracles.scheme_cases import CASES, every_scheme, scheme_of, truth_of
+from oracles.scheme_cases import CASES, every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
 
-import dda
 from dda import (
     SCHEMES,
     BaseMotion,
@@ -146,48 +145,6 @@ def one_step_operator_of(scheme, K):
     return _staged_operator(scheme, np.ones((1, 1)), K, tuple(np.eye(3).reshape(3, 1, 3)))
 
 
-@pytest.mark.parametrize(
-    ("name", "values", "leading", "period"),
-    [
-        ("chung-hulbert", {"rho_inf": 0.8}, 0.000685871, 0.0879629630),
-        ("chung-hulbert", {"rho_inf": 0.5}, 0.0185185185, 0.125),
-        ("chung-hulbert", {"rho_inf": 0.0}, 0.5, 0.458333333),
-        ("hht", {"rho_inf": 0.9 / 1.1}, 0.010125, 0.104583333),
-        ("wbz", {"rho_inf": 0.5}, 0.0740740741, 0.180555556),
-        ("composite", {"split": 0.5}, 1 / 288, 1 / 24),
-        ("composite", {}, 0.00367965644, 0.0404401145),
-        ("composite", {"rho_inf": 0.5}, 0.00193304105, 0.029485756),
-        ("leapfrog", {}, 0.0, -1 / 24),
-    ],
-)
-def test_leading_terms_of_damping_and_period(name, values, leading, period):
-    scheme = scheme_of(name, values, 1.0)
-    for W in (0.04, 0.02):
-        assert roots.damping_ratio(scheme, W) / W**3 == pytest.approx(leading, rel=8 * W * W, abs=1e-9)
-        assert roots.period_elongation(scheme, W) / W**2 == pytest.approx(period, rel=8 * W * W)
-        discounted = scheme_of(name, values, 1.0, 0.9999)
-        assert roots.damping_ratio(discounted, W) - roots.damping_ratio(scheme, W) == pytest.approx(5e-5 / W, rel=0.01)
-
-
-def test_the_same_schemes_under_two_names():
-    pairs = [
-        (("chung-hulbert", {"rho_inf": 0.0}), ("wbz", {"rho_inf": 0.0})),
-        (("chung-hulbert", {"rho_inf": 0.5}), ("hht", {"rho_inf": 0.5})),
-    ]
-    for pair in pairs:
-        for w in (0.1, 1.0, 10.0):
-            first, second = (roots.damping_ratio(scheme_of(*case, 1.0), w) for case in pair)
-            assert first == pytest.approx(second, rel=1e-9)
-    euler = Scheme(1.0, 1.5, 1.0, 1e-3)  # from A0 = 0 implicit Euler even as a history
-    history = solve(square(), euler, 20, ("displacement",)).columns["displacement"]
-    M, K, F = (getattr(square(), part) for part in ("mass", "stiffness", "force"))
-    D, V = np.zeros((2, 6))
-    for value in history:
-        V = np.linalg.solve(M + 1e-6 * K, M @ V + 1e-3 * (F - K @ D))
-        D = D + 1e-3 * V
-        assert value == pytest.approx(D[1], rel=1e-10)
-
-
 @every_scheme
 def test_stability_limit(name, values):
     for gg in (1.0, 0.9):
@@ -251,7 +208,7 @@ def test_a_moving_base(name, values):
         assert np.max(np.abs(result.columns[column] - D[1:, row])) < 1e-11 * np.max(np.abs(D[:, row])), column
 
 
-@every_scheme
+@few_schemes
 def test_long_histories_are_blocked_where_a_step_has_two_numbers_a_mode(name, values):
     scheme = scheme_of(name, values, 2e-4, 0.999)
     result = solve(square(), scheme, 3000)
@@ -281,29 +238,8 @@ def test_diagnostics_and_operator(name, values):
         assert abs(mode.eigenvalues[0]) == pytest.approx(abs(roots.roots(scheme, mode.frequency * 3e-4)[0]), rel=1e-9)
 
 
-def order_of(name, values, start="consistent"):
-    """Return the order in dt of a locked history, from rest."""
-    model = square()
-    T = 0.02
-    errors = []
-    form = dda.modal_form(model.gap_form.reduced())
-    w = form.frequencies
-    amplitudes = model.load_size * (model.gap_form.reduced().observers["displacement"] @ form.shapes) * form.load / w**2
-    for steps in (160, 320):
-        scheme = scheme_of(name, values, T / steps, start=start)
-        result = solve(model, scheme, steps, ("displacement",))
-        exact = (1 - np.cos(np.outer(result.time, w))) @ amplitudes
-        errors.append(np.linalg.norm(result.columns["displacement"] - exact) / math.sqrt(steps))
-    return math.log2(errors[0] / errors[1])
-
-
-@every_scheme
-def test_every_scheme_is_of_second_order(name, values):
-    assert order_of(name, values) == pytest.approx(2.0, abs=0.1)
-
-
 @pytest.mark.parametrize("along", [None, (0.3, 1.0)])
-@every_scheme
+@few_schemes
 def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along):
     frequency = 25.0
     step = 4e-4
@@ -363,8 +299,6 @@ def test_seeded_faults_of_the_numbers_are_noticed(monkeypatch):
         with_table(patch, "composite", q_of_another_split)
         assert roots.damping_ratio(scheme_of("composite", {}, 1.0), 0.5) < 0
         assert notices(lambda: test_stability_limit("composite", {}))
-    # 5: A0 = 0
-    assert order_of("chung-hulbert", {"rho_inf": 0.5}, "zero") < 1.3
 
 
 def test_gg_in_both_stages_is_noticed(monkeypatch):
@@ -383,5 +317,4 @@ def test_gg_in_both_stages_is_noticed(monkeypatch):
 
 def test_a_leapfrog_without_its_first_half_step_is_noticed(monkeypatch):
     monkeypatch.setattr(newmark, "late_momentum", lambda scheme, P, f: P)
-    assert order_of("leapfrog", {}) == pytest.approx(1.0, abs=0.1)
-    assert notices(lambda: test_every_scheme_is_of_second_order("leapfrog", {}))
+    assert notices(lambda: check_history("leapfrog", {}))
