@@ -25,6 +25,7 @@ from fem_reference.contact.kernel import (
     ContactState,
 )
 from fem_reference.contact.points import ContactModel
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration, start_velocity
 
@@ -50,10 +51,8 @@ class Friction:
     cohesion: float = 0.0  # shear stress that a closed base bears without any pressure [Pa]
 
     def __post_init__(self) -> None:
-        if not 0 <= self.angle < 90:
-            raise ValueError(f"friction: must be at least 0 and below 90, got {self.angle!r}")
-        if not (math.isfinite(self.cohesion) and self.cohesion >= 0):
-            raise ValueError(f"cohesion: must be finite and not negative, got {self.cohesion!r}")
+        require(0 <= self.angle < 90, "friction", "must be at least 0 and below 90", self.angle)
+        require(0 <= self.cohesion < math.inf, "cohesion", "must be finite and not negative", self.cohesion)
 
     @property
     def tangent(self) -> float:

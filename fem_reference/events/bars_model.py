@@ -10,11 +10,7 @@ from flint import acb, acb_poly, arb
 
 from fem_reference.events.column_drive import Drive, Piece, Polynomial, Ricker, Sine, still
 from fem_reference.events.exponential_sum import ExponentialSum, Rate, Rates, distinct
-
-
-def _require(condition: bool, field: str, rule: str, value: object) -> None:
-    if not condition:
-        raise ValueError(f"{field}: {rule}, got {value!r}")
+from fem_reference.problem.checks import require, require_numbers
 
 
 @dataclass(frozen=True)
@@ -33,10 +29,7 @@ class Bar:
     velocity: float = 0.0  # at t = 0, upwards [m/s]
 
     def __post_init__(self) -> None:
-        for name in ("length", "density", "modulus"):
-            value = getattr(self, name)
-            _require(math.isfinite(value) and value > 0, name, "must be positive and finite", value)
-        _require(math.isfinite(self.velocity), "velocity", "must be a finite number", self.velocity)
+        require_numbers(self, positive=("length", "density", "modulus"))
 
     @property
     def impedance(self) -> arb:
@@ -73,11 +66,9 @@ class BarJoint:
     strength: float = math.inf  # greatest |T| [Pa], of a frictional one; inf: it is bonded
 
     def __post_init__(self) -> None:
-        _require(self.law in ("unilateral", "frictional"), "law", "must be unilateral or frictional", self.law)
-        _require(self.stiffness > 0, "stiffness", "must be positive", self.stiffness)
-        _require(math.isfinite(self.gap) and self.gap >= 0, "gap", "must be finite and not negative", self.gap)
-        _require(self.law == "unilateral" or self.gap == 0, "gap", "must be 0 of a frictional joint", self.gap)
-        _require(self.strength > 0, "strength", "must be positive", self.strength)
+        require(self.law in ("unilateral", "frictional"), "law", "must be unilateral or frictional", self.law)
+        require_numbers(self, ("stiffness", "strength"), ("gap",), infinite=("stiffness", "strength"))
+        require(self.law == "unilateral" or self.gap == 0, "gap", "must be 0 of a frictional joint", self.gap)
 
 
 BONDED = BarJoint("frictional")
@@ -129,12 +120,11 @@ class BarsProblem:
     settled: bool = False  # whether the bars begin at rest under their weight, all joints closed, not unstrained
 
     def __post_init__(self) -> None:
-        _require(len(self.bars) > 0, "bars", "must be one at least", self.bars)
-        _require(len(self.joints) == len(self.bars), "joints", "must be one for each bar", len(self.joints))
-        _require(None not in self.joints[1:], "joints", "must all be given above the base", self.joints)
-        _require(math.isfinite(self.gravity), "gravity", "must be a finite number", self.gravity)
-        _require(self.base_impedance > 0, "base_impedance", "must be positive", self.base_impedance)
-        _require(not self.settled or self.joints[0] is not None, "settled", "must be False above nothing", self.settled)
+        require(len(self.bars) > 0, "bars", "must be one at least", self.bars)
+        require(len(self.joints) == len(self.bars), "joints", "must be one for each bar", len(self.joints))
+        require(None not in self.joints[1:], "joints", "must all be given above the base", self.joints)
+        require_numbers(self, positive=("base_impedance",), infinite=("base_impedance",))
+        require(not self.settled or self.joints[0] is not None, "settled", "must be False above nothing", self.settled)
 
     @property
     def fall(self) -> arb:

@@ -37,12 +37,13 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from flint import arb, arb_mat
 
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 
 CORNERS = ("M", "N")
@@ -106,61 +107,40 @@ class BlockProblem:
     restitution: float | None = None  # e of the impact law of rigid contact [-], from 0, plastic, to 1, elastic
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if value == math.inf and field.name in INFINITE:
-                continue
-            if isinstance(value, int | float) and not math.isfinite(value):
-                raise ValueError(f"{field.name}: must be a finite number, got {value!r}")
-        for name in POSITIVE:
-            if getattr(self, name) <= 0:
-                raise ValueError(f"{name}: must be positive, got {getattr(self, name)!r}")
-        for name in UNSIGNED:
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
-        self._check_material()
-        self._check_friction()
-        self._check_damping()
+        require_numbers(self, POSITIVE, UNSIGNED, INFINITE)
+        require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
+        highest = 1.0 if self.hypothesis == "plane stress" else 0.5
+        rule = f"must be above -1 and below {highest:g} in {self.hypothesis}"
+        require(-1 < self.poisson < highest, "poisson", rule, self.poisson)
+        rule = f"must be below half the width {self.width / 2:g}"
+        require(2 * abs(self.eccentricity) < self.width, "eccentricity", rule, self.eccentricity)
+        require(-90 < self.slope < 90, "slope", "must be between -90 and 90", self.slope)
+        if self.friction is None:
+            require(self.cohesion == 0, "cohesion", "must be 0 without friction", self.cohesion)
+        else:
+            require(0 <= self.friction < 90, "friction", "must be at least 0 and below 90", self.friction)
+            require(self.shear_stiffness > 0, "shear_stiffness", "must be positive with friction", self.shear_stiffness)
+        free = self.friction is None and not self.gap and not self.velocity
+        require(free or not self.locked, "locked", "must be without friction, gap and velocity", self.locked)
+        springs = self.friction is None and not self.locked and not self.rigid_contact
+        rule = "must be 0 with friction, locked contact or rigid contact, whose loss is set by restitution"
+        require(springs or self.damping == 0, "damping", rule, self.damping)
         self._check_impact_law()
-        if self.locked and (self.friction is not None or self.gap or self.velocity):
-            raise ValueError("locked: must be without friction, gap and velocity, got one of them")
-        if 2 * abs(self.eccentricity) >= self.width:
-            rule = f"must be below half the width {self.width / 2:g}"
-            raise ValueError(f"eccentricity: {rule}, got {self.eccentricity!r}")
-
-    def _check_friction(self) -> None:
-        if not -90 < self.slope < 90:
-            raise ValueError(f"slope: must be between -90 and 90, got {self.slope!r}")
-        if self.friction is None and self.cohesion > 0:
-            raise ValueError(f"cohesion: must be 0 without friction, got {self.cohesion!r}")
-        if self.friction is not None and not 0 <= self.friction < 90:
-            raise ValueError(f"friction: must be at least 0 and below 90, got {self.friction!r}")
-        if self.friction is not None and self.shear_stiffness == 0:
-            raise ValueError("shear_stiffness: must be positive with friction, got 0.0")
-
-    def _check_damping(self) -> None:
-        """Raise for what a contact with dashpots cannot be combined with."""
-        if self.damping == 0:
-            return
-        if self.friction is not None or self.locked or self.rigid_contact:
-            rule = "must be 0 with friction, locked contact or rigid contact, whose loss is set by restitution"
-            raise ValueError(f"damping: {rule}, got {self.damping!r}")
 
     def _check_impact_law(self) -> None:
         """Raise for what rigid contact is not solved for: both its corners do the same, and nothing acts sideways."""
-        if self.restitution is None:
-            if self.rigid_contact:
-                raise ValueError("stiffness: must be finite, or rigid contact needs a restitution, got inf")
+        e = self.restitution
+        if e is None:
+            rule = "must be finite, or rigid contact needs a restitution"
+            require(not self.rigid_contact, "stiffness", rule, self.stiffness)
             return
-        if not 0 <= self.restitution <= 1:
-            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
-        if not self.rigid_contact:
-            raise ValueError(f"stiffness: must be infinite with restitution, got {self.stiffness!r}")
-        if self.friction is not None or self.locked:
-            raise ValueError("restitution: must be without friction and locked, got one of them")
-        if self.eccentricity or self.traction or self.slope or self.base is not None:
-            rule = "must be without eccentricity, traction, slope and base, so that both corners do the same"
-            raise ValueError(f"restitution: {rule}, got one of them")
+        require(0 <= e <= 1, "restitution", "must be from 0 to 1", e)
+        require(self.rigid_contact, "stiffness", "must be infinite with restitution", self.stiffness)
+        alone = self.friction is None and not self.locked
+        require(alone, "restitution", "must be without friction and locked", e)
+        centred = not (self.eccentricity or self.traction or self.slope) and self.base is None
+        rule = "must be without eccentricity, traction, slope and base, so that both corners do the same"
+        require(centred, "restitution", rule, e)
 
     @property
     def rigid_contact(self) -> bool:
@@ -171,14 +151,6 @@ class BlockProblem:
     def rigid(self) -> bool:
         """Whether the block has no strain."""
         return math.isinf(self.young)
-
-    def _check_material(self) -> None:
-        if self.hypothesis not in HYPOTHESES:
-            raise ValueError(f"hypothesis: must be one of {HYPOTHESES}, got {self.hypothesis!r}")
-        highest = 1.0 if self.hypothesis == "plane stress" else 0.5
-        if not -1 < self.poisson < highest:
-            rule = f"must be above -1 and below {highest:g} in {self.hypothesis}"
-            raise ValueError(f"poisson: {rule}, got {self.poisson!r}")
 
 
 @dataclass(frozen=True)

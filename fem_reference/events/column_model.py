@@ -23,6 +23,7 @@ from flint import arb, ctx
 
 from fem_reference.events.column_drive import Drive, still
 from fem_reference.events.enclosure import precision
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 
 LAWS = ("bonded", "unilateral", "frictional")
@@ -77,43 +78,37 @@ class ColumnProblem:
     pressure: Drive = still  # on the top, towards - [Pa]
 
     def __post_init__(self) -> None:
-        if self.law not in LAWS:
-            raise ValueError(f"law: must be one of {LAWS}, got {self.law!r}")
-        if self.base not in BASES:
-            raise ValueError(f"base: must be one of {BASES}, got {self.base!r}")
-        if not self.blocks or len(self.joints) != len(self.blocks):
-            raise ValueError(f"joints: must be one for each block, got {len(self.joints)} of {len(self.blocks)}")
+        require(self.law in LAWS, "law", f"must be one of {LAWS}", self.law)
+        require(self.base in BASES, "base", f"must be one of {BASES}", self.base)
+        alike = 0 < len(self.blocks) == len(self.joints)
+        require(alike, "joints", f"must be one for each of {len(self.blocks)} blocks", len(self.joints))
         for i, block in enumerate(self.blocks):
             for name in ("height", "density", "modulus"):
                 value = getattr(block, name)
-                if not value > 0 or (math.isinf(value) and name != "modulus"):
-                    raise ValueError(f"blocks[{i}].{name}: must be positive, got {value!r}")
-            if not math.isfinite(block.velocity):
-                raise ValueError(f"blocks[{i}].velocity: must be finite, got {block.velocity!r}")
-        if not math.isfinite(self.gravity):
-            raise ValueError(f"gravity: must be finite, got {self.gravity!r}")
-        if self.base == "transmitting" and not (math.isfinite(self.impedance) and self.impedance > 0):
-            raise ValueError(f"impedance: must be positive, got {self.impedance!r}")
-        if self.at_rest and self.base != "rigid":
-            raise ValueError(f"at_rest: must be False on a base that is {self.base}, got True")
-        self._check_joints()
-
-    def _check_joints(self) -> None:
-        if self.base != "rigid" and self.joints[0] is not None:
-            raise ValueError(f"joints[0]: must be None on a base that is {self.base}, got {self.joints[0]!r}")
+                finite = name == "modulus" or value < math.inf
+                require(value > 0 and finite, f"blocks[{i}].{name}", "must be positive", value)
+            require(math.isfinite(block.velocity), f"blocks[{i}].velocity", "must be finite", block.velocity)
+        require(math.isfinite(self.gravity), "gravity", "must be finite", self.gravity)
+        carried = self.base != "transmitting" or 0 < self.impedance < math.inf
+        require(carried, "impedance", "must be positive", self.impedance)
+        supported = self.base == "rigid"
+        require(supported or not self.at_rest, "at_rest", f"must be False on a base that is {self.base}", True)
+        footless = supported or self.joints[0] is None
+        require(footless, "joints[0]", f"must be None on a base that is {self.base}", self.joints[0])
         for j, joint in enumerate(self.joints):
-            if joint is None:
-                continue
-            if not (math.isfinite(joint.stiffness) and joint.stiffness > 0):
-                raise ValueError(f"joints[{j}].stiffness: must be positive and finite, got {joint.stiffness!r}")
-            if not (math.isfinite(joint.gap) and joint.gap >= 0):
-                raise ValueError(f"joints[{j}].gap: must not be negative, got {joint.gap!r}")
-            if joint.gap and self.law != "unilateral":
-                raise ValueError(f"joints[{j}].gap: must be 0 in a column that is {self.law}, got {joint.gap!r}")
-            if joint.strength is not None and not (math.isfinite(joint.strength) and joint.strength >= 0):
-                raise ValueError(f"joints[{j}].strength: must not be negative, got {joint.strength!r}")
-            if joint.strength is not None and self.law != "frictional":
-                raise ValueError(f"joints[{j}].strength: must be None in a column that is {self.law}, got a number")
+            if joint is not None:
+                self._check_joint(f"joints[{j}]", joint)
+
+    def _check_joint(self, name: str, joint: ColumnJoint) -> None:
+        require(0 < joint.stiffness < math.inf, f"{name}.stiffness", "must be positive and finite", joint.stiffness)
+        require(0 <= joint.gap < math.inf, f"{name}.gap", "must not be negative", joint.gap)
+        opens = self.law == "unilateral"
+        require(opens or not joint.gap, f"{name}.gap", f"must be 0 in a column that is {self.law}", joint.gap)
+        strength = joint.strength
+        if strength is not None:
+            require(0 <= strength < math.inf, f"{name}.strength", "must not be negative", strength)
+            slips = self.law == "frictional"
+            require(slips, f"{name}.strength", f"must be None in a column that is {self.law}", strength)
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
 
 LIMIT = 100_000
@@ -43,17 +44,18 @@ class ContactScheme:
     gg: float = 1.0  # factor on the velocity at the start of each step [-]
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.alpha) and self.alpha > 0):
-            raise ValueError(f"alpha: must be positive and finite, got {self.alpha!r}")
-        if not 0.5 <= self.delta <= min(1.0, self.alpha + 0.5):
-            raise ValueError(f"delta: must be from 0.5 to min(1, alpha + 0.5), got {self.delta!r}")
-        if not 0 < self.gg <= 1:
-            raise ValueError(f"gg: must be above 0 and at most 1, got {self.gg!r}")
+        require_numbers(self, positive=("alpha", "gg"))
+        require(
+            0.5 <= self.delta <= min(1.0, self.alpha + 0.5),
+            "delta",
+            "must be from 0.5 to min(1, alpha + 0.5)",
+            self.delta,
+        )
+        require(self.gg <= 1, "gg", "must be at most 1", self.gg)
 
     def step(self, omega: float) -> Array:
         """A step in contact as a matrix on (w*, v, A), shape (3, 3)."""
-        if not omega > 0:
-            raise ValueError(f"omega: must be positive, got {omega!r}")
+        require(omega > 0, "omega", "must be positive", omega)
         k = 1 / (1 / omega / omega + self.alpha)  # Omega^2 / (1 + alpha Omega^2); 1 / alpha if stiff
         gg = self.gg
         delta = self.delta
@@ -107,8 +109,7 @@ def restitution(scheme: ContactScheme, omega: float, theta: float) -> float:
     ValueError
         If `omega` is not positive or theta is not from 0 to gg.
     """
-    if not 0 <= theta <= scheme.gg:
-        raise ValueError(f"theta: must be from 0 to gg = {scheme.gg:g}, got {theta!r}")
+    require(0 <= theta <= scheme.gg, "theta", f"must be from 0 to gg = {scheme.gg:g}", theta)
     return next(line(theta) for line in branches(scheme, omega) if theta <= line.high)
 
 

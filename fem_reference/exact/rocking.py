@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.special import ellipkinc
 
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.instants import by_pieces, instants
 from fem_reference.problem.problem import Array
 
@@ -56,11 +57,9 @@ class RockingBlock:
     restitution: float | None = None  # rate after over rate before an impact [-]; None: Housner's
 
     def __post_init__(self) -> None:
-        for name in ("width", "height", "gravity"):
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0):
-                raise ValueError(f"{name}: must be positive and finite, got {getattr(self, name)!r}")
-        if self.restitution is not None and not 0 <= self.restitution <= 1:
-            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
+        require_numbers(self, positive=("width", "height", "gravity"))
+        ratio = self.restitution
+        require(ratio is None or 0 <= ratio <= 1, "restitution", "must be from 0 to 1", ratio)
 
     @property
     def alpha(self) -> float:
@@ -88,8 +87,7 @@ class RockingBlock:
         With psi = alpha - tilt it is F(x, k) / p, k = cos(psi / 2) and
         tan(x) = sqrt(sin(alpha - tilt / 2) sin(tilt / 2)) / (cos(alpha / 2) sin(psi / 2)).
         """
-        if not 0 <= tilt <= self.alpha:
-            raise ValueError(f"tilt: must be from 0 to alpha = {self.alpha:g} rad, got {tilt!r}")
+        require(0 <= tilt <= self.alpha, "tilt", f"must be from 0 to alpha = {self.alpha:g} rad", tilt)
         if tilt == self.alpha:
             return math.inf
         psi = self.alpha - tilt
@@ -113,10 +111,9 @@ class Pulse:
     shape: str = "half-sine"  # ``"half-sine"`` or ``"rectangle"``
 
     def __post_init__(self) -> None:
-        if self.shape not in ("half-sine", "rectangle"):
-            raise ValueError(f"shape: must be 'half-sine' or 'rectangle', got {self.shape!r}")
-        if not (math.isfinite(self.amplitude) and math.isfinite(self.duration) and self.duration >= 0):
-            raise ValueError(f"pulse: must be finite numbers, got {self.amplitude!r} for {self.duration!r} s")
+        shapes = "half-sine", "rectangle"
+        require(self.shape in shapes, "shape", "must be 'half-sine' or 'rectangle'", self.shape)
+        require_numbers(self, unsigned=("duration",))
 
     def __call__(self, time: float) -> float:
         """Acceleration at an instant of the pulse [m/s2]."""
@@ -187,10 +184,8 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
     ArithmeticError
         If the block comes down more than 10000 times.
     """
-    if not (math.isfinite(end) and end > 0):
-        raise ValueError(f"end: must be positive and finite, got {end!r}")
-    if not abs(tilt) < FALLEN:
-        raise ValueError(f"tilt: must be below a right angle, got {tilt!r}")
+    require(0 < end < math.inf, "end", "must be positive and finite", end)
+    require(abs(tilt) < FALLEN, "tilt", "must be below a right angle", tilt)
     time = 0.0
     angle = tilt
     rate = 0.0
@@ -293,8 +288,7 @@ def overturning_amplitude(block: RockingBlock, duration: float, shape: str = "ha
     ValueError
         If the duration is not positive.
     """
-    if not (math.isfinite(duration) and duration > 0):
-        raise ValueError(f"duration: must be positive and finite, got {duration!r}")
+    require(0 < duration < math.inf, "duration", "must be positive and finite", duration)
     low = high = block.lifting
     while not overturns(block, Pulse(high, duration, shape)):
         low = high

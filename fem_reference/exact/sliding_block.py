@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.instants import by_pieces, instants
 from fem_reference.problem.problem import Array
 
@@ -50,16 +51,9 @@ class SlidingBlock:
     two_way: bool = True  # whether it also slides up the slope; Newmark's own analysis holds it there
 
     def __post_init__(self) -> None:
-        for name in ("slope", "friction", "gravity", "cohesion"):
-            if not math.isfinite(getattr(self, name)):
-                raise ValueError(f"{name}: must be a finite number, got {getattr(self, name)!r}")
-        if not -90 < self.slope < 90:
-            raise ValueError(f"slope: must be between -90 and 90, got {self.slope!r}")
-        if not 0 <= self.friction < 90:
-            raise ValueError(f"friction: must be at least 0 and below 90, got {self.friction!r}")
-        for name in ("gravity", "cohesion"):
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name}: must not be negative, got {getattr(self, name)!r}")
+        require_numbers(self, unsigned=("gravity", "cohesion"))
+        require(-90 < self.slope < 90, "slope", "must be between -90 and 90", self.slope)
+        require(0 <= self.friction < 90, "friction", "must be at least 0 and below 90", self.friction)
 
     @property
     def driving(self) -> float:
@@ -268,8 +262,7 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
     ValueError
         If `end` is not positive and finite.
     """
-    if not (math.isfinite(end) and end > 0):
-        raise ValueError(f"end: must be positive and finite, got {end!r}")
+    require(0 < end < math.inf, "end", "must be positive and finite", end)
     slide = 0.0
     velocity = 0.0
     stretches = list[Stretch]()

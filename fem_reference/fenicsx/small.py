@@ -13,7 +13,7 @@ phi = w1 / (w1 - w0) with r the slip at the start; phi = 1 otherwise. Without fr
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -144,26 +144,21 @@ class Small:
                 return forces, count, ""
             states = following
         if not self.sheared:
-            return self._least_index(states), limit + 1, ""
+            return self._by_turns(states, limit, math.inf)[0], limit + 1, ""
         choices = (0, 1, 2, -2) if self.rubs else (0, 1)
         if len(choices) ** self.n > SETS:
-            return self._by_turns(states, limit) if self.rubs else (None, limit, NONE)
+            return self._by_turns(states, limit, TURNS * self.n) if self.rubs else (None, limit, NONE)
         sets = self._consistent(choices)
         return (sets[0] if len(sets) == 1 else None), limit + 1, SEVERAL if sets else NONE
 
-    def _least_index(self, states: np.ndarray) -> Forces:
-        """Change the first node that is wrong until none is, which ends for any such problem (Murty, 1974)."""
-        while True:
-            forces = self.forces(states)
-            wrong = np.flatnonzero(self.wanted(forces) != states)
-            if not len(wrong):
-                return forces
-            states = states.copy()
-            states[wrong[0]] = 1 - states[wrong[0]]
+    def _by_turns(self, states: np.ndarray, used: int, most: float) -> tuple[Forces | None, int, str]:
+        """Change the first node that is wrong, so many times at most.
 
-    def _by_turns(self, states: np.ndarray, used: int) -> tuple[Forces | None, int, str]:
-        """Change the first node that is wrong, so many times at most."""
-        for count in range(used + 1, used + TURNS * self.n + 1):
+        Without shear springs that ends with any such problem (Murty, 1974).
+        """
+        count = used
+        while count < used + most:
+            count += 1
             forces = self.forces(states)
             following = self.wanted(forces)
             wrong = np.flatnonzero(following != states)
@@ -176,16 +171,12 @@ class Small:
     def _consistent(self, choices: tuple[int, ...]) -> list[Forces]:
         """All sets of states that hold, those with equal forces once."""
         solutions: list[Forces] = []
-        for forces in self._holding(choices):
-            if not any(alike(forces, other) for other in solutions):
-                solutions.append(forces)
-        return solutions
-
-    def _holding(self, choices: tuple[int, ...]) -> Iterator[Forces]:
         for choice in itertools.product(choices, repeat=self.n):
             forces = self.forces(np.array(choice))
-            if forces.settled and np.array_equal(self.wanted(forces), choice):
-                yield forces
+            holds = forces.settled and np.array_equal(self.wanted(forces), choice)
+            if holds and not any(alike(forces, other) for other in solutions):
+                solutions.append(forces)
+        return solutions
 
     def ended(self, forces: Forces, slip: np.ndarray) -> Start:
         """The nodes at the end of the step, which are at `slip`."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 
@@ -19,6 +18,7 @@ from fem_reference.contact.kernel import (
 )
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper, Friction, Marched
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
@@ -48,18 +48,15 @@ class Unilateral:
     friction: Friction | None = None  # limit of the forces of glued points; none if absent
 
     def __post_init__(self) -> None:
-        for name, rule, good in (
-            ("friction", "goes with shear = 'glued' only", self.friction is None or self.shear == "glued"),
-            ("gap", "must be finite and not negative", math.isfinite(self.gap) and self.gap >= 0),
-            ("velocity", "must be a finite number", math.isfinite(self.velocity)),
-            ("shear", "must be 'frictionless' or 'glued'", self.shear in ("frictionless", "glued")),
-            ("rule", "must be 'newmark' or 'implicit'", self.rule in ("newmark", "implicit")),
-            ("limit", "must be at least 1", self.limit >= 1),
-            ("cut", "must be between 0 and 1", 0 < self.cut < 1),
-            ("shortest", "must be above 0 and at most 1", 0 < self.shortest <= 1),
-        ):
-            if not good:
-                raise ValueError(f"{name}: {rule}, got {getattr(self, name)!r}")
+        require_numbers(self, unsigned=("gap",))
+        glued = self.friction is None or self.shear == "glued"
+        require(glued, "friction", "goes with shear = 'glued' only", self.friction)
+        shears = "frictionless", "glued"
+        require(self.shear in shears, "shear", "must be 'frictionless' or 'glued'", self.shear)
+        require(self.rule in ("newmark", "implicit"), "rule", "must be 'newmark' or 'implicit'", self.rule)
+        require(self.limit >= 1, "limit", "must be at least 1", self.limit)
+        require(0 < self.cut < 1, "cut", "must be between 0 and 1", self.cut)
+        require(0 < self.shortest <= 1, "shortest", "must be above 0 and at most 1", self.shortest)
 
 
 @dataclass(frozen=True)

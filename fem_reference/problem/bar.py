@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
+from fem_reference.problem.checks import require_numbers
 from fem_reference.problem.problem import Problem
 
 POSITIVE = ("height", "width", "density", "young", "base_stiffness")
@@ -33,14 +34,7 @@ class BarProblem:
     velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not math.isfinite(value):
-                raise ValueError(f"{field.name}: must be a finite number, got {value!r}")
-            if field.name in POSITIVE and value <= 0:
-                raise ValueError(f"{field.name}: must be positive, got {value!r}")
-        if self.gap < 0:
-            raise ValueError(f"gap: must not be negative, got {self.gap!r}")
+        require_numbers(self, POSITIVE, ("gap",))
 
     @property
     def travel(self) -> float:

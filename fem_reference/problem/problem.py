@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.stages import Stage, StageTable, newmark_stage
 
@@ -21,15 +22,6 @@ CELLS = ("quadrilaterals", "triangles")
 STARTS = ("zero", "consistent")
 SAME_MATRIX = 1e-15
 """Relative difference of two stages' weights, by rounding, below which they share a matrix."""
-
-
-def _require(condition: bool, field: str, rule: str, value: object) -> None:
-    if not condition:
-        raise ValueError(f"{field}: {rule}, got {value!r}")
-
-
-def _finite(field: str, value: float) -> None:
-    _require(math.isfinite(value), field, "must be a finite number", value)
 
 
 class Rectangle(NamedTuple):
@@ -78,57 +70,37 @@ class Problem:
 
     def __post_init__(self) -> None:
         self._check_polygon()
-        self._check_material()
-        self._check_foundation()
-        self._check_loads()
-        _require(self.elements >= 1, "elements", "must be at least 1", self.elements)
-        _require(self.degree in (1, 2), "degree", "must be 1 or 2", self.degree)
-
-    def _check_polygon(self) -> None:
-        count = len(self.vertices)
-        _require(count >= 3, "vertices", "must hold at least three points", count)
-        for x, y in self.vertices:
-            _require(math.isfinite(x) and math.isfinite(y), "vertices", "must be finite", (x, y))
-        for field, index in (("base", self.base), ("top", self.top)):
-            _require(0 <= index < count, field, f"must be an edge from 0 to {count - 1}", index)
-        _require(self.base != self.top, "top", "must differ from base", self.top)
-        _require(self.base_length > 0, "base", "must have a positive length", self.base_length)
-        _require(self.area > 0, "vertices", "must run counter-clockwise", self.vertices)
-
-    def _check_material(self) -> None:
-        for field in ("density", "young"):
-            value = getattr(self, field)
-            _finite(field, value)
-            _require(value > 0, field, "must be positive", value)
-        _require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
+        require_numbers(self, ("density", "young", "stiffness"), ("shear_stiffness", "ramp"))
+        require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
         strain = self.hypothesis == "plane strain"
         below = self.poisson < 0.5 or (self.poisson == 0.5 and not strain)
         rule = f"must be above -1 and {'below' if strain else 'at most'} 0.5 in {self.hypothesis}"
-        _require(self.poisson > -1 and below, "poisson", rule, self.poisson)
-
-    def _check_loads(self) -> None:
-        for field in ("pressure", "eccentricity", "traction", "gravity", "slope", "ramp"):
-            _finite(field, getattr(self, field))
-        _require(abs(self.slope) < 90, "slope", "must be between -90 and 90", self.slope)
-        _require(self.ramp >= 0, "ramp", "must not be negative", self.ramp)
-        inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
-        rule = f"must be below half the top edge, {self.top_length / 2:g}"
-        _require(inside, "eccentricity", rule, self.eccentricity)
-
-    def _check_foundation(self) -> None:
-        _finite("stiffness", self.stiffness)
-        _finite("shear_stiffness", self.shear_stiffness)
-        _require(self.stiffness > 0, "stiffness", "must be positive", self.stiffness)
-        _require(self.shear_stiffness >= 0, "shear_stiffness", "must not be negative", self.shear_stiffness)
-        is_known = self.foundation in FOUNDATIONS
-        _require(is_known, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
-        _require(self.cells in CELLS, "cells", f"must be one of {CELLS}", self.cells)
+        require(self.poisson > -1 and below, "poisson", rule, self.poisson)
+        require(self.foundation in FOUNDATIONS, "foundation", f"must be one of {FOUNDATIONS}", self.foundation)
+        require(self.cells in CELLS, "cells", f"must be one of {CELLS}", self.cells)
         w = self.patch_width
         if self.foundation == "patch":
             inside = w is not None and 0 < w <= self.base_length / 2
-            _require(inside, "patch_width", f"must be in (0, a/2] with a = {self.base_length!r}", w)
+            require(inside, "patch_width", f"must be in (0, a/2] with a = {self.base_length!r}", w)
         else:
-            _require(w is None, "patch_width", 'belongs to foundation = "patch" only', w)
+            require(w is None, "patch_width", 'belongs to foundation = "patch" only', w)
+        require(abs(self.slope) < 90, "slope", "must be between -90 and 90", self.slope)
+        inside = 2 * abs(self.eccentricity) < self.top_length or self.eccentricity == 0
+        rule = f"must be below half the top edge, {self.top_length / 2:g}"
+        require(inside, "eccentricity", rule, self.eccentricity)
+        require(self.elements >= 1, "elements", "must be at least 1", self.elements)
+        require(self.degree in (1, 2), "degree", "must be 1 or 2", self.degree)
+
+    def _check_polygon(self) -> None:
+        count = len(self.vertices)
+        require(count >= 3, "vertices", "must hold at least three points", count)
+        for x, y in self.vertices:
+            require(math.isfinite(x) and math.isfinite(y), "vertices", "must be finite", (x, y))
+        for field, index in (("base", self.base), ("top", self.top)):
+            require(0 <= index < count, field, f"must be an edge from 0 to {count - 1}", index)
+        require(self.base != self.top, "top", "must differ from base", self.top)
+        require(self.base_length > 0, "base", "must have a positive length", self.base_length)
+        require(self.area > 0, "vertices", "must run counter-clockwise", self.vertices)
 
     @cached_property
     def outline(self) -> Array:
@@ -278,20 +250,16 @@ class Scheme:
     table: StageTable | None = None  # stages of a scheme other than Newmark's: see `named_scheme`
 
     def __post_init__(self) -> None:
-        for field in ("gg", "step"):
-            _finite(field, getattr(self, field))
-        for field in ("alpha", "delta") if self.table is None else ():
-            _finite(field, getattr(self, field))
-            _require(getattr(self, field) >= 0, field, "must not be negative", getattr(self, field))
-        _require(0 <= self.gg <= 1, "gg", "must be from 0 to 1", self.gg)
-        _require(self.step > 0, "step", "must be positive", self.step)
-        _require(self.start in STARTS, "start", f"must be one of {STARTS}", self.start)
+        if self.table is None:
+            require_numbers(self, ("step",), ("alpha", "delta", "mass_damping", "stiffness_damping"))
+        require(0 <= self.gg <= 1, "gg", "must be from 0 to 1", self.gg)
+        require(math.isfinite(self.step) and self.step > 0, "step", "must be positive", self.step)
+        require(self.start in STARTS, "start", f"must be one of {STARTS}", self.start)
         for field in ("mass_damping", "stiffness_damping"):
             value = getattr(self, field)
-            _require(math.isfinite(value) and value >= 0, field, "must be finite and not negative", value)
-            _require(self.table is None or value == 0, field, "must be 0 for a scheme other than Newmark's", value)
+            require(self.table is None or value == 0, field, "must be 0 for a scheme other than Newmark's", value)
         consistent = self.start == "consistent" or not self.staggered
-        _require(consistent, "start", f"must be 'consistent' for {self.name!r}", self.start)
+        require(consistent, "start", f"must be 'consistent' for {self.name!r}", self.start)
 
     @property
     def name(self) -> str:

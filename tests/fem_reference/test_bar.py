@@ -9,12 +9,12 @@ import pytest
 from conftest import thinned
 from oracles.bars import OTHER, PAPER, damped_by_kernel
 
-from fem_reference.exact import continuum, damped
+from fem_reference.exact import continuum
 from fem_reference.exact.bar import Bar, applicable
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.scheme.modal import applicable as scheme_applicable
-from fem_reference.scheme.modal import roots, weighted_response
+from fem_reference.scheme.modal import weighted_response
 
 SOFT = Bar(0.8, 2.6, 3100.0, 2.5e10, 9e7, 1.2e6)
 
@@ -89,29 +89,6 @@ def test_wave_numbers_to_the_last_digits(kappa):
             )
 
 
-@pytest.mark.parametrize("kappa", [1e-9, 1.0, 1e9])
-def test_wave_numbers_settle_in_few_steps(kappa, monkeypatch):
-    """A root that Newton's method has found is the end of its bracket, and not bisected away from again."""
-    steps, arctan2 = [], np.arctan2
-    monkeypatch.setattr(np, "arctan2", lambda y, x: (steps.append(len(x)), arctan2(y, x))[1])
-    wave_numbers(kappa, 500)
-    assert len(steps) <= 6
-
-
-@pytest.mark.parametrize("kappa", [1e-6, 0.3, 2.0, 55.0, 1e9])
-@pytest.mark.parametrize("column", ["displacement", "contact_pressure"])
-def test_shares_sum_to_one(kappa, column):
-    b = wave_numbers(kappa, 1024)
-    assert (shares(column, b, kappa) * cut_off(1024, 1024)).sum() == pytest.approx(1.0, abs=1e-13)
-
-
-@pytest.mark.parametrize(("factor", "frequency"), [(1, 327.682), (10, 455.258), (100, 475.600)])
-def test_first_frequencies(factor, frequency):
-    bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * factor, 5e6)
-    assert bar.frequencies(1)[0] == pytest.approx(frequency, abs=5e-4)
-    assert bar.modes(Scheme(0.5, 1.0, 1.0, 1e-3))[0].frequency == pytest.approx(bar.frequencies(1)[0], rel=1e-15)
-
-
 def test_mode_roots():
     scheme = Scheme(0.5, 1.0, 0.97, 4e-3)
     for mode in OTHER.modes(scheme, 4):
@@ -119,13 +96,6 @@ def test_mode_roots():
         h /= 1 + h / 2
         assert mode.eigenvalues.sum() == pytest.approx(1 - h / 2 + 0.97 * (1 - h), abs=1e-14)
         assert mode.eigenvalues[:2].prod() == pytest.approx(0.97 * (1 - h / 2), abs=1e-14)
-
-
-@pytest.mark.parametrize("bar", [PAPER, OTHER])
-def test_static_value_is_reached(bar):
-    result = bar.solve(Scheme(0.5625, 1.0, 1.0, 5e-3), 4000)
-    for name, column in result.columns.items():
-        assert column[-1] == pytest.approx(bar.static()[name], rel=1e-11)
 
 
 def continuum_by_modes(bar, scheme, steps):
@@ -156,18 +126,6 @@ def test_continuum_waits_for_the_wave():
     early = PAPER.continuum(Scheme(0.5, 1.0, 1.0, PAPER.travel / 100), 99)
     assert np.all(early.columns["contact_pressure"] == 0)
     assert np.all(early.columns["displacement"][:49] == 0) and early.columns["displacement"][60] < 0
-
-
-@pytest.mark.parametrize(("alpha", "delta", "order"), [(0.25, 0.5, 2.0), (0.5, 1.0, 1.0)])
-def test_roots_tend_to_the_damped_continuum_mode(alpha, delta, order):
-    # One mode, so that no front spoils the order: ln(lambda) / dt against -c / 2 + i w_d.
-    w, c, steps = 300.0, 40.0, np.array([4e-5, 2e-5, 1e-5, 5e-6])
-    exact = -c / 2 + 1j * np.sqrt(w * w - c * c / 4)
-    error = []
-    for dt in steps:
-        upper = roots(w * dt, Scheme(alpha, delta, float(np.exp(-c * dt)), float(dt)))[0]
-        error.append(abs(np.log(upper) / dt - exact))
-    assert np.polyfit(np.log(steps), np.log(error), 1)[0] == pytest.approx(order, abs=0.02)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-5, 3e-3])
@@ -238,23 +196,6 @@ def test_damped_bar_against_the_kernel(kappa, a, step):
     for column, row in zip(columns, found, strict=True):
         for i in (5, 11, 18):
             assert row[i] == pytest.approx(damped_by_kernel(column, step * (i + 1), kappa, a), abs=2e-11)
-
-
-@pytest.mark.parametrize(
-    ("gg", "dt"), thinned([(0.5, 1e-6), (0.98, 1e-2), (0.01, 1e-3), (0.5, 1e-9), (0.999999, 1e-6)], 2)
-)
-@pytest.mark.long
-def test_damped_bar_sums_a_bounded_number_of_modes(gg, dt, monkeypatch):
-    asked, waves = [], []
-    wave_numbers_of, undamped = damped.wave_numbers, continuum.undamped
-    monkeypatch.setattr(damped, "wave_numbers", lambda kappa, n: (asked.append(n), wave_numbers_of(kappa, n))[1])
-    monkeypatch.setattr(continuum, "undamped", lambda c, t, k: (waves.append(t), undamped(c, t, k))[1])
-    result = PAPER.continuum(Scheme(0.5, 1.0, gg, dt), 20000)
-    assert asked and max(asked) <= damped.FRONT_MODES
-    assert sum(((t / 2) ** 2).sum() for t in waves) <= damped.WAVE_WORK
-    if gg == 0.98:
-        for name, column in result.columns.items():
-            assert column[-1] == pytest.approx(PAPER.static()[name], rel=1e-12)
 
 
 def test_late_damped_fronts_are_refused():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.bar_oracle import Delayed, random_problem
-from oracles.landing import stiff_opening
 
 from fem_reference import Bar, Scheme
 from fem_reference.events.bar_events import BarMotion, solve
@@ -88,15 +87,6 @@ def test_the_bouncing_bar_of_doyen_ern_and_piperno(ratio: int, times: list[float
     assert found[1:] == pytest.approx(times, rel=1e-13)
     # on rigid ground: release at 5/3, impact at 11/3, release at 13/3; the delay is of order 1 / kappa
     assert found[1:] == pytest.approx([5 / 3, 11 / 3, 13 / 3], abs=3.0 / ratio)
-
-
-def test_the_first_opening_of_a_stiff_spring() -> None:
-    x = stiff_opening()
-    assert x == pytest.approx(0.740850429779883, rel=1e-14)
-    for problem in (replace(PAPER, base_stiffness=2e11), replace(OTHER, base_stiffness=6e11)):
-        motion = solve(problem, 6 * problem.travel)
-        # what is left of the first wave is exp(-2 kappa), far below a float here
-        assert switch_times(motion)[0] / problem.travel == pytest.approx(5 + x / problem.kappa, rel=1e-15)
 
 
 def test_without_an_opening_it_is_the_locked_bar() -> None:

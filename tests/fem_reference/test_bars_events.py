@@ -147,26 +147,6 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
 
 
-def test_velocities_and_displacements_on_the_way() -> None:
-    expected = [-0.0088908684872307, 0.10889086621996, 0.54983429252364, 0.35016570974363]
-    assert solve(B2, 6.0).at([3.0]).mean_velocity[:, 0] == pytest.approx(expected, rel=5e-14)
-    motion = solve(B6, 8.0)
-    points, weights = np.polynomial.legendre.leggauss(
-        40
-    )  # fronts stand at t = 8 s where the integrand is smooth enough
-    means = [
-        sum(w / 2 * motion.point(i, (1 + x) / 2, [8.0]).displacement[0] for x, w in zip(points, weights, strict=True))
-        for i in range(2)
-    ]
-    assert means == pytest.approx([2.9325529968093, 3.3327264197589], rel=2e-4)
-
-
-def test_a_stop_is_the_limit_of_springs() -> None:
-    closed_form = 1.9279387145
-    rigid = replace(B11, joints=(opens(),) * 6)
-    assert solve(rigid, 0.04).at([0.04]).mean_velocity[5, 0] == pytest.approx(closed_form, rel=1e-9)
-
-
 RANDOM = range(6)
 
 
@@ -250,23 +230,6 @@ def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
         assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
 
 
-@pytest.mark.long
-def test_scaled_loads_scale_the_motion_and_keep_the_instants() -> None:
-    problem, end = random_problem(0)
-    motion = solve(problem, end)
-    larger = replace(
-        problem,
-        bars=tuple(replace(one, velocity=3 * one.velocity) for one in problem.bars),
-        joints=tuple(replace(one, gap=3 * one.gap) for one in problem.joints if one),
-        gravity=3 * problem.gravity,
-        base=sine(1.2000000000000002, 0.5, quarters=1),
-        top=recorded([0.25, 1.0, 3.0], [0, 3, 1.5]),
-    )
-    scaled = solve(larger, end)
-    assert times(scaled) == pytest.approx(times(motion), rel=1e-14)
-    assert scaled.at([end]).mean_velocity == pytest.approx(3 * motion.at([end]).mean_velocity, rel=1e-13)
-
-
 def test_cut_bars_that_stay_bonded_move_as_one() -> None:
     whole = BarsProblem((bar(-1.0, 2.0),), (opens(10),), gravity=0.05)
     cut = BarsProblem((bar(-1.0, 0.75), bar(-1.0, 1.25)), (opens(10), BONDED), gravity=0.05)
@@ -278,13 +241,6 @@ def test_cut_bars_that_stay_bonded_move_as_one() -> None:
     above = two.point(1, 0.5, [1.0, 6.5]), one.point(0, 1.25, [1.0, 6.5])
     for field in ("displacement", "velocity", "stress"):
         assert getattr(above[0], field) == pytest.approx(getattr(above[1], field), rel=1e-14, abs=1e-15)
-
-
-def test_a_column_turned_over_moves_alike() -> None:
-    back = replace(B2, bars=(UNIT, UNIT, UNIT, bar(-1.0)))
-    turned = solve(back, 6.0)
-    mirrored = {(4 - int(s.corner), s.kind, round(s.time, 12)) for s in solve(B2, 6.0).switches}
-    assert {(int(s.corner), s.kind, round(s.time, 12)) for s in turned.switches} == mirrored
 
 
 def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None:
@@ -299,22 +255,6 @@ def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None
     strains = (weight - 2500 * 9.81 / 2).sum() / 1e9
     assert top.displacement[0] == pytest.approx(-weight.sum() / 1e10 - strains, rel=1e-14)
     assert top.stress[0] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_bars_settle_where_a_weight_put_on_slowly_would_leave_them() -> None:
-    """A bar dropped from no height swings about the state at rest, in which another one begins."""
-    column = BarsProblem((bar(),), (opens(3.0),), gravity=0.2)
-    period = np.linspace(0.0, 40.0, 4001)
-    swing = solve(column, 40.0).point(0, 0.5, period).displacement
-    rest = solve(replace(column, settled=True), 1.0).point(0, 0.5, [0.0, 1.0]).displacement
-    assert rest[0] == pytest.approx(rest[1], rel=1e-15)
-    assert swing.mean() == pytest.approx(rest[0], rel=0.05)
-
-
-def test_a_layer_without_joints_reflects_at_its_faces() -> None:
-    layered = BarsProblem((bar(length=3.0, density=4.0), bar(length=3.0)), (None, BONDED), top=half_sine(1.0, 0.5))
-    force = solve(layered, 4.0).at([3.25]).force[1, 0]
-    assert force == pytest.approx(2 * 2 / 3, rel=1e-14)  # 2 z2 / (z1 + z2)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.block_oracle import Integrated, random_problem
-from oracles.landing import first_landing, micro_impacts
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import BlockProblem
@@ -72,28 +71,6 @@ def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
     history = motion.at(np.array([3, 6, 9]) * travel(problem))
     assert history.displacement[1] == pytest.approx(displacement, rel=2e-13, abs=1e-17)
     assert history.contact_pressure == pytest.approx(pressure, rel=5e-12)  # printed with twelve digits
-
-
-def test_the_first_landing_depends_on_the_block_alone() -> None:
-    for problem in (PAPER, OTHER, replace(OTHER, height=0.7, pressure=3e5, stiffness=1e8)):
-        landing = first_landing(problem.height, problem.density, problem.young)
-        motion = solve(problem, 1.01 * landing)
-        assert switch_times(motion) == pytest.approx([landing], rel=1e-15)
-    assert first_landing(2.0, 2700.0, 1e9) * 1054.0925533895 == pytest.approx(3.42851514980297, rel=1e-13)
-    touch = solve(PAPER, 0.01).at([first_landing(2.0, 2700.0, 1e9)])
-    assert touch.gap_velocity[:, 0] == pytest.approx([-3.75741900029] * 2, rel=1e-11)
-
-
-# p/E, first release, contacts, end of the last contact over a/c, rebound over impact momentum
-def test_micro_impacts_on_rigid_ground() -> None:
-    rigid = micro_impacts()
-    assert rigid.times == pytest.approx([0.0, 0.65785098512048, 1.2324367791597], abs=1e-13)
-    assert rigid.restitution == pytest.approx(0.89132203751993, rel=1e-13)
-    # the limit of stiff springs: contact lasts O(1/sqrt(p)), which shifts everything by as much
-    stiff = solve(replace(OTHER, pressure=0.0, velocity=-1.0, stiffness=3e9 * 1e10), 3 * travel(OTHER))
-    closing = [s.time / travel(OTHER) for s in stiff.switches if s.kind == "closes" and s.corner == "M"]
-    assert closing == pytest.approx(rigid.times[1:], abs=1e-4)
-    assert stiff.at([stiff.end]).velocity[1, 0] == pytest.approx(rigid.restitution, abs=1e-4)
 
 
 @pytest.mark.parametrize("seed", thinned([5, 0, 2, 1, 3, 4], 3))

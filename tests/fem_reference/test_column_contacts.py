@@ -259,22 +259,6 @@ def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: f
         before = state
 
 
-def test_doubled_loads_double_the_motion_bit_by_bit() -> None:
-    column, drive, dt = random_column(6)
-    larger = replace(
-        column,
-        contacts=tuple(replace(one, gap=2 * one.gap) for one in column.contacts),
-        velocities=tuple(2 * velocity for velocity in column.velocities),
-        gravity=2 * column.gravity,
-    )
-    doubled = Excitation(*(2 * part for part in vars(drive).values()))
-    names = ["displacement", "contact_pressure"]
-    one = solve_contacts(column, [3] * 4, 2, scheme(AVERAGE, dt), drive, names)
-    two = solve_contacts(larger, [3] * 4, 2, scheme(AVERAGE, dt), doubled, names)
-    assert np.array_equal(one.states, two.states)
-    assert all(np.array_equal(two.columns[name], 2 * one.columns[name]) for name in names)
-
-
 def test_contacts_that_never_slip_are_bonded_springs() -> None:
     strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
     springs = [(0.0, 3e9), (1.0, 1e9)]
@@ -361,16 +345,6 @@ def test_no_numbers_are_no_forces() -> None:
     problem, q = random_problem(np.random.default_rng(1), boxed=False)
     with pytest.raises(UnsolvedStepError):
         problem.solve(q * math.nan, np.zeros(5, np.int8), None)
-
-
-def test_the_step_of_another_delta_has_the_same_states_and_forces() -> None:
-    column, drive, dt = random_column(6)
-    drive = Excitation(*(part[:2] for part in vars(drive).values()))
-    first = [
-        list(ContactStepper(column, [2] * 4, 1, scheme((0.5, delta), dt)).march(drive))[1] for delta in (0.5, 1.0, 2.0)
-    ]
-    for state in first[1:]:
-        assert np.array_equal(state.states, first[0].states) and np.array_equal(state.force, first[0].force)
 
 
 @pytest.mark.parametrize(

@@ -77,35 +77,6 @@ def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_event
     np.testing.assert_allclose(state.slip[:, 0], oracle.slip, rtol=0, atol=1e-8 * scale)
 
 
-@pytest.mark.long
-def test_more_digits_give_the_same_motion() -> None:
-    # the second computation of the digit in which the printed numbers of A3 are off
-    known = COLUMNS["A3"]
-    finer = solve(known.problem, known.end, digits=240)
-    assert finer.digits > motion_of("A3").digits
-    for one, other in zip(motion_of("A3").switches, finer.switches, strict=True):
-        assert abs(Decimal(one.midpoint) - Decimal(other.midpoint)) <= Decimal(one.radius) + Decimal(other.radius)
-        assert (one.joint, one.kind) == (other.joint, other.kind)
-    assert float(finer.at([0.025]).displacement[1, 0]) == pytest.approx(0.00052609524713435, rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("k", "release", "restitution"),
-    [
-        (2.0, 2.64272535338, 0.930732420604),
-        (20.0, 1.873679835, 0.999964928635),
-        (200.0, 1.407484781, 0.932300965885),
-    ],
-)
-def test_one_block_bounces_as_is_known(k: float, release: float, restitution: float) -> None:
-    problem = ColumnProblem((ColumnBlock(1.0, 1.0, 1.0, -1.0),), (ColumnJoint(k),))
-    motion = solve(problem, 3.0)
-    # the first contact of a stiff spring is not the last one
-    last = [switch for switch in motion.switches if switch.kind == "opens"][-1]
-    assert last.time == pytest.approx(release, abs=1e-9)
-    assert float(motion.at([3.0]).velocity[0, 0]) == pytest.approx(restitution, abs=1e-12)
-
-
 def test_energy_is_conserved_with_what_friction_takes() -> None:
     for name in ("A1", "A8"):
         energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 60)).energy
@@ -116,34 +87,6 @@ def test_energy_is_conserved_with_what_friction_takes() -> None:
     state = motion.at(np.linspace(0, 0.2, 60))
     np.testing.assert_allclose(state.energy, state.energy[0], rtol=1e-12)
     assert state.friction[-1] > 0.5 * state.energy[0]
-
-
-def test_all_loads_scaled_scale_the_motion_and_not_its_instants() -> None:
-    known = COLUMNS["A1"]
-    scaled = replace(
-        known.problem,
-        blocks=tuple(replace(block, velocity=4 * block.velocity) for block in known.problem.blocks),
-        joints=tuple(replace(joint, gap=4 * joint.gap) for joint in known.problem.joints if joint),
-        gravity=4 * known.problem.gravity,
-    )
-    motion = solve(scaled, known.end)
-    assert labels(motion) == labels(motion_of("A1"))
-    for one, other in zip(motion.switches, motion_of("A1").switches, strict=True):
-        assert one.time == pytest.approx(other.time, rel=1e-13)
-    np.testing.assert_allclose(motion.at([0.04]).force, 4 * motion_of("A1").at([0.04]).force, rtol=1e-12)
-
-
-@pytest.mark.long
-def test_shear_turned_round_swaps_the_signs_of_slip() -> None:
-    known = COLUMNS["S3"]
-    turned = replace(
-        known.problem,
-        blocks=tuple(replace(block, velocity=-block.velocity) for block in known.problem.blocks),
-        base_motion=drives.sine(-0.004 * 10 * math.pi, 5.0, integral=True, quarters=1),
-    )
-    motion = solve(turned, 0.15)
-    swap = str.maketrans("+-", "-+")
-    assert labels(motion) == [label.translate(swap) for label in labels(motion_of("S3"))[: len(motion.switches)]]
 
 
 def test_blocks_in_common_flight_touch_without_force() -> None:
@@ -176,22 +119,6 @@ def test_a_mirrored_pair_switches_in_one_ball() -> None:
     assert len(motion.simultaneous) == len(motion.switches) / 2
     assert labels(motion)[:2] == ["1C", "2C"]
     assert motion.at([0.02]).velocity.sum() == pytest.approx(0.0, abs=1e-14)
-
-
-@pytest.mark.long
-def test_a_bonded_joint_is_one_that_never_slips() -> None:
-    known = COLUMNS["S2"]
-    strong = replace(
-        known.problem, joints=tuple(joint and replace(joint, strength=1e9) for joint in known.problem.joints)
-    )
-    bonded = replace(
-        known.problem,
-        joints=tuple(joint and replace(joint, strength=None) for joint in known.problem.joints),
-        law="bonded",
-    )
-    one, other = (solve(problem, 0.05) for problem in (strong, bonded))
-    assert one.switches == other.switches == ()
-    np.testing.assert_allclose(one.at([0.05]).force, other.at([0.05]).force, rtol=1e-13)
 
 
 def test_a_joint_without_strength_lets_its_block_coast() -> None:
@@ -247,23 +174,6 @@ def test_a_graze_is_named_and_not_guessed() -> None:
     motion = solve(problem, 0.1)
     near = [switch.time for switch in motion.switches] + list(motion.touches)
     assert all(abs(time - 0.5 / 9.8125) < 1e-7 for time in near)
-
-
-@pytest.mark.long
-def test_a_force_that_only_fades_takes_digits_and_not_for_ever() -> None:
-    # overdamped by the half-space: the force falls like an exponential, and its joint never opens
-    problem = ColumnProblem(
-        (ColumnBlock(1.0, 200, RIGID), ColumnBlock(1.0, 2500, RIGID, -1.0)),
-        (None, ColumnJoint(1e6)),
-        base="transmitting",
-        impedance=2e4,
-    )
-    motion = solve(problem, 14.0)
-    assert motion.switches == ()
-    assert motion.digits > 60  # of sixty not half are left where the force is below 1e-40
-    force = motion.at([1.0, 5.0, 9.0, 14.0]).force[1]
-    assert 0 < force[3] < 1e-48
-    assert force[1] / force[0] == pytest.approx(force[2] / force[1], rel=1e-9)
 
 
 def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.MonkeyPatch) -> None:

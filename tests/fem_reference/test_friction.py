@@ -105,39 +105,6 @@ def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, f
         assert (speed[-1] == 0) == (expected == 0)
 
 
-@pytest.mark.long  # the short ones: a shaken base as a turned one, a base that rises, a base that all points stick to
-def test_a_base_that_starts_to_move_carries_the_block_along():
-    """A base at the speed V under a block at rest: friction gives it that speed over a way V^2 / (2 tan g)."""
-    V, begin, g, tan = 0.5, 0.3, 9.81, np.tan(np.radians(25.0))
-    motion = Motion((0.0, begin, begin + 1.0), (0.0, 0.0, V), (0.0, 0.0, 0.0))
-    problem = replace(incline(0.0, g, elements=2), motion=motion)
-    names = ("largest_slide", "friction_loss", "horizontal_displacement")
-    run = solve_unilateral(problem, replace(CONSTANT, step=1e-3), 700, RUBBING, columns=names)
-    way = V**2 / (2 * tan * g)
-    # at rest under the block the base has moved back: what slides, slides to -x; one step of the way is V dt, 1.8 %
-    assert run.columns["largest_slide"][-1] == pytest.approx(way, rel=0.02)
-    assert run.columns["largest_slide"][250] == 0.0
-    assert run.columns["friction_loss"][-1] == pytest.approx(10800 * g * tan * way, rel=0.03)
-    ahead = run.columns["horizontal_displacement"][-1] - V * 0.4
-    assert ahead == pytest.approx(-way, rel=0.02)
-
-
-@pytest.mark.parametrize("contact", thinned([RUBBING, GLUED, Unilateral()], 3))
-def test_a_base_that_rises_is_a_block_that_falls_on_it(contact):
-    """As seen from a base that moves at a constant speed from t = 0 on, the block has minus this speed."""
-    problem, speed = replace(incline(20.0), pressure=1e5, eccentricity=0.3), 0.05
-    rising = Motion((0.0, 1.0), (0.0, 0.0), (0.0, speed))
-    contact = replace(contact, gap=1e-5)
-    fixed = solve_unilateral(problem, CONSTANT, 200, replace(contact, velocity=-speed)).columns
-    carried = solve_unilateral(replace(problem, motion=rising), CONSTANT, 200, contact).columns
-    way = speed * CONSTANT.step * np.arange(1, 201)
-    size = np.abs(fixed["displacement"]).max()
-    assert 0 < carried["open_share"].mean() < 1
-    assert np.abs(carried["displacement"] - fixed["displacement"] - way).max() <= 1e-9 * size
-    for name in ("contact_pressure", "base_shear", "largest_slide", "friction_loss", "switching_loss"):
-        assert np.abs(carried[name] - fixed[name]).max() <= 1e-8 * np.abs(fixed[name]).max(), name
-
-
 @pytest.mark.parametrize("rule", ["newmark", "implicit"])
 def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one(rule):
     still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))

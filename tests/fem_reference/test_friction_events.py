@@ -8,8 +8,8 @@ import pytest
 from conftest import thinned
 from oracles.friction_oracle import Slipping, slipping_problem
 
-from fem_reference.events.block_events import BlockMotion, solve
-from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockProblem
+from fem_reference.events.block_events import solve
+from fem_reference.events.block_model import RIGHT, STICKS, BlockProblem
 
 HALF = math.degrees(math.atan(0.5))  # tan(phi) = 0.5
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6, shear_stiffness=1e9)
@@ -55,20 +55,6 @@ def test_the_motion_is_that_computed_elsewhere(
     assert [s.time for s in found] == pytest.approx([float(one[2]) for one in known], rel=0, abs=6e-14)
     for time, expected in values.items():
         assert motion.at([time]).displacement[:3, 0] == pytest.approx(expected, rel=5e-11)
-
-
-def shift(problem: BlockProblem, *times: float) -> np.ndarray:
-    """Mean slide of the base [mm]."""
-    return 1e3 * solve(problem, times[-1]).at(times).slide.mean(axis=0)
-
-
-@pytest.mark.long
-def test_a_stable_block_on_an_incline_creeps() -> None:
-    assert shift(INCLINE, 0.1, 0.2, 0.3, 0.4) == pytest.approx([1.790, 3.732, 5.532, 7.394], abs=6e-4)
-    flat = shift(replace(INCLINE, friction=22.0), 0.1, 0.4)
-    assert np.diff(flat) / 0.3 == pytest.approx(27.3, abs=0.05)
-    stiff = shift(replace(INCLINE, friction=22.0, shear_stiffness=1e9), 0.1, 0.4)
-    assert np.diff(stiff) / 0.3 == pytest.approx(20.6, abs=0.05)
 
 
 def duration(problem: BlockProblem, travels: float) -> float:
@@ -119,34 +105,6 @@ def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> 
         moved, states = np.diff(history.slipped[c]), history.states[c, :-1]
         assert np.all(np.sign(states) * moved * (np.abs(states) == RIGHT) >= -1e-14)
         assert np.abs(moved[(states == STICKS) & (history.states[c, 1:] == STICKS)]).max(initial=0.0) <= 1e-14
-
-
-def both(motion: BlockMotion, kind: str) -> list[list[float]]:
-    return [[s.time for s in motion.switches if s.corner == corner and s.kind == kind] for corner in "MN"]
-
-
-@pytest.mark.parametrize("friction", thinned([20.0, 5.0], 2))
-def test_corners_that_switch_together(friction: float) -> None:
-    """A flat load on a block that bulges: the corners slip apart and together again at the same instants."""
-    motion = solve(replace(PAPER, friction=friction, pressure=1e6, poisson=0.3), 0.05)
-    for kind in ("opens", "closes", "slips", "sticks"):
-        M, N = both(motion, kind)
-        assert M
-        assert M == N
-    history = motion.at(np.linspace(0, 0.05, 100))
-    assert not history.displacement[[0, 2, 5]].any()
-    assert history.slide[0] == pytest.approx(-history.slide[1], rel=1e-14, abs=1e-18)
-
-
-def test_starts_at_rest() -> None:
-    idle = solve(replace(PAPER, pressure=0.0, friction=10.0), 0.01)
-    assert not idle.switches
-    assert not idle.at([0.005]).displacement.any()
-    pushed = solve(replace(PAPER, pressure=0.0, traction=1e3, friction=10.0), 1e-3)  # nothing presses, nothing holds
-    assert set(pushed.at([1e-4]).states[:, 0]) <= {OPEN, RIGHT, LEFT}
-    assert solve(replace(PAPER, friction=10.0), 0.01).closed_at_start == (False, False)
-    weighed = solve(INCLINE, 0.01)
-    assert weighed.at([0.001]).states[:, 0].tolist() == [STICKS, STICKS]
 
 
 def test_bad_input_is_refused_by_name() -> None:

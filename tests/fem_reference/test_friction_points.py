@@ -110,21 +110,6 @@ def test_many_points_set_one_state_after_the_other():
     assert singly > 20
 
 
-def test_a_sliding_point_that_turns_sticks_first_or_slides_back():
-    """One point under one force: the four answers of the return mapping, by hand."""
-    points = np.diag([1e-9, 1e-9]), np.array([1e-9]), np.array([1e9])
-    for slip, state in ((0.0, 1), (4e-7, 1), (1e-5, 2), (-1e-5, -2)):
-        for before in (0, 1, 2, -2):
-            gap, states = np.full(1, -1e-6), np.full(1, before, dtype=np.int8)
-            at_start = gap if before else -gap * 0
-            step = PointStep(*points, np.array([-2e-6, slip]), at_start, states, 0.5, np.full(1, 100.0))
-            found = step.contact()
-            # w_f = -2e-6 m on two compliances of 1e-9: N = 1000 N, and half of it and 100 N are the friction
-            assert found.trial.normal[0] == pytest.approx(1000.0)
-            assert found.states[0] == state
-            assert found.trial.shear[0] == pytest.approx(-slip * 0.5e9 if state == 1 else -np.sign(slip) * 600.0)
-
-
 def test_a_point_that_turns_is_held_first():
     """On a body softer than the shear spring either direction asks for the other one; held, the point is at rest."""
     for before in (2, -2):

@@ -1,6 +1,5 @@
 """Histories, savings, modes and fields of the finite-element model."""
 
-import meshio
 import numpy as np
 import pytest
 from conftest import thinned
@@ -8,7 +7,6 @@ from faults import seams
 from oracles.elements import INCLINED, make
 
 from fem_reference import Bar, Scheme, highest_frequency, modes, solve
-from fem_reference.mesh.model import build
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
@@ -69,14 +67,6 @@ def test_order_in_the_element_size(degree, order, full):
     assert slope == pytest.approx(order, abs=0.06)
 
 
-def test_order_in_the_element_size_under_average_acceleration():
-    scheme, meshes = Scheme(0.25, 0.5, 1.0, 1e-3), [64, 96, 128, 192]
-    bar = Bar.of(make()).solve(scheme, 100)
-    error = [errors(solve(make(elements=n, degree=2), scheme, 100), bar) for n in meshes]
-    # The front is resolved from h <= c dt / 40 on only.
-    assert -np.polyfit(np.log(meshes), np.log(error), 1)[0] == pytest.approx(4.0, abs=0.15)
-
-
 def test_first_axial_mode():
     first = modes(make(elements=64, degree=1), CONSTANT)[0]
     assert first.frequency == pytest.approx(327.686, abs=5e-4)
@@ -119,66 +109,6 @@ def test_central_differences_are_stable_up_to_the_highest_frequency():
     outside = solve(problem, Scheme(0.0, 0.5, 1.0, 1.001 * limit), 800)
     assert np.abs(inside.columns["displacement"]).max() < 0.03
     assert np.abs(outside.columns["displacement"]).max() > 1.0
-
-
-DIGITS = [(1e-3, 0.1), (1e-3, 1e-3), (1e6, 1e-3), (1e12, 1e-3)]
-STARTS = ("zero", "consistent")
-
-
-@pytest.mark.parametrize(
-    ("start", "factor", "dt"),
-    thinned([(start, *case) for i, case in enumerate(DIGITS) for start in STARTS[:: 1 - 2 * (i % 2)]], 2),
-)
-def test_stiff_and_soft_springs_keep_nine_digits(start, factor, dt):
-    mp = pytest.importorskip("mpmath").mp
-    problem, scheme = make(p=factor * 1e9, elements=4), Scheme(0.25, 0.5, 1.0, dt, start)
-    result, model = solve(problem, scheme, 60), build(problem)
-    with mp.workdps(40):
-        M, K, F = (mp.matrix(part.tolist()) for part in (model.M.toarray(), model.K.toarray(), model.F))
-        dt, quarter = mp.mpf(scheme.step), mp.mpf(0.25)
-        inverse = (M + quarter * dt**2 * K) ** -1
-        D, V = F * 0, F * 0
-        A = M**-1 * F if start == "consistent" else F * 0
-        exact = []
-        for _ in range(60):
-            ahead = D + dt * V + dt**2 * quarter * A
-            new = inverse * (F - K * ahead)
-            D, V, A = ahead + quarter * dt**2 * new, V + dt / 2 * (A + new), new
-            exact.append(
-                [float(sum(a * b for a, b in zip(model.observers[n], D, strict=True))) for n in result.columns]
-            )
-    for column, expected in zip(result.columns.values(), 5e6 * np.array(exact).T, strict=True):
-        assert np.abs(column - expected).max() <= 1e-9 * np.abs(expected).max()
-
-
-@pytest.mark.parametrize("change", [{}, {"poisson": 0.3}, {"vertices": INCLINED, "base": 1, "top": 3}])
-def test_fields_show_the_whole_block(tmp_path, change):
-    problem, scheme = make(**change, elements=4), Scheme(0.5625, 1.0, 0.5, 1.0)
-    path = tmp_path / "block.vtu"
-    # Steps far above the period and much damping: the last step is static.
-    result = solve(problem, scheme, 60, columns=("displacement",), fields=path)
-    solve(problem, scheme, 60, columns=("displacement",), full=True, fields=tmp_path / "full.vtu")
-    field, full = meshio.read(path), meshio.read(tmp_path / "full.vtu")
-    assert field.point_data["displacement"].shape == (25, 3)
-    scale = np.abs(full.point_data["displacement"]).max()
-    assert np.abs(field.point_data["displacement"] - full.point_data["displacement"]).max() <= 1e-10 * scale
-    stress = field.cell_data["stress"][0]
-    assert stress.shape == (16, 3)
-    assert np.abs(stress - full.cell_data["stress"][0]).max() <= 1e-9 * np.abs(stress).max()
-    if not change:
-        assert np.allclose(stress, [0, -5e6, 0], atol=50)
-        assert np.isclose(result.columns["displacement"][-1], -0.01, rtol=1e-6)
-
-
-@pytest.mark.long  # the short ones of test_fields count the frames of smaller meshes
-def test_field_series_is_decimated(tmp_path):
-    path = tmp_path / "block.xdmf"
-    solve(make(elements=2), CONSTANT, 403, fields=path)
-    with meshio.xdmf.TimeSeriesReader(str(path)) as reader:
-        points, cells = reader.read_points_cells()
-        times = [reader.read_data(k)[0] for k in range(reader.num_steps)]
-    assert len(points) == 9 and len(cells[0].data) == 4
-    assert 100 < len(times) <= 201 and times[-1] == pytest.approx(0.403)
 
 
 def test_bad_requests_are_refused(tmp_path):

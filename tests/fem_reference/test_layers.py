@@ -36,33 +36,6 @@ def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
     assert found.estimate < 1e-6
 
 
-def test_echoes_on_a_rigid_base_never_end() -> None:
-    found = layers.solve_layers(Ground((SOIL,), "shear"), STEPS, 2000, drive, ("displacement",))
-    travel = SOIL.thickness / SPEED
-    exact = sum(2 * (-1.0) ** n * ricker(found.time - (2 * n + 1) * travel) for n in range(80))
-    assert np.abs(found.columns["displacement"] - exact).max() < 1e-7 * np.abs(exact).max()
-
-
-def test_surface_over_base_is_the_secant() -> None:
-    omega = np.array([3.0, 25.0, 40.0, 111.0])
-    moved, _ = layers.amplitudes(Ground((SOIL,), "shear"), omega, ("displacement",))
-    assert np.allclose(moved["displacement"] * 1j * omega, 1 / np.cos(omega * SOIL.thickness / SPEED), rtol=1e-12)
-
-
-def test_cutting_a_layer_changes_nothing() -> None:
-    half = Stratum(6.0, SOIL.density, SOIL.young, SOIL.poisson)
-    columns, heights = ("displacement", "contact_pressure", "displacement_1", "stress_2"), (2.0, 6.0)
-    omega = np.array([5.0, 70.0]) - 1j
-    for impedance in (None, 1e6):
-        whole, cut = (
-            layers.amplitudes(Ground(strata, "pressure", (), impedance), omega, columns, heights)
-            for strata in ((SOIL,), (half, half))
-        )
-        for one, other in zip(whole, cut, strict=True):
-            for name in columns:
-                assert np.allclose(one[name], other[name], rtol=1e-12)
-
-
 @pytest.mark.parametrize("ratio", [0.25, 0.5, 1.0, 2.0])
 def test_a_joint_transmits_what_its_closed_form_says(ratio: float) -> None:
     """Half-space, joint, layer of the same material: the surface shows 2 T / (1 - R e^(-2ikH)) of the wave."""
@@ -76,15 +49,6 @@ def test_a_joint_transmits_what_its_closed_form_says(ratio: float) -> None:
     exact = 2 * transmitted * turn / (1 - reflected * turn**2)
     assert abs(transmitted) == pytest.approx((1 + (0.5 / ratio) ** 2) ** -0.5)
     assert abs(moved["displacement"] * 1j * omega - exact) < 1e-12 * abs(exact)
-
-
-def test_a_joint_above_the_base_of_a_rigid_column_is_a_spring_under_a_mass() -> None:
-    """At low frequency the column is a mass on the joint: stress on the base = w^2 m u."""
-    ground, omega = Ground((SOIL,), "shear", ((0.0, 1e4),)), 0.9
-    moved, _ = layers.amplitudes(ground, omega, ("displacement", "contact_pressure"))
-    mass = SOIL.thickness * SOIL.density
-    assert moved["displacement"] * 1j * omega == pytest.approx(1 / (1 - omega**2 * mass / 1e4), rel=1e-2)
-    assert moved["contact_pressure"] == pytest.approx(-(omega**2) * mass * moved["displacement"], rel=1e-3)
 
 
 def test_a_discount_is_a_rate_of_mass_damping() -> None:
@@ -145,20 +109,6 @@ def test_a_window_that_ends_before_the_wave_arrives() -> None:
     exact = SOIL.density * SPEED * np.sin(2e4 * found.time) ** 4
     assert np.abs(found.columns["contact_pressure"] - exact).max() < 1e-5 * exact.max()
     assert np.abs(found.columns["displacement"]).max() < 1e-12
-
-
-def test_the_surface_feels_a_pressure_at_once() -> None:
-    """A pressure p pushes the surface at p / (rho c), until the echo from the base is back."""
-    ground = Ground((SOIL,), "pressure", (), 1e7)
-    impedance = (SOIL.density * SOIL.modulus("pressure")) ** 0.5
-
-    def pressed(time: np.ndarray) -> Excitation:
-        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.01, 1.0))
-
-    found = layers.solve_layers(ground, STEPS, 20, pressed, ("displacement",))
-    early = found.time < 2 * SOIL.thickness * SOIL.density / impedance
-    ramp = np.where(found.time < 0.01, found.time**2 / 0.02, found.time - 0.005)
-    assert np.allclose(found.columns["displacement"][early], -1e5 / impedance * ramp[early], rtol=2e-4)
 
 
 def test_no_rate_without_velocity() -> None:

@@ -7,7 +7,6 @@ from oracles.elements import COLUMNS, error, make, stepped
 
 from fem_reference import Scheme, solve
 from fem_reference.history import reduced
-from fem_reference.history.krylov import KrylovSpace
 from fem_reference.history.reduced import Reduced
 from fem_reference.history.solver import run
 from fem_reference.mesh.model import build
@@ -69,37 +68,6 @@ def test_no_scene_is_worse_than_it_says(scenes):
             worst = max(worst, error(found.history, steps) / found.estimate)
     assert spaces > scenes // 4
     assert worst <= 1  # 300 scenes of this kind gave 0.15 at worst
-
-
-def test_the_first_steps_are_exact():
-    """As many steps as vectors hold, polynomials of lower degree, whatever the scheme."""
-    problem, scheme = make(poisson=0.3, elements=8), Scheme(0.25, 0.5, 0.97, 1e-4, "consistent")
-    model = build(problem)
-    stepper = Stepper(model.M, model.K, model.F, scheme)
-    space = KrylovSpace(model.M, stepper.S, model.F, stepper.solve, 20)
-    space.grow(20)
-    rows = np.array([model.observers["displacement"] + 0.3 * model.F])
-    small = reduced.history(reduced.modes_of(space, stepper, rows, 40), scheme, 40)[0]
-    state, exact = stepper.start(), []
-    for _ in range(40):
-        state = stepper.advance(state)
-        exact.append(rows[0] @ state.D)
-    off = np.abs(small - exact) / np.abs(exact)
-    assert off[:19].max() < 1e-11  # rounding
-    assert off[30:].max() > 1e-9
-
-
-def test_the_space_is_orthonormal_and_reduces_the_matrices():
-    problem, scheme = make(poisson=0.3, p=1e13, elements=6), CONSTANT
-    model = build(problem)
-    stepper = Stepper(model.M, model.K, model.F, scheme)
-    space = KrylovSpace(model.M, stepper.S, model.F, stepper.solve, 30)
-    space.grow(30)
-    V = space.vectors[:30]
-    T = np.diag(space.diagonal) + np.diag(space.beside[:-1], 1) + np.diag(space.beside[:-1], -1)
-    np.testing.assert_allclose(V @ (stepper.S @ V.T), np.eye(30), atol=1e-12)
-    np.testing.assert_allclose(V @ (model.M @ V.T), T, atol=1e-12)
-    np.testing.assert_allclose(V @ model.F, space.load * np.eye(30)[0], atol=1e-12 * space.load)
 
 
 @pytest.mark.parametrize(

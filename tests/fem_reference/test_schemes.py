@@ -164,28 +164,6 @@ def test_identities_of_schemes():
     assert np.ptp(histories(explicit, named_scheme("leapfrog", step=step)), axis=0).max() < 1e-12
 
 
-def test_newmark_from_no_acceleration_is_implicit_euler():
-    """Newmark (1, 3/2) moves as x1 = x + dt v1, v1 = v + dt a1 where it starts with A0 = 0."""
-    omega = 1.7
-    scheme = Scheme(1.0, 1.5, 1.0, 1e-3)
-    stepper = Stepper(csr_array([[1.0]]), csr_array([[(omega / 1e-3) ** 2]]), np.array([3.0]), scheme)
-    state = stepper.start()
-    x = v = 0.0
-    for _ in range(50):
-        state = stepper.advance(state)
-        v = (v + 1e-3 * (3.0 - (omega / 1e-3) ** 2 * x)) / (1 + omega**2)
-        x += 1e-3 * v
-        assert state.D[0] == pytest.approx(x, rel=1e-12)
-
-
-def test_chung_hulbert_at_zero_is_houbolt():
-    """(2 x1 - 5 x + 4 x_-1 - x_-2) / dt^2 + w^2 x1 = 0 once both run."""
-    omega = 0.9
-    x = one_mode(omega, named_scheme("chung-hulbert", step=1e-3, rho_inf=0.0), 40)[3:]
-    left = (2 + omega**2) * x[3:] - 5 * x[2:-1] + 4 * x[1:-2] - x[:-3]
-    assert np.abs(left).max() < 1e-13
-
-
 @pytest.mark.parametrize(("name", "options"), EVERY)
 def test_orders_on_a_locked_base(name, options):
     """Second order from rest, on a mesh whose exact motion is the sum of its modes."""
@@ -202,19 +180,6 @@ def test_orders_on_a_locked_base(name, options):
         history = solve(problem, scheme, steps, ("displacement",)).columns["displacement"]
         errors.append(np.linalg.norm(history - problem.load_size * exact) / np.sqrt(steps))
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
-
-
-def test_a_start_without_acceleration_costs_an_order():
-    problem = make(elements=1, degree=1)
-    finest = 7680
-    reference = solve(problem, named_scheme("chung-hulbert", rho_inf=0.5, step=0.03 / finest), finest)
-    errors = []
-    for steps in (480, 960):
-        scheme = named_scheme("chung-hulbert", rho_inf=0.5, step=0.03 / steps, start="zero")
-        history = solve(problem, scheme, steps).columns["displacement"]
-        ratio = finest // steps
-        errors.append(np.linalg.norm(history - reference.columns["displacement"][ratio - 1 :: ratio]) / np.sqrt(steps))
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
 
 
 @pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,9 +9,7 @@ from conftest import thinned
 from scipy.integrate import solve_ivp
 
 from fem_reference.exact.sliding_block import Segment, SlidingBlock, SlidingMotion, harmonic, moved, recorded, solve
-from validation import load_scene
-from validation.errors import InputError
-from validation.solvers.rigid.sliding import harmonic_slide, rigid_slide
+from validation.solvers.rigid.sliding import harmonic_slide
 
 G = 9.81
 LEVEL = SlidingBlock(0.0, math.degrees(math.atan(0.1)))
@@ -26,33 +23,6 @@ def test_a_rectangular_pulse_moves_the_block_as_newmark_found(A: float, length: 
     assert motion.slip == pytest.approx(V**2 / (2 * G * N) * (1 - N / A), rel=1e-13)
     assert motion.at([60.0])[0] == pytest.approx(-motion.slip)
     assert motion.switches == ((0.0, -1), (pytest.approx(V / (G * N)), 0))
-
-
-def test_a_base_that_is_moved_away_is_a_throw_of_the_block() -> None:
-    motion = solve(LEVEL, moved([0, 10], [0, 3]), 5.0)
-    assert motion.slip == pytest.approx(0.3**2 / (2 * G * 0.1), rel=1e-13)
-    back = solve(LEVEL, moved([0, 0.1, 0.2], [0, 0.02, 0.0]), 5.0)  # thrown, caught up with, thrown on, and left alone
-    ways = [way for _, way in back.switches]
-    assert ways[0] == -1
-    assert ways[-1] == 0
-    assert back.slip > abs(back.at([5.0])[0][0])
-
-
-def test_a_slope_beyond_the_friction_angle_slides_from_the_start() -> None:
-    b = math.radians(28.9)
-    motion = solve(SlidingBlock(28.9, 15.0), moved([0.0], [0.0]), 1.0)
-    fall = G * (math.sin(b) - math.tan(math.radians(15.0)) * math.cos(b))
-    assert motion.at([0.5, 1.0])[0] == pytest.approx([fall / 8, fall / 2], rel=1e-13)
-    held = solve(SlidingBlock(28.9, 15.0, cohesion=1.01 * fall), moved([0.0], [0.0]), 1.0)
-    assert held.slip == 0.0
-    least = G * math.sin(math.radians(10.0)) / math.cos(math.radians(30.0))
-    assert SLOPE.resistance - SLOPE.driving == pytest.approx(least)
-
-
-def test_the_yield_acceleration_parts_rest_from_sliding() -> None:
-    limit, rate = SLOPE.resistance - SLOPE.driving, 7.0
-    assert solve(SLOPE, harmonic(0.999999 * limit, rate, 2.0), 3.0).slip == 0.0
-    assert solve(SLOPE, harmonic(1.01 * limit, rate, 2.0), 3.0).slip > 0.0
 
 
 def integrated(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> float:
@@ -103,19 +73,6 @@ def test_an_independent_integration_agrees(seed: int) -> None:
         assert motion.at([end])[0] == pytest.approx(integrated(SLOPE, base, end), abs=1e-7)
 
 
-@pytest.mark.parametrize("seed", [6, 7, 8])
-def test_the_slide_is_smooth_and_its_rate_is_its_derivative(seed: int) -> None:
-    motion = solve(SLOPE, random_base(seed), 2.0)
-    t, h = np.linspace(0.01, 1.99, 500), 1e-6
-    differences = (motion.at(t + h)[0] - motion.at(t - h)[0]) / (2 * h)
-    near = np.array([np.abs(t - one.base.start).min() for one in motion.stretches])
-    assert near.min() >= 0
-    jumps = np.array([one.base.start for one in motion.stretches])
-    apart = np.abs(t[:, None] - jumps).min(axis=1) > 2 * h
-    assert np.abs(differences - motion.at(t)[1])[apart].max() < 1e-8
-    assert motion.slip == pytest.approx(np.abs(np.diff(motion.at(np.linspace(0, 2, 40001))[0])).sum(), rel=1e-3)
-
-
 def test_the_mirrored_slope_and_one_way() -> None:
     base = harmonic(14.0, 9.0, 2.0)
     other = tuple(replace(one, amplitude=-one.amplitude) for one in base)
@@ -131,49 +88,6 @@ def test_the_mirrored_slope_and_one_way() -> None:
     assert ways == {False: {1, -1, 0}, True: {1, 0}}
     assert -1 in {way for _, way in one.switches}
     assert -1 not in {way for _, way in down.switches}
-
-
-SCENE = """
-title = "rigid"
-[block]
-side = 2.0
-density = 2700.0
-young = 1.0e9
-[contact]
-law = "unilateral"
-stiffness = 1.0e9
-friction = 5.0
-cohesion = 1000.0
-[load]
-gravity = 9.81
-base_motion = "BASE"
-[time]
-step = 0.01
-steps = 50
-[run]
-solvers = ["block-events"]
-"""
-
-
-def scene_of(tmp_path: Path, rows: str, text: str = SCENE):
-    (tmp_path / "base.csv").write_text(rows)
-    (tmp_path / "scene.toml").write_text(text.replace("BASE", str(tmp_path / "base.csv")))
-    return load_scene(tmp_path / "scene.toml")
-
-
-def test_the_mass_in_the_place_of_a_scenes_block(tmp_path: Path) -> None:
-    found = rigid_slide(scene_of(tmp_path, "time,x\n0,0\n0.2,0.1\n0.4,0.1\n"))
-    Y = G * math.tan(math.radians(5.0)) + 1000.0 / (2700.0 * 2.0)
-    assert found.slide[9] == pytest.approx(-0.5 * 0.1 + Y * 0.1**2 / 2, rel=1e-12)
-    assert found.slip >= abs(found.slide[-1])
-    for change, message in (
-        (("friction = 5.0\ncohesion = 1000.0", ""), "friction"),
-        (("[load]", "[load]\npressure = 1e5"), "load"),
-    ):
-        with pytest.raises(InputError, match=message):
-            rigid_slide(scene_of(tmp_path, "time,x\n0,0\n1,1\n", SCENE.replace(*change)))
-    with pytest.raises(InputError, match="along x"):
-        rigid_slide(scene_of(tmp_path, "time,y\n0,0\n1,1\n"))
 
 
 def test_harmonic_slide_in_plain_numbers() -> None:
@@ -198,16 +112,3 @@ def test_bad_input_is_refused_by_name() -> None:
     ):
         with pytest.raises(ValueError, match="must"):
             make()
-
-
-def test_a_smooth_record_slides_as_the_motion_that_it_was_taken_from(tmp_path: Path) -> None:
-    """Rows of 5 m/s2 sin(w t) twice integrated: the second differences err by (w dt)^2 / 12."""
-    rate, t = 4 * math.pi, 0.002 * np.arange(501)
-    x = 5.0 / rate * (t - np.sin(rate * t) / rate)
-    rows = "".join(f"{q!r},{w!r}\n" for q, w in np.column_stack([t, x]).tolist())
-    scene = scene_of(tmp_path, "time,x\n" + rows, SCENE.replace("cohesion = 1000.0", ""))
-    found = rigid_slide(scene, smooth=True)
-    exact = harmonic_slide(0.0, 5.0, 5.0, rate, 1.0, found.time)
-    largest = float(np.max(np.abs(exact.slide)))
-    assert largest > 1e-3
-    assert np.max(np.abs(found.slide - exact.slide)) < 2 * (rate * 0.002) ** 2 * largest

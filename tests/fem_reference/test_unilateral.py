@@ -67,17 +67,6 @@ def test_implicit_contact_leads_to_the_exact_bar_too():
     assert np.polyfit(np.log([1 / 250, 1 / 500, 1 / 1000]), np.log(found), 1)[0] == pytest.approx(1.0, abs=0.15)
 
 
-def test_the_first_opening_and_landing_approach_the_exact_ones():
-    problem = make(elements=256, degree=1)
-    switches = [s.time for s in exact(bar_of(problem), 0.03).switches]
-    run = solve_unilateral(problem, replace(AVERAGE, step=2.5e-5), 1200, columns=("largest_gap",))
-    up = np.flatnonzero(run.columns["largest_gap"] > 0)
-    assert [s for s in switches if s < 0.03] == switches and len(switches) == 2
-    # The front at the base is a few h^(2/3) wide, (2/256)^(2/3) m at 609 m/s is 6e-5 s.
-    assert run.time[up[0]] == pytest.approx(switches[0], abs=3e-4)
-    assert run.time[up[-1]] == pytest.approx(switches[1], abs=3e-4)
-
-
 @pytest.mark.parametrize(
     ("change", "contact"),
     [
@@ -111,12 +100,6 @@ def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
 @pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
     check_locked(problem, Scheme(0.5, 1.0, 0.98, 1e-2), contact, full)
-
-
-def test_central_differences_know_the_base_too():
-    # its weight presses the block from the first step on; a load on top would make the mesh ring ahead of its front
-    problem = replace(make(p=1e8, elements=4, degree=1), pressure=0.0, gravity=9.81)
-    check_locked(problem, Scheme(0.0, 0.5, 1.0, 1e-4, "consistent"), Unilateral(), False)
 
 
 def check_locked(problem, scheme, contact, full):
@@ -181,36 +164,6 @@ def test_a_partly_open_base_is_that_of_brute_force(degree, elements, scheme):
     assert np.count_nonzero((run.columns["open_share"] > 0) & (run.columns["open_share"] < 0.99)) > 5
     expected = brute_force(problem, scheme, 50)
     assert np.abs(run.columns["contact_pressure"] - expected).max() <= 1e-9 * expected.max()
-
-
-@pytest.mark.parametrize("degree", thinned([1, 2], 2))
-@pytest.mark.parametrize("shear", ["frictionless", "glued"])
-def test_a_mirrored_load_mirrors_the_block(degree, shear):
-    problem = make(elements=4, degree=degree, eccentricity=0.25, poisson=0.3, shear=4e8)
-    contact = Unilateral(shear=shear)
-    # a hundred steps of the damped scheme: rounding is not multiplied by impacts
-    right, left = (
-        at_every_point(problem, CONSTANT, 100, contact) for problem in (problem, replace(problem, eccentricity=-0.25))
-    )
-    assert right.gap.max() > 0 and np.abs(right.gap - right.gap[:, ::-1]).max() > 1e-5
-    assert np.abs(right.gap - left.gap[:, ::-1]).max() <= 1e-10 * np.abs(right.gap).max()
-    assert np.abs(right.normal - left.normal[:, ::-1]).max() <= 1e-9 * right.normal.max()
-    turn = right.columns["rotation"]
-    assert np.abs(turn + left.columns["rotation"]).max() <= 1e-10 * np.abs(turn).max() != 0
-
-
-@pytest.mark.parametrize("shear", ["frictionless", "glued"])
-def test_twice_the_load_moves_twice_as_far(shear):
-    problem = replace(make(elements=3, eccentricity=0.3, poisson=0.2), gravity=5.0, traction=3e5)
-    contact = Unilateral(gap=1e-4, velocity=-0.3, shear=shear)
-    more = replace(problem, pressure=2 * problem.pressure, gravity=10.0, traction=6e5)
-    once = solve_unilateral(problem, CONSTANT, 120, contact)
-    twice = solve_unilateral(more, CONSTANT, 120, replace(contact, gap=2e-4, velocity=-0.6))
-    for name, column in once.columns.items():
-        factor = 4 if name.endswith(("energy", "loss")) else 1 if name in ("open_share", "solves", "cuts") else 2
-        # a power of two scales every number of the computation but the shares of the crossings exactly
-        assert np.allclose(factor * column, twice.columns[name], rtol=1e-10, atol=1e-10 * np.abs(column).max()), name
-    assert once.columns["open_share"].min() < 0.5 < once.columns["open_share"].max()
 
 
 def test_one_column_is_the_whole_block():

@@ -170,34 +170,6 @@ def refusing(longest, **more):
     return found
 
 
-def test_a_cut_step_starts_from_the_state_as_it_was():
-    one = refusing(0.3, columns=("solves", "cuts"))
-    state = one.advance(one.start(), 0.2e-3)[0]
-    saved = [x.copy() for x in state]
-    one.lengths.clear()
-    row = np.empty((1, 2))
-    step = unilateral.cut_step(one, one.march(state, row), Unilateral(), row)
-    assert all(np.array_equal(a, b) for a, b in zip(saved, state, strict=True))
-    solves, cuts = row[0]
-    assert cuts == 1 and solves >= 3 + 4
-    assert one.lengths == pytest.approx([0.3, 0.3, 0.3, 0.1])
-    fresh = refusing(0.3)
-    again = fresh.advance(fresh.start(), 0.2e-3)[0]
-    for piece in one.lengths:
-        again = fresh.advance(again, piece * SCHEME.step)[0]
-    assert np.array_equal(step.state.D, again.D) and np.array_equal(step.state.gap, again.gap)
-
-
-def test_kinetic_damping_of_a_cut_step_is_that_of_the_whole():
-    model = points.build(replace(make(elements=2), pressure=0.0))
-    stepper = ContactStepper(model, SCHEME)
-    state = stepper.start(gap=1.0, speed=3.0)
-    for share in (0.3, 0.3, 0.3, 0.1):
-        state, _ = stepper.advance(state, share * SCHEME.step)
-    # in free flight a step takes gg from the velocity, whatever it is cut into
-    assert np.allclose(state.V, 2.7 * model.upwards, rtol=1e-12)
-
-
 def test_a_base_that_finds_no_contact_ends_with_its_reason(monkeypatch):
     monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.005, columns=more["columns"]))
     run = solve_unilateral(make(elements=2), SCHEME, 4)
