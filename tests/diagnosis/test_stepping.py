@@ -96,6 +96,11 @@ def test_generalised_alpha_is_its_recursion_mode_by_mode(family: Any, number: fl
     assert math.isclose(variant.scheme[0], beta) and math.isclose(variant.scheme[1], gamma)
 
 
+def test_implicit_euler_is_newmark_s_1_and_three_halves_from_rest() -> None:
+    euler = stepped(replace(OWN, family="theta", spectral=1.0, start="consistent"))
+    close(stepped(replace(OWN, alpha=1.0, delta=1.5)), euler)
+
+
 def test_a_variant_that_grows_beyond_any_double_is_far_away_and_says_nothing() -> None:
     """Central differences at a step beyond their limit: warnings are errors here, and the other variant stays."""
     steps = np.full(400, 0.05)

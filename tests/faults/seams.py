@@ -41,7 +41,7 @@ from fem_reference.scheme import diagnostics as fem_diagnostics
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.diagnosis import judgement, other_solvers, reading, readings, search
+from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.problems import models
@@ -184,7 +184,6 @@ SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(search, search.accepted)
 DECISION_CANONICAL = Seam(search, search._canonical)
 DECISION_SPECIAL = Seam(search, search._without_special_cases)
-DIAGNOSIS_OPENED = Seam(judgement, judgement._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_EXPLAINED = Seam(bar, bar.explained)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
