@@ -70,7 +70,7 @@ def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("scene", "values", "cause", "number"),
     [
-        (DROPPED, {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
+        (DROPPED.with_values({"time.steps": 100}), {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
         *(
             pytest.param(*case, marks=pytest.mark.long)
             for case in [

@@ -105,6 +105,7 @@ def test_a_round_factor_has_two_digits_that_are_known(factor: float, error: floa
     assert round_factor(factor, error) is is_round
 
 
+@pytest.mark.long
 def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
     """Viscous damping is near to a discount: a compliance of 2e-6 beside it does not make it one."""
     displacement, pressure = run(Plain(steps=60, p=2e10, viscous=10.0))

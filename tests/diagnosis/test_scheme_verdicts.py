@@ -179,9 +179,10 @@ def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha(
     assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 1.0}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("method", "numbers", "other"),
-    [("hht", {"e": 1 / 3}, "hht"), pytest.param("wbz", {"r": 0.0}, "wbz", marks=pytest.mark.long)],
+    [("hht", {"e": 1 / 3}, "hht"), ("wbz", {"r": 0.0}, "wbz")],
 )
 def test_one_scheme_by_two_names_is_told_by_both(method: str, numbers: dict[str, Any], other: str) -> None:
     _, answer = judged(method, numbers, **LOCKED)

@@ -212,6 +212,7 @@ def test_a_unit_is_not_named_where_something_else_is_wrong(name: str, column: st
     assert "unit" not in named(name, History(exact.time, loaded)).ids  # which a load does as well
 
 
+@pytest.mark.long
 def test_other_units_beside_the_usual_scheme_are_named() -> None:
     scene = problem("locked").scene.with_values({"block.density": 1e-3 * problem("locked").scene.block.density})
     found = named("locked", get_solver("dda").solve(scene).history)
