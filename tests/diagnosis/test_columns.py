@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.column_histories import ALIKE, RIGHT, SILENT, WRONG, history, noisy, random_scene, trial, written
+from oracles.column_histories import ALIKE, RIGHT, SILENT, WRONG, history, random_scene, trial, written
 
 from validation.diagnosis import columns
 from validation.diagnosis.answer import Answer
@@ -70,7 +70,7 @@ def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("scene", "values", "cause", "number"),
     [
-        (DROPPED, {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
+        (DROPPED.with_values({"time.steps": 100}), {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
         *(
             pytest.param(*case, marks=pytest.mark.long)
             for case in [
@@ -160,12 +160,6 @@ def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told()
 
 
 @pytest.mark.long
-def test_noise_is_not_explained() -> None:
-    foreign = noisy(history(DROPPED, {"column.stiffness": 0.8e9}, DIGITS), np.random.default_rng(0), 1e-3)
-    assert compare(DROPPED, foreign).causes == ["unexplained"]
-
-
-@pytest.mark.long
 def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
     """Displacements of rigid blocks depend on stiffness over density alone."""
     joint = {"height": 0.0, "stiffness": 0.8e9, "gap": 2e-3}
@@ -199,29 +193,12 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch)
 # ---- reading ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.long
-def test_units_are_read_and_named() -> None:
-    foreign = history(DROPPED, {}, DIGITS)
-    answer = compare(DROPPED, replace(foreign, displacement=1e3 * foreign.displacement))
-    assert answer.causes == ["unit"]
-    assert [(slip.column, slip.factor) for slip in answer.slips] == [("displacement", 1e3)]
-    assert answer.remedy == "--scale displacement=0.001"
-
-
 @pytest.mark.parametrize("every", [1, 5])
 def test_a_program_s_own_steps_and_rows_for_some_steps_are_taken(every: int) -> None:
     finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
     answer = compare(DROPPED, history(DROPPED, finer if every == 1 else {}, DIGITS, every))
     assert answer.causes == []
     assert len(answer.notes) == 1
-
-
-@pytest.mark.long
-def test_several_steps_in_one_are_named() -> None:
-    finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
-    answer = compare(DROPPED, history(DROPPED, finer, DIGITS, 2))
-    assert answer.causes == ["substeps"]
-    assert answer.values == {"substeps": 2.0}
 
 
 def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so() -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import thinned, typed
+from conftest import thinned
 from oracles.sliding_dda import Motion, Slider, run
 
 from validation import load_scene
@@ -129,6 +128,7 @@ def test_noise_hides_no_model() -> None:
     assert wrong.values["friction-factor"] == pytest.approx(1.02567, rel=2e-3)
 
 
+HEAVIER = (1.1 * LOAD * math.sin(SLOPE), -1.1 * LOAD * math.cos(SLOPE))
 LIGHT: dict[str, object] = {"force": (0.0, 0.0), "gravity": 9.81}
 LIGHT_SCENE: dict[str, object] = {"load__gravity": 9.81, "load__slope": 15.2, "contact__friction": 15.0}
 
@@ -142,19 +142,20 @@ def factor_on_friction(theirs: float, ours: float) -> float:
 BIASES: list[tuple[dict[str, object], dict[str, object], str, float]] = [
     ({"p": 1.01e9}, {}, "normal-springs-factor", 1.01),
     ({"p": 1.1e9}, {}, "normal-springs-factor", 1.1),
-    ({"p": 0.95e9}, {}, "normal-springs-factor", 0.95),
     ({"p": 0.95e9, "ps": 0.38e9}, {}, "springs-factor", 0.95),
     ({"dt": 1e-3, "gg": 0.999}, {}, "gg", 0.999),
-    ({"dt": 2e-4, "gg": 0.9998, "steps": 1000}, {}, "gg", 0.9998),
     ({"dt": 5e-4, "ps": 4.4e8}, {}, "shear-springs-factor", 1.1),
-    ({"dt": 2e-4, "ps": 4.8e8, "steps": 1000}, {}, "shear-springs-factor", 1.2),
+    # the scene's load is its weight, which is heavier with the block
+    (
+        {"rho": 2970.0, "force": (1.1 * LOAD * math.sin(SLOPE), -1.1 * LOAD * math.cos(SLOPE))},
+        {},
+        "density-factor",
+        1.1,
+    ),
+    ({"cohesion": 2e4}, {}, "cohesion", 2e4),
     ({"phi": 22.02, "alpha": 0.25, "delta": 0.5}, AVERAGE, "friction-factor", factor_on_friction(22.02, 22)),
     (LIGHT | {"slope": 15.2, "phi": 15.1}, LIGHT_SCENE, "friction-factor", factor_on_friction(15.1, 15)),
     (LIGHT | {"slope": 15.1, "phi": 15.0}, LIGHT_SCENE, "slope-factor", 15.1 / 15.2),
-    (
-        *(LIGHT | {"slope": 16.0, "phi": 15.1}, LIGHT_SCENE | {"load__slope": 16.0}),
-        *("friction-factor", factor_on_friction(15.1, 15)),
-    ),
 ]
 
 
@@ -170,7 +171,7 @@ def test_a_bias_within_the_tolerance_of_every_force_adds_up_and_is_named(
     assert answer.departs
     stages = {stage.name: stage for stage in answer.evidence}
     assert stages["motion"].agrees is False  # of the scene as it is, whatever another number explains
-    assert (stages["friction"].agrees is False) == (cause in ("friction-factor", "shear-springs-factor"))
+    assert (stages["friction"].agrees is False) == (cause in ("friction-factor", "shear-springs-factor", "cohesion"))
     assert (stages["normal forces"].agrees is False) == (cause in ("springs-factor", "normal-springs-factor"))
 
 
@@ -179,14 +180,6 @@ def test_springs_that_give_the_rows_of_a_base_are_told_beside_it() -> None:
     assert answer.causes == ["base-compliance", "own-weight"]
     assert [one["causes"] for one in answer.alike] == [["normal-springs-factor"]]
     assert answer.alike[0]["values"]["normal-springs-factor"] == pytest.approx(1 - SOFT, rel=1e-5)
-
-
-@pytest.mark.long
-def test_digits_are_those_of_the_columns_where_none_are_stated() -> None:
-    found = sound(phi=24.2, steps=200)
-    printed = [np.array([float(f"{x:.6e}") for x in column]) for column in (found.v, found.u)]
-    answer = compare(scene(), Foreign(found.time, printed[0], sideways=printed[1]))
-    assert answer.causes == ["friction-factor"]
 
 
 @pytest.mark.long
@@ -224,12 +217,8 @@ def test_a_lagged_program_is_what_a_lagged_scene_asks_for() -> None:
 TRAPS: list[dict[str, object]] = [
     {"phi": 24.2},
     {"gg": 0.99},
-    {"alpha": 0.25, "delta": 0.5},
-    {"ps": 1e9},
     {"force": (LOAD * math.sin(0.38), -LOAD * math.cos(0.38))},
     {"E": 2e9},
-    {"rho": 3000.0},
-    {"cohesion": 2e4},
     {"height": 2.5},
     {"phi": 0.1},
     {"mu": 0.2},
@@ -246,37 +235,6 @@ def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagge
     assert answer.nearest is not None
     assert answer.slips == ()  # without friction it slides a thousand times as far, which is no unit
     assert "not explained" in answer.sentence
-
-
-NUMBERS = [
-    ({"phi": math.degrees(math.atan(1.1 * math.tan(math.radians(22))))}, "friction-factor", 1.1),
-    ({"ps": 1e9}, "shear-springs-factor", 2.5),
-    ({"gg": 0.99}, "gg", 0.99),
-    # the scene's load is its weight, which is heavier with the block
-    ({"rho": 2970.0, "force": (1.1 * LOAD * math.sin(SLOPE), -1.1 * LOAD * math.cos(SLOPE))}, "density-factor", 1.1),
-    ({"cohesion": 2e4}, "cohesion", 2e4),
-    ({"p": 1.2e9}, "normal-springs-factor", 1.2),
-]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("slip", "cause", "value"), NUMBERS)
-def test_one_wrong_number_is_named_by_a_run_that_gives_the_history(
-    slip: dict[str, object], cause: str, value: float
-) -> None:
-    answer = judged(sound(steps=200, **slip))
-    assert answer.causes == [cause] and answer.departs
-    assert answer.values[cause] == pytest.approx(value, rel=1e-3)
-    stages = {stage.name: stage for stage in answer.evidence}
-    assert stages["motion"].agrees is False  # of the scene as it is, as every stage
-    assert stages["motion"].numbers["misfit"] > 1e-3
-
-
-@pytest.mark.long
-def test_a_wrong_coefficient_of_friction_is_not_called_right_by_its_forces() -> None:
-    answer = judged(sound(steps=200, phi=24.0, mu=0.2))
-    stages = {stage.name: stage for stage in answer.evidence}
-    assert answer.causes == ["unexplained"] and stages["friction"].agrees is False
 
 
 def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
@@ -337,14 +295,3 @@ def test_a_history_needs_both_directions_and_every_step() -> None:
         compare(scene(), Foreign(found.time[::2], found.v[::2], sideways=found.u[::2]))
     with pytest.raises(InputError, match=r"rows are 0\.002 s apart, the scene's step is 0\.001 s.*time\.step=0\.002"):
         compare(scene(time__step=1e-3), foreign(found))
-
-
-def test_the_command_reads_a_table_with_both_directions(tmp_path: Path) -> None:
-    found = program(steps=100, lagged=True)
-    rows = np.column_stack([found.time, found.u, found.v])
-    table = tmp_path / "theirs.csv"
-    np.savetxt(table, rows, delimiter=",", header="t,ux,uy", comments="", fmt="%.12e")
-    names = "time=t,displacement=uy,horizontal_displacement=ux"
-    done = typed("compare", EXAMPLE / "slope.toml", table, "--columns", names, "--json")
-    assert done.returncode == 1, done.stderr
-    assert json.loads(done.stdout)["causes"] == ["lagged-friction", "base-compliance", "own-weight"]

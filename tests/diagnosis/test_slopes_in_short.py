@@ -130,11 +130,6 @@ def test_weight_and_a_softer_base_are_run(follows: bool) -> None:
     assert not surrounded(scene, ("own-weight",), (1.0, -math.log(0.997)), place, np.zeros_like(place)).run.same
 
 
-def test_a_step_within_printed_digits_is_the_scene_s() -> None:
-    assert at_step(SCENE, 2e-3 * (1 + 1e-7), 10).time.step == 2e-3
-    assert at_step(SCENE, 1e-3, 10).time.step == 1e-3
-
-
 def test_a_scene_of_many_values_or_another_unit_of_time_is_refused() -> None:
     found = program()
     many = SCENE.model_copy(update={"sweep": load_scene("slope-sliding").sweep})

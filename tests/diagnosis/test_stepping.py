@@ -12,6 +12,7 @@ from oracles.plain_block import Plain, run
 
 import dda
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.schemes import stages
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 
@@ -93,7 +94,13 @@ def test_generalised_alpha_is_its_recursion_mode_by_mode(family: Any, number: fl
     variant = replace(OWN, family=family, spectral=number, start="consistent")
     displacement, _ = stepped(variant, rigid)
     close([displacement], [np.array(rows)], 1e-6)
-    assert math.isclose(variant.scheme[0], beta) and math.isclose(variant.scheme[1], gamma)
+    (stage,) = stages(variant)
+    assert math.isclose(stage.beta, beta) and math.isclose(stage.gamma, gamma)
+
+
+def test_implicit_euler_is_newmark_s_1_and_three_halves_from_rest() -> None:
+    euler = stepped(replace(OWN, family="theta", spectral=1.0, start="consistent"))
+    close(stepped(replace(OWN, alpha=1.0, delta=1.5)), euler)
 
 
 def test_a_variant_that_grows_beyond_any_double_is_far_away_and_says_nothing() -> None:

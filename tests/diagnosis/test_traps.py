@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import typed
-from faults import seams
 from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
 
@@ -135,13 +134,6 @@ def test_a_share_of_the_stiffness_from_the_zero_start_is_a_scheme_from_the_consi
 
 
 @pytest.mark.long
-def test_the_gate_of_the_unknown_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where anything may be left, a history with another damping is the scene's own."""
-    seams.BAR_EXPLAINED.put(monkeypatch, lambda *given: True)
-    assert judged(replace(PLAIN, steps=25), hht=-0.1).causes != ["unexplained"]
-
-
-@pytest.mark.long
 def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells() -> None:
     half = judged(rho=1350.0)
     named(half, ["density-factor"], {"density-factor": 0.5})
@@ -156,14 +148,6 @@ def test_the_evidence_says_which_column_is_right_by_itself() -> None:
     stages = {stage.name: stage for stage in late.evidence}
     assert stages["displacement"].agrees and not stages["contact_pressure"].agrees
     assert all(stages[name].agrees for name in ("reading", "bounded", "statics", "frequency", "damping"))
-
-
-@pytest.mark.long
-def test_the_evidence_of_a_soft_block_is_where_it_comes_to_rest() -> None:
-    soft = {stage.name: stage for stage in judged(E=0.8e9).evidence}
-    # q a / 2p + (a/2) q / E with 0.8 E: 5 mm + 6.25 mm
-    assert soft["statics"].numbers["file"] == pytest.approx(-0.01125, rel=1e-6)
-    assert soft["statics"].agrees is False and soft["frequency"].numbers["ratio"] < 1
 
 
 def test_a_tolerance_decides_what_counts_as_the_same(tmp_path: Any) -> None:

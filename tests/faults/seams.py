@@ -40,7 +40,7 @@ from fem_reference.mesh import model as fem_model
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
-from validation.diagnosis import judgement, other_solvers, reading, readings, search
+from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.problems import models
@@ -181,9 +181,8 @@ SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(search, search.accepted)
 DECISION_CANONICAL = Seam(search, search._canonical)
 DECISION_SPECIAL = Seam(search, search._without_special_cases)
-DIAGNOSIS_OPENED = Seam(judgement, judgement._opened)
 READINGS_FACTORS = Seam(readings, readings._factors)
-BAR_EXPLAINED = Seam(bar, bar.explained)
+BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
 PROBLEM_RUN = Seam(models, models._run)
 READING_NUMBERS = Seam(reading, reading._numbers)

@@ -110,13 +110,6 @@ def test_a_weight_that_is_forgotten_is_no_wrong_pressure() -> None:
     assert cause(asked, seen, standard(asked)).sentence == "the weight is forgotten"
 
 
-@pytest.mark.long
-def test_columns_that_are_turned() -> None:
-    exact = standard(problem("locked")).exact
-    turned = named("locked", History(exact.time, {k: -x for k, x in exact.columns.items()}))
-    assert turned.values["factor"] == pytest.approx(-1.0, abs=1e-3)
-
-
 def test_columns_that_are_still_or_no_numbers() -> None:
     exact = standard(problem("locked")).exact
     still = named("locked", History(exact.time, {k: 0 * x for k, x in exact.columns.items()}))
@@ -219,18 +212,12 @@ def test_a_unit_is_not_named_where_something_else_is_wrong(name: str, column: st
     assert "unit" not in named(name, History(exact.time, loaded)).ids  # which a load does as well
 
 
+@pytest.mark.long
 def test_other_units_beside_the_usual_scheme_are_named() -> None:
     scene = problem("locked").scene.with_values({"block.density": 1e-3 * problem("locked").scene.block.density})
     found = named("locked", get_solver("dda").solve(scene).history)
     assert found.ids == ("scheme", "density-factor")
     assert found.values["density-factor"] == pytest.approx(1e-3, rel=1e-6)
-
-
-@pytest.mark.long
-def test_a_discount_where_the_scenes_own_scheme_is_exact_is_named() -> None:
-    found = named("sliding", get_solver("dda").solve(problem("sliding").scene.with_values({"time.gg": 0.98})).history)
-    assert found.ids[-1] == "gg"
-    assert found.values["gg"] == pytest.approx(0.98, rel=1e-4)
 
 
 def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:

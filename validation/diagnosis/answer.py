@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.readings import Slip
 from validation.runs.history import Array
+
+WRITTEN = (  # by `--json`
+    *("sentence", "causes", "values", "intervals", "slips", "remedy", "unexplained", "nearest", "alike", "departure"),
+    *("opened", "scheme", "ranking", "evidence"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,20 +49,11 @@ class Answer:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        departure = None if self.departure is None else {"step": self.departure.step, "kind": self.departure.kind}
-        return {
-            "sentence": self.sentence,
-            "causes": self.causes,
-            "values": self.values,
+        written: dict[str, Any] = {
             "intervals": {name: list(ends) for name, ends in self.intervals.items()},
-            "slips": [{"cause": slip.cause, "column": slip.column, "factor": slip.factor} for slip in self.slips],
-            "remedy": self.remedy,
-            "unexplained": self.unexplained,
-            "nearest": self.nearest,
-            "alike": self.alike,
-            "departure": departure,
-            "opened": None if self.opened is None else list(self.opened),
-            "scheme": self.scheme,
-            "ranking": self.ranking,
+            "slips": [asdict(slip) for slip in self.slips],
+            "departure": self.departure and asdict(self.departure),
+            "opened": self.opened and list(self.opened),
             "evidence": [stage.as_dict() for stage in self.evidence],
         }
+        return {name: written.get(name, getattr(self, name)) for name in WRITTEN}

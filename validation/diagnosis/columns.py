@@ -501,7 +501,7 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     scheme = scheme_numbers(own)
     words = words_of_slips(reading.corrected)
     (judged_solver, *_) = by_role(Role.JUDGED)
-    alpha, delta = own.scheme[:2] if own.family == "newmark" else (None, None)
+    alpha, delta = (own.alpha, own.delta) if own.family == "newmark" else (None, None)
     ranking = [row_of(judged_solver, alpha, delta, own.gg, scene_misfit, None)]
     alike = [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if cause is not None:

@@ -280,12 +280,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if "dead-band" in ends:
         low, high = ends["dead-band"]
         further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
-    if v.family == "composite":
-        further["split"] = _splits(target, v)
-    if "contact-dashpot" in ids and v.opens:
-        further["clipping"] = _clipping(target, v)
-    if v.opens and schemes.stages(v)[-1].mean_force > 0:
-        further["form"] = _contact_form(target, v)
+    further |= _undecided(target, v, ids)
     words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
         sentences.scheme_of(v) + (schemes.other_names(v) if any(CAUSES[name].integrator for name in ids) else ""),
@@ -325,19 +320,24 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     )
 
 
-def _clipping(target: Target, v: Variant) -> str:
-    """Return whether the dashpot pulls before the contact opens, if the rows tell."""
-    if explains(target, replace(v, clipped=not v.clipped)):
-        return "; these rows do not tell whether it is clipped"
-    return ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
-
-
-def _contact_form(target: Target, v: Variant) -> str:
-    """Return of what the contact force of generalised alpha is a mean, if the rows tell."""
-    is_of_gaps = v.contact == "mean gap"
-    if explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
-        return ""
-    return f", the contact force {'that of the mean gap' if is_of_gaps else 'the mean of those at both ends'}"
+def _undecided(target: Target, v: Variant, ids: Sequence[str]) -> dict[str, str]:
+    """Return the words for what the rows may leave open: the split of a scheme, the form of a contact's force."""
+    words = {}
+    if v.family == "composite":
+        words["split"] = f"split {schemes.split_of(v):.4g}"
+        if _has_second_split(target, v):
+            other = f" or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
+            words["split"] += other
+    if "contact-dashpot" in ids and v.opens:
+        words["clipping"] = ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
+        if explains(target, replace(v, clipped=not v.clipped)):
+            words["clipping"] = "; these rows do not tell whether it is clipped"
+    if v.opens and schemes.stages(v)[-1].mean_force > 0:
+        is_of_gaps = v.contact == "mean gap"
+        if not explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
+            of = "that of the mean gap" if is_of_gaps else "the mean of those at both ends"
+            words["form"] = f", the contact force {of}"
+    return words
 
 
 def _has_second_split(target: Target, v: Variant) -> bool:
@@ -356,14 +356,6 @@ def _told_apart(target: Target, v: Variant) -> Variant:
         clipped = replace(v, clipped=True)
         return clipped if explains(target, clipped) else v
     return v
-
-
-def _splits(target: Target, v: Variant) -> str:
-    """Return the share at which a composite scheme is split, and the other one that gives the same rows."""
-    split = f"split {schemes.split_of(v):.4g}"
-    if not _has_second_split(target, v):
-        return split
-    return f"{split} or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
 
 
 def _opened(target: Target, v: Variant) -> list[int]:

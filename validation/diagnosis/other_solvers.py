@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
-from validation.diagnosis.fits.bar import norm, significant
+from validation.diagnosis.fits.bar import Bar, norm, significant
 from validation.diagnosis.fits.fit import NAMED, fit, fit_one, named
-from validation.diagnosis.fits.target import Bar, Target, joined
+from validation.diagnosis.fits.target import Target, joined
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import CandidateChange, fitted, nearest_start, of_discount, of_numbers
 from validation.diagnosis.readings import Reading

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -51,20 +52,19 @@ class Foreign:
     scale: Mapping[str, float] = field(default_factory=dict)
 
 
-def _pairs(text: str | None, option: str, theirs: str) -> dict[str, str]:
-    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``."""
+def _pairs(text: str | None, option: str, theirs: str, parsed: Callable[[str], Any]) -> dict[str, Any]:
+    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``, as a function parses it."""
     pairs = {}
-    for part in filter(str.strip, (text or "").split(",")):
-        name, _, value = map(str.strip, part.partition("="))
-        if not value or name not in OURS:
-            raise _refused_option(text, option, theirs)
-        pairs[name] = value
+    try:
+        for part in filter(str.strip, (text or "").split(",")):
+            name, _, value = map(str.strip, part.partition("="))
+            if not value or name not in OURS:
+                raise ValueError
+            pairs[name] = parsed(value)
+    except ValueError:
+        rule = f"must be OURS={theirs} with ours among {', '.join(OURS)}"
+        raise InputError(rule, field=option, value=repr(text)) from None
     return pairs
-
-
-def _refused_option(text: str | None, option: str, theirs: str) -> InputError:
-    rule = f"must be OURS={theirs} with ours among {', '.join(OURS)}"
-    return InputError(rule, field=option, value=repr(text))
 
 
 def parse_columns(text: str | None) -> dict[str, str]:
@@ -75,7 +75,7 @@ def parse_columns(text: str | None) -> dict[str, str]:
     InputError
         A part is not ours=theirs, or names no column of ours.
     """
-    return _pairs(text, "--columns", "THEIRS")
+    return _pairs(text, "--columns", "THEIRS", str)
 
 
 def parse_scale(text: str | None) -> dict[str, float]:
@@ -86,15 +86,14 @@ def parse_scale(text: str | None) -> dict[str, float]:
     InputError
         A part is not ours=factor, or a factor is no finite number other than zero.
     """
-    factors = {}
-    for name, number in _pairs(text, "--scale", "FACTOR").items():
-        try:
-            factors[name] = float(number)
-        except ValueError:
-            raise _refused_option(text, "--scale", "FACTOR") from None
-    if not all(map(math.isfinite, factors.values())) or 0 in factors.values():
-        raise _refused_option(text, "--scale", "FACTOR")
-    return factors
+
+    def factor(number: str) -> float:
+        value = float(number)
+        if not math.isfinite(value) or value == 0:
+            raise ValueError
+        return value
+
+    return _pairs(text, "--scale", "FACTOR", factor)
 
 
 def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[str, float] | None = None) -> Foreign:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from validation.diagnosis.causes import CONTACT_METHODS, LISTED
-from validation.diagnosis.schemes import split_of
+from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import Variant
 
 OF_STEP = frozenset({"scheme", "start", "gg"})  # causes that keys of `time` state, besides the schemes of other names
 NOT_IN_SCENES = frozenset({"theta", "symplectic-euler"})
+Keys = dict[str, float | str]
 
 
 def assignments(ids: Sequence[str], v: Variant, scene: Variant) -> str:
@@ -25,39 +26,37 @@ def assignments(ids: Sequence[str], v: Variant, scene: Variant) -> str:
     known = OF_STEP | CONTACT_METHODS | {name for name, cause in LISTED.items() if cause.family}
     if not ids or not set(ids) <= known or set(ids) & NOT_IN_SCENES or v.contact == "mean gap" or not v.clipped:
         return ""
-    values: dict[str, str] = {}
-    if v.contact == "impact":
-        values |= {"contact.rule": "impact", "contact.stiffness": "inf", "contact.restitution": _number(v.restitution)}
-        values |= {"time.alpha": _number(v.spectral**2), "time.delta": _number(2 * v.spectral - 0.5)}
-    elif v.family == "newmark":
-        if scene.family != "newmark":
-            values["time.scheme"] = "newmark"
-        if (scene.family, scene.alpha, scene.delta) != ("newmark", v.alpha, v.delta):
-            values |= {"time.alpha": _number(v.alpha), "time.delta": _number(v.delta)}
-    elif v.family != scene.family or (v.spectral, v.split) != (scene.spectral, scene.split):
-        values["time.scheme"] = v.family
-        if v.family != "leapfrog":
-            rho_inf = (1 - v.spectral) / (1 + v.spectral) if v.family == "hht" else v.spectral
-            values["time.rho_inf"] = _number(rho_inf)
-        if v.family == "composite":
-            values["time.split"] = _number(split_of(v))
-    if v.contact in ("implicit", "energy-conserving"):
-        values["contact.rule"] = v.contact
-    if v.contact == "rigid":
-        values["contact.stiffness"] = "inf"
-    if v.contact in ("rigid", "impact"):
-        values["contact.shear_stiffness"] = "0"
-    if v.contact == "dashpot":
-        values["contact.damping_ratio"] = _number(v.dashpot)
-    if v.start != scene.start:
-        values["time.start"] = v.start
-    if v.gg != scene.gg:
-        values["time.gg"] = _number(v.gg)
-    if any(key.startswith("contact.") for key in values) and not scene.opens:
+    if _of_contact(v) and not scene.opens:
         return ""
-    return " ".join(f"--set {key}={value}" for key, value in values.items())
+    values: Keys = {}
+    for part, own in zip(_keys(v), _keys(scene), strict=True):
+        if part != own:
+            values |= {key: value for key, value in part.items() if key != "time.scheme" or value != own.get(key)}
+    # with the digits that a fit tells of a number
+    return " ".join(
+        f"--set {key}={value if isinstance(value, str) else f'{value:.7g}'}" for key, value in values.items()
+    )
 
 
-def _number(value: float) -> str:
-    """Return a fitted number with the digits that a fit tells."""
-    return f"{value:.7g}"
+def _keys(v: Variant) -> tuple[Keys, ...]:
+    return _of_scheme(v), _of_contact(v), {"time.start": v.start}, {"time.gg": v.gg}
+
+
+def _of_scheme(v: Variant) -> Keys:
+    if v.contact == "impact":
+        return {"time.scheme": "newmark", "time.alpha": v.spectral**2, "time.delta": 2 * v.spectral - 0.5}
+    if v.family == "newmark":
+        return {"time.scheme": "newmark", "time.alpha": v.alpha, "time.delta": v.delta}
+    numbers = {f"time.{key}": value for key, value in scheme_numbers(v).items() if key in ("rho_inf", "split")}
+    return {"time.scheme": v.family, **numbers}
+
+
+def _of_contact(v: Variant) -> Keys:
+    rigid: Keys = {"contact.stiffness": "inf", "contact.shear_stiffness": "0"}
+    if v.contact == "impact":
+        return {"contact.rule": "impact", "contact.restitution": v.restitution, **rigid}
+    if v.contact == "dashpot":
+        return {"contact.damping_ratio": v.dashpot}
+    if v.contact == "rigid":
+        return rigid
+    return {"contact.rule": v.contact} if v.contact in ("implicit", "energy-conserving") else {}

@@ -12,10 +12,10 @@ where M ((1 - a_m) W1 + a_m W) + dt^2 f((1 - a_f) x1 + a_f x) = dt^2 F gives W1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
-Family = Literal["newmark", "hht", "wbz", "chung-hulbert", "theta", "leapfrog", "symplectic-euler", "composite"]
+from validation.diagnosis.variant import Family, Variant
+
 LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
 EXPLICIT: tuple[Family, ...] = ("leapfrog", "symplectic-euler")
 SHARED: dict[Family, tuple[float, ...]] = {  # numbers at which a family is a scheme of another name
@@ -50,90 +50,48 @@ class Stage(NamedTuple):
     mean_force: Any  # a_f
 
 
-class Numbers(Protocol):
-    """What a scheme follows from: a `validation.diagnosis.variant.Variant`."""
-
-    @property
-    def alpha(self) -> float:
-        """Newmark's weight of the acceleration in the displacement [-]."""
-
-    @property
-    def delta(self) -> float:
-        """Newmark's weight of the acceleration in the velocity [-]."""
-
-    @property
-    def gg(self) -> float:
-        """Share of the velocity that a step starts with [-]."""
-
-    @property
-    def start(self) -> str:
-        """Initial acceleration, zero or consistent."""
-
-    @property
-    def family(self) -> Family:
-        """Which scheme."""
-
-    @property
-    def spectral(self) -> float:
-        """Its number [-]."""
-
-    @property
-    def split(self) -> float:
-        """Share of the step at which a composite scheme is split, 0 the usual one [-]."""
-
-    @property
-    def contact(self) -> str:
-        """How the contact presses."""
-
-
-def stages(v: Numbers) -> tuple[Stage, ...]:
+def stages(v: Variant) -> tuple[Stage, ...]:
     """Return the stages of a step of a variant."""
-    return STAGES[v.family](v)
-
-
-def one_stage(beta: float, gamma: float, mean_mass: float = 0.0, mean_force: float = 0.0) -> tuple[Stage, ...]:
-    """Return the stage of Newmark's formulas."""
-    return (Stage(1.0, 0.0, 0.5 - beta, 0.0, beta, 1 - gamma, 0.0, gamma, mean_mass, mean_force),)
-
-
-def _weighted(mean_mass: float, mean_force: float) -> tuple[Stage, ...]:
-    """Return generalised alpha of second order with the most damping of high frequencies."""
-    beta = (1 - mean_mass + mean_force) ** 2 / 4
-    return one_stage(beta, 0.5 - mean_mass + mean_force, mean_mass, mean_force)
-
-
-def _chung_hulbert(v: Numbers) -> tuple[Stage, ...]:
     r = v.spectral
-    return _weighted((2 * r - 1) / (r + 1), r / (r + 1))
-
-
-def _theta(v: Numbers) -> tuple[Stage, ...]:
-    theta = v.spectral
-    return (Stage(1.0, 0.0, theta * (1 - theta), 0.0, theta**2, 1 - theta, 0.0, theta, 0.0, 0.0),)
-
-
-def _explicit(_: Numbers) -> tuple[Stage, ...]:
-    """Return the stage of leapfrog, whose U is that of the half step before."""
+    match v.family:
+        case "newmark":
+            return (newmark_stage(v.alpha, v.delta),)
+        case "hht":
+            return (_weighted(0.0, r),)
+        case "wbz":
+            return (_weighted((r - 1) / (r + 1), 0.0),)
+        case "chung-hulbert":
+            return (_weighted((2 * r - 1) / (r + 1), r / (r + 1)),)
+        case "theta":
+            return (Stage(1.0, 0.0, r * (1 - r), 0.0, r**2, 1 - r, 0.0, r, 0.0, 0.0),)
+        case "composite":  # the trapezoidal rule up to a share of the step, then a rule through start, middle and end
+            share = split_of(v)
+            q1 = (r + 1) / (2 * share * (r - 1) + 4)
+            q0 = (share - 1) * q1 + 0.5
+            q2 = 0.5 - share * q1
+            first = Stage(share, 0.0, share**2 / 4, 0.0, share**2 / 4, share / 2, 0.0, share / 2, 0.0, 0.0)
+            return first, Stage(q0 + q2, q1, q2 * q0, q2 * q1, q2 * q2, q0, q1, q2, 0.0, 0.0)
+    # leapfrog, whose U is that of the half step before
     return (Stage(1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),)
 
 
-def _composite(v: Numbers) -> tuple[Stage, ...]:
-    """Return the trapezoidal rule up to a share of the step, then a rule through start, middle and end."""
-    share = split_of(v)
-    q1 = (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)
-    q0 = (share - 1) * q1 + 0.5
-    q2 = 0.5 - share * q1
-    first = Stage(share, 0.0, share**2 / 4, 0.0, share**2 / 4, share / 2, 0.0, share / 2, 0.0, 0.0)
-    second = Stage(q0 + q2, q1, q2 * q0, q2 * q1, q2 * q2, q0, q1, q2, 0.0, 0.0)
-    return first, second
+def newmark_stage(beta: float, gamma: float, mean_mass: float = 0.0, mean_force: float = 0.0) -> Stage:
+    """Return the stage of Newmark's formulas."""
+    return Stage(1.0, 0.0, 0.5 - beta, 0.0, beta, 1 - gamma, 0.0, gamma, mean_mass, mean_force)
 
 
-def split_of(v: Numbers) -> float:
+def _weighted(mean_mass: float, mean_force: float) -> Stage:
+    """Return generalised alpha of second order with the most damping of high frequencies."""
+    beta = (1 - mean_mass + mean_force) ** 2 / 4
+    return newmark_stage(beta, 0.5 - mean_mass + mean_force, mean_mass, mean_force)
+
+
+def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
     return v.split or usual_split(v.spectral)
 
 
-def scheme_numbers(v: Numbers) -> dict[str, Any]:
+def scheme_numbers(v: Variant) -> dict[str, Any]:
     """Return a scheme's numbers; alpha and delta are None where it is no pair of them, and `name` says which it is."""
     if v.family == "newmark":
         return {"alpha": v.alpha, "delta": v.delta, "gg": v.gg}
@@ -147,7 +105,7 @@ def scheme_numbers(v: Numbers) -> dict[str, Any]:
     return numbers
 
 
-def companion_split(v: Numbers) -> float:
+def companion_split(v: Variant) -> float:
     """Return the other split with which a composite scheme is the same in linear motion, 2 q2.
 
     Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which a split of 2 q2 exchanges; at the usual
@@ -162,7 +120,7 @@ def usual_split(rho_inf: float) -> float:
     return 2 / (2 + math.sqrt(2 + 2 * rho_inf))
 
 
-def other_names(v: Numbers) -> str:
+def other_names(v: Variant) -> str:
     """Return by what other names a scheme is known, as the end of a sentence."""
     if v.contact not in ("springs", "mean gap"):
         return ""
@@ -190,13 +148,3 @@ FAMILY_NAMES: tuple[tuple[Family, float, float, str], ...] = (  # rho_inf, alpha
     ("composite", 0.0, 0.5, ": trapezoidal rule, then backward differences"),
     ("theta", 1.0, 0.0, ": implicit Euler"),
 )
-STAGES: dict[Family, Callable[[Numbers], tuple[Stage, ...]]] = {
-    "newmark": lambda v: one_stage(v.alpha, v.delta),
-    "hht": lambda v: _weighted(0.0, v.spectral),
-    "wbz": lambda v: _weighted((v.spectral - 1) / (v.spectral + 1), 0.0),
-    "chung-hulbert": _chung_hulbert,
-    "theta": _theta,
-    "leapfrog": _explicit,
-    "symplectic-euler": _explicit,
-    "composite": _composite,
-}

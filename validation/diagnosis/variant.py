@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import dda
-from validation.diagnosis.schemes import Family, stages
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Family = Literal["newmark", "hht", "wbz", "chung-hulbert", "theta", "leapfrog", "symplectic-euler", "composite"]
 ContactForm = Literal["springs", "mean gap", "dashpot", "implicit", "energy-conserving", "rigid", "impact"]
 GRAVITY = 9.81  # m/s2
 OPENING = features.SCHEMES | {features.UNILATERAL, features.DEAD_BAND, features.WEIGHT}  # of opening contact known here
@@ -76,12 +76,6 @@ class Variant:
     late: float = 0.0  # steps by which the pressure comes late; 1/2 is the mean of two steps
     pressure_factor: float = 1.0  # reported over true pressure [-]
     displacement_factor: float = 1.0  # reported over true displacement [-]
-
-    @property
-    def scheme(self) -> tuple[float, float, float, float]:
-        """Return alpha, delta, alpha_m and alpha_f of the last stage."""
-        last = stages(self)[-1]
-        return last.beta, last.gamma, last.mean_mass, last.mean_force
 
 
 @dataclass(frozen=True, eq=False)

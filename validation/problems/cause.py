@@ -99,46 +99,43 @@ def of_damping(runs: Runs, base: Base) -> Iterator[Change]:
         return
     step = runs.scene.time.step
     for key, unit, scale, symbol in (("mass", "1/s", 1.0, "a0"), ("stiffness", "s", step**2, "a1")):
-        yield CandidateChange(
-            f"{key}-damping",
-            lambda c, key=key, unit=unit, symbol=symbol: (  # type: ignore[misc]
-                f"viscous damping of the {key} is there, {symbol} = {c:.4g} {unit}"
-            ),
-            lambda u, scale=scale: max(u, 0.0) * scale,  # type: ignore[misc]
-            lambda u, key=key, scale=scale: runs.sampled(base, {f"damping.{key}": max(u, 0.0) * scale}),  # type: ignore[misc]
-            DAMPINGS,
-            0.1,
-        )
+
+        def value(u: float, scale: float = scale) -> float:
+            return max(u, 0.0) * scale
+
+        def run(u: float, key: str = key, value: Callable[[float], float] = value) -> Columns | None:
+            return runs.sampled(base, {f"damping.{key}": value(u)})
+
+        words = f"viscous damping of the {key} is there, {symbol} = {{:.4g}} {unit}".format
+        yield CandidateChange(f"{key}-damping", words, value, run, DAMPINGS, 0.1)
 
 
 def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Change]:
     """Yield what may be wrong with rows and columns alone: a factor, a shift of the rows, the rate of time."""
-    plain, dense = runs.sampled(base), runs.dense(base)
+    plain = runs.sampled(base)
+    dense = runs.dense(base)
     if plain is None or dense is None:
         return
-    groups = [tuple(names), *((name,) for name in names if len(names) > 1)]
-    for group in groups:
-        which = "all columns" if group == tuple(names) else group[0]
-        yield CandidateChange(
-            "factor",
-            lambda f, which=which: f"{which} {_are(which)} {f:.4g} times the exact motion's",  # type: ignore[misc]
-            lambda u: 1 + u,
-            lambda u, group=group: {name: x * (1 + u * (name in group)) for name, x in plain.items()},  # type: ignore[misc]
-            (0.0,),
-        )
-        yield CandidateChange(
-            "shift",
-            lambda late, which=which: f"{which} {_are(which)} {_steps(late)}",  # type: ignore[misc]
-            lambda u: u,
-            lambda u, group=group: _moved(runs, base, dense, plain, group, 1.0, u),  # type: ignore[misc]
-            (0.0, 1.0, -1.0),
-            1e-2,
-        )
+    for group in (tuple(names), *((name,) for name in names if len(names) > 1)):
+        which = "all columns are" if group == tuple(names) else f"{group[0]} is"
+
+        def scaled(u: float, group: Sequence[str] = group) -> Columns:
+            return {name: x * (1 + u * (name in group)) for name, x in plain.items()}
+
+        def late(steps: float, which: str = which) -> str:
+            return f"{which} {abs(steps):.3g} steps {'late' if steps > 0 else 'early'}"
+
+        def shifted(u: float, group: Sequence[str] = group) -> Columns | None:
+            return _moved(runs, dense, plain, group, 1.0, u)
+
+        words = f"{which} {{:.4g}} times the exact motion's".format
+        yield CandidateChange("factor", words, lambda u: 1 + u, scaled, (0.0,))
+        yield CandidateChange("shift", late, lambda u: u, shifted, (0.0, 1.0, -1.0), 1e-2)
     yield CandidateChange(
         "time-factor",
         lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion{_by_mass(runs.scene, rate)}",
         math.exp,
-        lambda u: _moved(runs, base, dense, plain, tuple(names), math.exp(u), 0.0),
+        lambda u: _moved(runs, dense, plain, tuple(names), math.exp(u), 0.0),
         (0.0, math.log(0.8), math.log(0.9)),
     )
 
@@ -158,18 +155,12 @@ def _by_mass(scene: Scene, rate: float) -> str:
     return f", as a density of {rate**-2:.4g} times the scene's does"
 
 
-def _are(which: str) -> str:
-    return "are" if which == "all columns" else "is"
-
-
-def _steps(late: float) -> str:
-    return f"{abs(late):.3g} steps {'late' if late > 0 else 'early'}"
-
-
 def _moved(
-    runs: Runs, base: Base, dense: History, plain: Columns, group: Sequence[str], rate: float, late: float
+    runs: Runs, dense: History, plain: Columns, group: Sequence[str], rate: float, late: float
 ) -> Columns | None:
     """Return columns at other instants: rate (t - late dt); what is before t = 0 is the motion's first row."""
+    from scipy.interpolate import CubicSpline
+
     if not SLOWEST <= rate <= FASTEST or abs(late) > MOST_LATE:
         return None
     step = runs.scene.time.step
@@ -178,20 +169,13 @@ def _moved(
         return None
     moving_column = features.OF_MOVING_COLUMN & {*features.of(runs.scene)}
     moved = dict(plain)
+    time = np.concatenate([[0.0], dense.time])
     for name in group:
         # columns whose contacts open may start with a velocity, or at rest under their weight
-        start = float(dense.columns[name][0]) if moving_column else 0.0
-        moved[name] = _at(dense, name, instants, start)
+        column = dense.columns[name]
+        values = np.concatenate([[column[0] if moving_column else 0.0], column])
+        moved[name] = np.asarray(CubicSpline(time, values)(np.maximum(instants, 0.0)), dtype=np.float64)
     return moved
-
-
-def _at(dense: History, name: str, instants: Array, start: float) -> Array:
-    from scipy.interpolate import CubicSpline
-
-    time = np.concatenate([[0.0], dense.time])
-    column = np.concatenate([[start], dense.columns[name]])
-    values = CubicSpline(time, column)(np.maximum(instants, 0.0))
-    return np.asarray(values, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -246,7 +230,7 @@ def _plain(answer: Columns, reference: Standard) -> Cause | None:
         if not np.isfinite(x).all():
             row = int(np.argmin(np.isfinite(x))) + 1
             return Cause(f"{name} is not a number from step {row} on", ("not-finite",), left=0.0)
-    if all(largest(x) <= NOTHING * _size(name, reference) for name, x in answer.items()):
+    if all(largest(x) <= NOTHING * largest(reference.exact.columns[name]) for name, x in answer.items()):
         return Cause("nothing moves", ("nothing-moves",), left=0.0)
     return None
 
@@ -272,10 +256,6 @@ def _units(answer: Columns, runs: Runs) -> Cause | None:
         f"{name} is in other units, {factor:g} times the motion's" for name, factor in factors_of_columns.items()
     )
     return Cause(sentence, ("unit",), factors_of_columns, (), remainder)
-
-
-def _size(name: str, reference: Standard) -> float:
-    return largest(reference.exact.columns[name])
 
 
 @dataclass(eq=False)

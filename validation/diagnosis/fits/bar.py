@@ -9,6 +9,7 @@ noise, whatever the model. A remainder that is larger, or that still has a shape
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -101,30 +102,42 @@ def white(remainder: Array) -> bool:
     return statistic <= lags + SHAPELESS * math.sqrt(2 * lags) + SHAPELESS**2 / 2
 
 
-def within_digits(remainder: Array, rounding: Array, size: float) -> bool:
-    """Whether a remainder is no more than rounding: of the printed digits, and of double precision."""
-    if size == 0:  # a column at rest has no digits
-        return not np.any(remainder)
-    unit = rounding + ARITHMETIC * size
-    return float(np.sqrt(np.mean((remainder / unit) ** 2))) <= WITHIN
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """What digits and noise may leave of a column, in its unit."""
 
+    rounding: Array  # units of the last digits
+    size: float  # largest value
+    norm: float  # root of the sum of squares, one for zeros throughout
+    spread: float  # standard deviation of the noise
 
-def explained(remainder: Array, rounding: Array, size: float, spread: float) -> bool:
-    """Whether nothing but digits and noise remains of a column.
+    @classmethod
+    def of(cls, values: Array, rounding: Array | None) -> Bar:
+        """Derive it from the column itself."""
+        rounding = last_digits(values) if rounding is None else rounding
+        return cls(rounding, largest(values), norm(values) or 1.0, noise(values))
 
-    Parameters
-    ----------
-    remainder
-        What an explanation leaves, in the column's unit.
-    rounding
-        Units of the last digit.
-    size
-        Largest value of the column.
-    spread
-        Standard deviation of the column's noise.
-    """
-    if within_digits(remainder, rounding, size):
-        return True
-    rest = float(np.sqrt(np.mean(remainder**2)))
-    unit = float(np.sqrt(np.mean(rounding**2)))
-    return rest <= MARGIN * math.hypot(spread, unit / math.sqrt(12)) and white(remainder)
+    @property
+    def unit(self) -> Array:
+        """Rounding of the printed digits and of double precision."""
+        return np.asarray(self.rounding + ARITHMETIC * self.size)
+
+    @property
+    def allowed(self) -> float:
+        """Relative L2 that digits and noise may leave [-]."""
+        digits = float(np.sqrt(np.mean(self.unit**2)))
+        return max(digits, MARGIN * self.spread) * math.sqrt(len(self.rounding)) / self.norm
+
+    def within_digits(self, remainder: Array) -> bool:
+        """Whether a remainder is no more than rounding."""
+        if self.size == 0:  # a column at rest has no digits
+            return not np.any(remainder)
+        return float(np.sqrt(np.mean((remainder / self.unit) ** 2))) <= WITHIN
+
+    def holds(self, remainder: Array) -> bool:
+        """Whether a remainder is digits and noise."""
+        if self.within_digits(remainder):
+            return True
+        rest = float(np.sqrt(np.mean(remainder**2)))
+        unit = float(np.sqrt(np.mean(self.rounding**2)))
+        return rest <= MARGIN * math.hypot(self.spread, unit / math.sqrt(12)) and white(remainder)

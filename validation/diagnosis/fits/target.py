@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
-from validation.diagnosis.fits import bar
+from validation.diagnosis.fits.bar import Bar
+from validation.diagnosis.fits.bar import norm as size_of
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
-from validation.metrics.values import largest
 from validation.runs.history import Array
 
 LEAST_ROWS = 24  # of a history that is fitted in part
@@ -21,7 +21,7 @@ ROUNDING = 1e-10  # relative L2 that no recorded history comes below
 
 def norm(values: Array) -> float:
     """Return the root of the sum of squares, one for zeros throughout."""
-    return bar.norm(values) or 1.0
+    return size_of(values) or 1.0
 
 
 def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: Array | None) -> Array:
@@ -30,32 +30,6 @@ def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: 
     if recorded[1] is None or pressure is None:
         return np.asarray(first)
     return np.concatenate([first, pressure / norm(recorded[1])]) / math.sqrt(2)
-
-
-@dataclass(frozen=True, eq=False)
-class Bar:
-    """What digits and noise may leave of a column, in its unit."""
-
-    rounding: Array  # units of the last digits
-    size: float  # largest value
-    norm: float  # root of the sum of squares
-    spread: float  # standard deviation of the noise
-
-    @classmethod
-    def of(cls, values: Array, rounding: Array | None) -> Bar:
-        """Derive it from the column itself."""
-        rounding = bar.last_digits(values) if rounding is None else rounding
-        return cls(rounding, largest(values), norm(values), bar.noise(values))
-
-    @property
-    def allowed(self) -> float:
-        """Relative L2 that digits and noise may leave [-]."""
-        digits = float(np.sqrt(np.mean((self.rounding + bar.ARITHMETIC * self.size) ** 2)))
-        return max(digits, bar.MARGIN * self.spread) * math.sqrt(len(self.rounding)) / self.norm
-
-    def holds(self, remainder: Array) -> bool:
-        """Whether a remainder is digits and noise."""
-        return bar.explained(remainder, self.rounding, self.size, self.spread)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +81,11 @@ class Target:
 
     def explained(self, joined: Array) -> bool:
         """Whether nothing but digits and noise remains in every column."""
-        return all(b.holds(part) for b, part in zip(self.bars, self.parts(joined), strict=True))
+        return all(bar.holds(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
 
     def within_digits(self, joined: Array) -> bool:
         """Whether nothing but rounding remains in every column."""
-        return all(
-            bar.within_digits(part, b.rounding, b.size) for b, part in zip(self.bars, self.parts(joined), strict=True)
-        )
+        return all(bar.within_digits(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
 
     def inner(self, joined: Array, variant: Variant) -> Array:
         """Return joined rows without those that a shift leaves open: a program may write anything there."""
@@ -129,12 +101,12 @@ class Target:
     @property
     def spread(self) -> float:
         """Relative L2 of the noise in the noisiest column [-]."""
-        return max(b.spread * math.sqrt(len(self.rows)) / b.norm for b in self.bars)
+        return max(bar.spread * math.sqrt(len(self.rows)) / bar.norm for bar in self.bars)
 
     @cached_property
     def floor(self) -> float:
         """Relative L2 that the printed digits leave by themselves [-]."""
-        shares = [float(np.sum((b.rounding / b.norm) ** 2)) / 12 for b in self.bars]
+        shares = [float(np.sum((bar.rounding / bar.norm) ** 2)) / 12 for bar in self.bars]
         return max(math.sqrt(sum(shares) / len(shares)), ROUNDING)
 
     def same_steps(self, other: Target) -> bool:
