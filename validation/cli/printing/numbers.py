@@ -38,15 +38,7 @@ class Number:
     says: str
 
 
-@dataclass(frozen=True)
-class Range:
-    """A derived number over the cases of a scene, in all of which it lies between two values."""
-
-    name: str
-    low: float
-    high: float
-    unit: str
-    says: str
+Ranges = dict[str, tuple[float, float, Number]]  # name -> least, greatest, and the number of one case
 
 
 def cases(scene: Scene) -> list[Scene]:
@@ -57,16 +49,14 @@ def cases(scene: Scene) -> list[Scene]:
     return [every[i] for i in np.linspace(0, len(every) - 1, MOST_CASES).round().astype(int)]
 
 
-def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> list[Range]:
+def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> Ranges:
     """Return each number's range over cases, in the order of the case that has most of them."""
-    values: dict[str, list[Number]] = {}
+    ranges_by_name: Ranges = {}
     for numbers in sorted(numbers_by_case, key=len, reverse=True):
         for number in numbers:
-            values.setdefault(number.name, []).append(number)
-    return [
-        Range(name, min(n.value for n in samples), max(n.value for n in samples), samples[0].unit, samples[0].says)
-        for name, samples in values.items()
-    ]
+            low, high, first = ranges_by_name.get(number.name, (number.value, number.value, number))
+            ranges_by_name[number.name] = (min(low, number.value), max(high, number.value), first)
+    return ranges_by_name
 
 
 def numbers(scene: Scene) -> list[Number]:
