@@ -15,20 +15,6 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 from validation.theory.stepping import Stepping
 
-LINES: tuple[contact_page.MetricRow, ...] = (
-    ("switches", "switches.count", 1.0, ""),
-    ("mean of the contacts' open shares", "contact.open_share", 100.0, " %"),
-    ("largest gap", "contact.gap", 1e3, " mm"),
-    ("largest penetration", "contact.penetration", 1e3, " mm"),
-    ("largest slip", "contact.slip", 1e3, " mm"),
-    ("greatest stress on the base", "contact.peak_force", 1e-6, " MPa"),
-    ("mean solves a step", "contact.mean_solves", 1.0, ""),
-    ("solves that one step in a hundred exceeds", "contact.p99_solves", 1.0, ""),
-    ("most solves in a step", "contact.most_solves", 1.0, ""),
-    ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
-    contact_page.REPEATABLE,
-)
-
 
 def scenes(scene: Scene) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motion has no kinetic damping."""
@@ -67,7 +53,7 @@ def page(
 def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     """Return the runs side by side; a line that no run has a number for is left out."""
     lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
-    for line in contact_page.measured_lines(LINES, runs):
+    for line in [*contact_page.measured_lines("column", runs), *contact_page.measured_lines("repeatable", runs)]:
         if any(value != contact_page.NONE for value in line[1:]):
             lines.append(line)
     return lines

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from validation.advice import contact, friction
@@ -31,33 +33,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-MetricRow = tuple[str, str, float, str]  # what a line is called, its metric, and how the value is scaled and written
-LINES = (
-    ("switches", "switches.count", 1.0, ""),
-    ("share of the time open", "contact.open_share", 100.0, " %"),
-    ("largest gap", "contact.gap", 1e3, " mm"),
-    ("largest penetration", "contact.penetration", 1e3, " mm"),
-    ("peak contact force", "contact.peak_force", 1e-6, " MN"),
-    ("impulse of the contact", "contact.impulse", 1e-6, " MN s"),
-    ("fastest landing", "contact.landing_speed", 1.0, " m/s"),
-    ("restitution, centre of mass", "contact.restitution", 1.0, ""),
-    ("rate of the gap after / before, first contact", "contact.restitution_first", 1.0, ""),
-    ("rate of the gap after / before, mean of contacts", MEAN_RATE, 1.0, ""),
-    ("energy gained by switching", "energy.switching_gain", 100.0, " %"),
-    ("energy, greatest above the start", "energy.rise", 100.0, " %"),
-)
-SLIPS = (
-    ("displacement along the base", ALONG, 1e3, " mm"),
-    ("slip", "contact.slip", 1e3, " mm"),
-    ("slip per second, at the end", "contact.slip_rate", 1e3, " mm/s"),
-)
-LOSSES = (
-    ("energy lost by the scheme", "energy.lost_algorithmic", 1e-3, " kJ"),
-    ("energy lost by gg", "energy.lost_kinetic_damping", 1e-3, " kJ"),
-    ("energy lost by switching", "energy.lost_switching", 1e-3, " kJ"),
-)
-FRICTION_LOSS = "energy lost by friction", "energy.lost_friction", 1e-3, " kJ"
-REPEATABLE = "repeatable to 1e-6 up to", "horizon.time", 1.0, " s"
+LINES: dict[str, list[dict[str, Any]]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 ALARMS = (contact_alarms, friction.friction_alarms)
 
 
@@ -200,17 +176,20 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     with_friction = features.FRICTION in features.of(scene)
-    lines += measured_lines((*LINES, *SLIPS, *LOSSES, FRICTION_LOSS) if with_friction else (*LINES, *LOSSES), runs)
+    kinds = ("block", "slips", "losses", "friction_loss") if with_friction else ("block", "losses")
+    for kind in kinds:
+        lines += measured_lines(kind, runs)
     lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
-    return [*lines, *measured_lines([REPEATABLE], runs)]
+    return [*lines, *measured_lines("repeatable", runs)]
 
 
-def measured_lines(rows: Iterable[MetricRow], runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
-    """Return a line of each metric, with its number in every run."""
-    return [
-        (words, *(written(run.get(metric), factor, unit) for run in runs.values()))
-        for words, metric, factor, unit in rows
-    ]
+def measured_lines(kind: str, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
+    """Return a line of each metric of a kind of `LINES`, with its number in every run."""
+    lines: list[Line] = []
+    for line in LINES[kind]:
+        numbers = (written(run.get(line["metric"]), line["factor"], line["unit"]) for run in runs.values())
+        lines.append((line["words"], *numbers))
+    return lines
 
 
 def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:

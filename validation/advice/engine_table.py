@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from validation.advice.limits import Limit
 
@@ -29,6 +30,7 @@ class Parameter:
     default: tuple[float, ...] = ()  # of the program; empty where it has none
     limit: Limit | None = None  # None where other numbers decide
     absent: str | None = None  # what to say where it must be stated
+    option: dict[str, Any] = field(default_factory=dict)  # help and metavar of the option of `translate`
 
 
 @dataclass(frozen=True)

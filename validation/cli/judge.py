@@ -75,13 +75,17 @@ def judge(
             _judge_folder(Path(target), out, keep, as_json)
         return
     if keep is not None:
-        raise _only_answers()
+        rule = "goes with a folder of answers, whose submission.json says licence, scheme and step"
+        raise InputError(rule, field="--keep", advice="dda-validate export-pack DIR writes one to fill in")
     with all_defects(), _progress("judge") as progress:
         judged, program = _judge_target(target, solver, scene, assignments, progress)
-        directory = out
-        if directory is None and solver is None:
-            directory = Path(target)
-        written = [] if directory is None else _write_page(judged, program, directory, progress)
+        directory = Path(target) if out is None and solver is None else out
+        written: list[Path] = []
+        if directory is not None:
+            from validation.gallery.judged import write_judged
+
+            progress(3, 3, "page and badge")
+            written = write_judged(judged, program, made_directory(directory))
     if as_json:
         from validation.report.chapters.judged import as_data
 
@@ -105,12 +109,6 @@ def _has_answers(directory: Path) -> bool:
     with all_defects():
         stated = read_document(directory / FILE, EXPORT).content
     return stated.get("format") != SUBMISSION and "problem" not in stated
-
-
-def _only_answers() -> InputError:
-
-    rule = "goes with a folder of answers, whose submission.json says licence, scheme and step"
-    return InputError(rule, field="--keep", advice="dda-validate export-pack DIR writes one to fill in")
 
 
 def _refuse_set(assignments: list[str] | None) -> None:
@@ -244,13 +242,6 @@ def _completed_history(run: Run, case: str, solver: str) -> History:
         echo(f"{case} {solver}: {run.outcome}: {run.outcome.sentence} {why}".rstrip())
         raise typer.Exit(NUMERICAL_FAILURE)
     return run.history
-
-
-def _write_page(judged: JudgedAnswer, program: str, place: Path, progress: Any) -> list[Path]:
-    from validation.gallery.judged import write_judged
-
-    progress(3, 3, "page and badge")
-    return write_judged(judged, program, made_directory(place))
 
 
 def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:

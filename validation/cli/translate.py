@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated
+import inspect
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from validation.advice.engine_table import TRANSLATED
 from validation.cli.app import JsonOption, app
 from validation.cli.printing.output import broken, columns, echo_answer, settings_text, spread
 
@@ -16,7 +18,23 @@ if TYPE_CHECKING:
 PREFIXES = {"box2d": "Box2D", "bullet": "Bullet", "pybullet": "PyBullet", "mujoco": "MuJoCo"}
 
 
+def with_parameters(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command an option for each parameter of the programs, in place of its further keywords."""
+    signature = inspect.signature(command, eval_str=True)
+    *stated, as_json, _ = signature.parameters.values()
+    options = []
+    for program in TRANSLATED.values():
+        for one in program.parameters:
+            kind = str if len(one.default) > 1 else float
+            option = typer.Option(f"--{one.name.replace('_', '-')}", **one.option)
+            annotation = Annotated[kind | None, option]  # type: ignore[valid-type]
+            options.append(as_json.replace(name=one.name, default=None, annotation=annotation))
+    command.__signature__ = signature.replace(parameters=[*stated, *options, as_json])  # type: ignore[attr-defined]
+    return command
+
+
 @app.command()
+@with_parameters
 def translate(
     engine: Annotated[str, typer.Argument(help="box2d, bullet, pybullet, mujoco, yade, opensees; spring.")],
     mass: Annotated[
@@ -33,35 +51,8 @@ def translate(
         str | None, typer.Option("--box", help="Box2D: sides of a flat box on two points.", metavar="WIDTH,HEIGHT")
     ] = None,
     static: Annotated[bool, typer.Option("--static", help="Box2D: on a static body.")] = False,
-    hertz: Annotated[float | None, typer.Option("--hertz", help="Box2D: frequency.", metavar="HZ")] = None,
-    damping_ratio: Annotated[float | None, typer.Option("--damping-ratio", help="Box2D: damping ratio.")] = None,
-    erp: Annotated[float | None, typer.Option("--erp", help="Bullet: error reduction.")] = None,
-    cfm: Annotated[float | None, typer.Option("--cfm", help="Bullet: constraint force mixing.")] = None,
-    timeconst: Annotated[float | None, typer.Option("--timeconst", help="MuJoCo: solref[0].", metavar="S")] = None,
-    dampratio: Annotated[float | None, typer.Option("--dampratio", help="MuJoCo: solref[1].")] = None,
-    dmax: Annotated[float | None, typer.Option("--dmax", help="MuJoCo: constant impedance; 0.95.")] = None,
-    solimp: Annotated[
-        str | None, typer.Option("--solimp", help="MuJoCo: dmin,dmax,width,midpoint,power.", metavar="NUMBERS")
-    ] = None,
-    contact_stiffness: Annotated[
-        float | None, typer.Option("--contact-stiffness", help="PyBullet: of a point.", metavar="N/M")
-    ] = None,
-    contact_damping: Annotated[
-        float | None, typer.Option("--contact-damping", help="PyBullet: of a point.", metavar="NS/M")
-    ] = None,
-    normal_stiffness: Annotated[
-        float | None, typer.Option("--normal-stiffness", help="Yade: kn.", metavar="N/M")
-    ] = None,
-    local_damping: Annotated[
-        float | None, typer.Option("--local-damping", help="Yade: NewtonIntegrator.damping.")
-    ] = None,
-    penalty: Annotated[float | None, typer.Option("--penalty", help="OpenSees: k_n of a point.", metavar="N/M")] = None,
-    stiffness: Annotated[float | None, typer.Option("--stiffness", help="Spring: k.", metavar="N/M")] = None,
-    damping: Annotated[float | None, typer.Option("--damping", help="Spring: c.", metavar="NS/M")] = None,
-    restitution: Annotated[
-        float | None, typer.Option("--restitution", help="Spring: e, in place of --damping.")
-    ] = None,
     as_json: JsonOption = False,
+    **parameters: Any,
 ) -> None:
     """Translate a contact of another program to spring, dashpot and restitution, and into the others' words.
 
@@ -75,24 +66,9 @@ def translate(
     """
     from validation.advice import engines
 
-    stated = {
-        "hertz": hertz,
-        "damping_ratio": damping_ratio,
-        "erp": erp,
-        "cfm": cfm,
-        "timeconst": timeconst,
-        "dampratio": dampratio,
-        "dmax": dmax,
-        "solimp": _numbers("--solimp", solimp),
-        "contact_stiffness": contact_stiffness,
-        "contact_damping": contact_damping,
-        "normal_stiffness": normal_stiffness,
-        "local_damping": local_damping,
-        "penalty": penalty,
-        "stiffness": stiffness,
-        "damping": damping,
-        "restitution": restitution,
-    }
+    stated = {name: value for name, value in parameters.items() if value is not None}
+    if "solimp" in stated:
+        stated["solimp"] = _numbers("--solimp", stated["solimp"])
     translation = engines.translate(
         engine,
         mass=mass,
@@ -102,7 +78,7 @@ def translate(
         points=points,
         box=_numbers("--box", box),
         static=static,
-        **{name: value for name, value in stated.items() if value is not None},
+        **stated,
     )
     echo_answer(translation.as_dict(), _lines(translation), as_json)
 

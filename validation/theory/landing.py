@@ -131,7 +131,7 @@ def own_landing(ratio: float) -> OwnLanding:
         raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
     if ratio < SOFTEST:
         return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
-    free, closed = np.diag(STRAIN), np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
+    closed = np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
     depths: list[float] = []
     duration, first_rate = 0.0, 0.0
@@ -142,20 +142,23 @@ def own_landing(ratio: float) -> OwnLanding:
         position, velocity = contact.position(np.array([end]))[0], contact.velocity(end)
         if len(depths) == 1:
             duration, first_rate = end, float(GAP @ velocity)
-        flight = _Motion.of(free, position, velocity)
-        fall, _ = _end(flight, _clear(position, velocity), opens=False)
-        if math.isinf(fall):
+        landed = _after_flight(position, velocity)
+        if landed is None:
             break
-        position, velocity = flight.position(np.array([fall]))[0], flight.velocity(fall)
+        position, velocity = landed
     depth = max(depths) * math.sqrt(4 * ratio)
     return OwnLanding(float(velocity[0]), first_rate, depth, duration, len(depths))
 
 
-def _clear(position: Array, velocity: Array) -> float:
-    """Return how long a flight must be looked at: then the strain can no longer reach the springs, or has done so."""
+def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | None:
+    """Return position and velocity at the end of a flight; None of one that does not end."""
     strain = math.hypot(position[1], velocity[1] / math.sqrt(12))
     distance = strain / 2 - position[0] if velocity[0] > 0 else strain / 2 + position[0]
-    return float(max(distance, 0.0) / abs(velocity[0])) + 1.0
+    # beyond this time the strain can no longer reach the springs, or has done so
+    longest = float(max(distance, 0.0) / abs(velocity[0])) + 1.0
+    flight = _Motion.of(np.diag(STRAIN), position, velocity)
+    fall, _ = _end(flight, longest, opens=False)
+    return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
 
 
 def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
@@ -204,11 +207,10 @@ def rigid_stop() -> tuple[float, ...]:
         speed = float(-(GAP @ velocity))
         speeds.append(speed)
         velocity = velocity + np.array([speed / 2, -3 * speed])
-        flight = _Motion.of(np.diag(STRAIN), position, velocity)
-        fall, _ = _end(flight, _clear(position, velocity), opens=False)
-        if math.isinf(fall):
+        landed = _after_flight(position, velocity)
+        if landed is None:
             return (*speeds, float(velocity[0]))
-        position, velocity = flight.position(np.array([fall]))[0], flight.velocity(fall)
+        position, velocity = landed
 
 
 def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:

@@ -22,7 +22,8 @@ from validation.errors import InputError
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.theory import landing, statics
+from validation.theory import boxes, landing, statics
+from validation.theory.rocking import Rectangle
 
 MOST_CASES = 200  # of a sweep that are looked at, evenly taken
 MOST_BLOCKS = 4  # sub-blocks whose modes are found at once; `damping` finds those of more
@@ -38,15 +39,7 @@ class Number:
     says: str
 
 
-@dataclass(frozen=True)
-class Range:
-    """A derived number over the cases of a scene, in all of which it lies between two values."""
-
-    name: str
-    low: float
-    high: float
-    unit: str
-    says: str
+Ranges = dict[str, tuple[float, float, Number]]  # name -> least, greatest, and the number of one case
 
 
 def cases(scene: Scene) -> list[Scene]:
@@ -57,16 +50,14 @@ def cases(scene: Scene) -> list[Scene]:
     return [every[i] for i in np.linspace(0, len(every) - 1, MOST_CASES).round().astype(int)]
 
 
-def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> list[Range]:
+def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> Ranges:
     """Return each number's range over cases, in the order of the case that has most of them."""
-    values: dict[str, list[Number]] = {}
+    ranges_by_name: Ranges = {}
     for numbers in sorted(numbers_by_case, key=len, reverse=True):
         for number in numbers:
-            values.setdefault(number.name, []).append(number)
-    return [
-        Range(name, min(n.value for n in samples), max(n.value for n in samples), samples[0].unit, samples[0].says)
-        for name, samples in values.items()
-    ]
+            low, high, first = ranges_by_name.get(number.name, (number.value, number.value, number))
+            ranges_by_name[number.name] = (min(low, number.value), max(high, number.value), first)
+    return ranges_by_name
 
 
 def numbers(scene: Scene) -> list[Number]:
@@ -237,10 +228,9 @@ def _rigid(scene: Scene) -> Iterator[Number]:
     yield from _turning(section)
     yield from _falling(section)
     if section.base_amplitude:
-        rate = 2 * math.pi * section.base_frequency
-        acceleration = abs(section.base_amplitude) * rate**2
-        yield Number("a ground", acceleration, "m/s2", "greatest acceleration of the ground, A (2 pi f)^2")
-        yield Number("v ground", abs(section.base_amplitude) * rate, "m/s", "its greatest velocity")
+        ground = boxes.ShakenBox(section.base_amplitude, section.base_frequency, 0.0, section.gravity)
+        yield Number("a ground", ground.peak, "m/s2", "greatest acceleration of the ground, A (2 pi f)^2")
+        yield Number("v ground", ground.peak / ground.rate, "m/s", "its greatest velocity")
     if section.stiffness is not None:
         period = 2 * math.pi * math.sqrt(lowest.mass / section.stiffness)
         yield Number("t contact", period / 2, "s", "half a period of box 1 on its contact: of an impact without weight")
@@ -253,13 +243,10 @@ def _turning(section: RigidSection) -> Iterator[Number]:
     is_alone_on_level = len(section.box) == 1 and section.slope == 0 and section.gravity > 0
     if not is_alone_on_level or section.friction_coefficient < box.width / box.height:
         return
-    # About an edge, at half the diagonal R from the centre: I = 4 m R^2 / 3, and the centre must rise by R (1 - cos).
-    half_diagonal = math.hypot(box.width, box.height) / 2
-    rate = math.sqrt(3 * section.gravity / (4 * half_diagonal))
-    alpha = math.atan2(box.width, box.height)
-    yield Number("alpha", math.degrees(alpha), "deg", "rotation at which the box stands on its edge")
-    yield Number("p", rate, "rad/s", "sqrt(3 g / 4R), frequency parameter of rocking")
-    yield Number("w over", 2 * rate * math.sin(alpha / 2), "rad/s", "rate about its edge that just turns it over")
+    turned = Rectangle(box.width, box.height, section.gravity)
+    yield Number("alpha", math.degrees(turned.alpha), "deg", "rotation at which the box stands on its edge")
+    yield Number("p", math.sqrt(turned.rate2), "rad/s", "sqrt(3 g / 4R), frequency parameter of rocking")
+    yield Number("w over", boxes.critical_spin(turned), "rad/s", "rate about its edge that just turns it over")
 
 
 def _falling(section: RigidSection) -> Iterator[Number]:

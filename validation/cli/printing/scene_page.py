@@ -15,7 +15,6 @@ import numpy as np
 from validation.advice.plain import Line, in_columns
 from validation.cli.printing import numbers
 from validation.scenes import features
-from validation.scenes.column import ColumnSection
 from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.rigid import BoxSection, RigidSection
@@ -69,7 +68,10 @@ def as_data(scene: Scene) -> dict[str, Any]:
     return {
         "scene": scene.definition(),
         "cases": len(scene.expand()),
-        "numbers": {r.name: {"low": r.low, "high": r.high, "unit": r.unit} for r in numbers.ranges(derived)},
+        "numbers": {
+            name: {"low": low, "high": high, "unit": number.unit}
+            for name, (low, high, number) in numbers.ranges(derived).items()
+        },
         "remarks": dict(_remarks(sampled_cases, derived)),
         "warnings": plausibility_warnings(scene),
     }
@@ -132,12 +134,12 @@ def _short(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _table(ranges: Sequence[numbers.Range]) -> list[Line]:
+def _table(ranges: numbers.Ranges) -> list[Line]:
     rows: list[Line] = [("", "value", "", "what it is")]
-    for quantity in ranges:
-        low = f"{quantity.low:.4g}"
-        high = f"{quantity.high:.4g}"
-        rows.append((quantity.name, low if low == high else f"{low} .. {high}", quantity.unit, quantity.says))
+    for name, (low, high, number) in ranges.items():
+        least = f"{low:.4g}"
+        most = f"{high:.4g}"
+        rows.append((name, least if least == most else f"{least} .. {most}", number.unit, number.says))
     return rows
 
 
@@ -153,65 +155,46 @@ def drawing(scene: Scene, width: int | None) -> Iterator[str]:
 
 def block(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
-    across, rows = _extent(scene)
-    beside = [*filter(None, (_size(scene), _material(scene), _start(scene)))]
-    foot = "z" if scene.contact.law == "locked" else "x"
+    b = scene.block
+    wide, high = np.ptp(b.outline, axis=0)
+    slenderness = wide / high
+    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+    rows = _rows(across, slenderness)
+    shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
+    cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
+    start = {f"starts at {b.velocity:g} m/s": b.velocity, f"tilted by {b.tilt:g} deg": b.tilt}
+    start |= {f"gap of {scene.contact.gap:g} m": scene.contact.gap}
+    beside = [
+        f"{wide:.3g} m wide, {high:.3g} m high{shape}{cut}",
+        f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}",
+        *filter(None, [", ".join(words for words, value in start.items() if value)]),
+    ]
     *above, last = textwrap.wrap(_loads(scene), (width or 1000) - across - BESIDE, break_on_hyphens=False)
     yield from (" " * (across + BESIDE) + text for text in above)
-    yield f"  {_arrows(scene, across).ljust(across + 2)}   {last}"
+    mark = ">" if scene.load.traction else ""
+    if scene.load.pressure:
+        mark = "v"
+    arrows = " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
+    yield f"  {arrows.ljust(across + 2)}   {last}"
     yield f"  +{'-' * across}+"
     for text in (*beside, *[""] * (rows - len(beside))):
         yield f"  |{' ' * across}|   {text}".rstrip()
     yield f"  +{'-' * across}+"
-    first, *more = _springs(scene)
-    yield f"  {foot}{' ' * across}{foot}   {first}"
-    yield f" {'=' * (across + 4)}  {', '.join(more)}".rstrip()
-
-
-def _extent(scene: Scene) -> tuple[int, int]:
-    """Return columns and rows of the block's inside."""
-    width, height = np.ptp(scene.block.outline, axis=0)
-    slenderness = width / height
-    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
-    return across, _rows(across, slenderness)
+    c = scene.contact
+    springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
+    if c.shear_stiffness is not None:
+        springs += f", shear {c.shear_stiffness:g} N/m"
+    holds = "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
+    if c.friction is not None:
+        holds += f", friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
+    foot = "z" if c.law == "locked" else "x"
+    yield f"  {foot}{' ' * across}{foot}   {springs}"
+    yield f" {'=' * (across + 4)}  {holds}"
 
 
 def _rows(across: int, slenderness: float) -> int:
     """Return the rows of a body's inside; a row is as high as two columns are wide."""
     return min(max(3, round(across / slenderness / 2)), INSIDE // 2)
-
-
-def _size(scene: Scene) -> str:
-    b = scene.block
-    width, height = np.ptp(b.outline, axis=0)
-    cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
-    shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
-    return f"{width:.3g} m wide, {height:.3g} m high{shape}{cut}"
-
-
-def _material(scene: Scene) -> str:
-    b = scene.block
-    return f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}"
-
-
-def _start(scene: Scene) -> str:
-    block = scene.block
-    gap = scene.contact.gap
-    parts = (
-        f"starts at {block.velocity:g} m/s" if block.velocity else "",
-        f"tilted by {block.tilt:g} deg" if block.tilt else "",
-        f"gap of {gap:g} m" if gap else "",
-    )
-    return ", ".join(filter(None, parts))
-
-
-def _arrows(scene: Scene, across: int) -> str:
-    mark = ""
-    if scene.load.pressure:
-        mark = "v"
-    elif scene.load.traction:
-        mark = ">"
-    return " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
 
 
 def _loads(scene: Scene) -> str:
@@ -221,23 +204,6 @@ def _loads(scene: Scene) -> str:
     if load.base_motion is not None:
         loads.append(f"base moved by {load.base_motion.rpartition('/')[2]}")
     return ", ".join(loads) or "no load"
-
-
-def _springs(scene: Scene) -> Iterator[str]:
-    """Yield the springs of the corners, then how they hold."""
-    c = scene.contact
-    springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
-    yield springs + ("" if c.shear_stiffness is None else f", shear {c.shear_stiffness:g} N/m")
-    yield "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
-    if c.friction is not None:
-        yield f"friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
-
-
-def _contacts_of_column(section: ColumnSection) -> Iterator[str]:
-    """Yield the keys of the contacts that open or slip and have no joint of their own."""
-    words = [described(name, value, key) for name, value, key in stated(section) if name in OF_CONTACTS]
-    if words:
-        yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
 
 
 def column(scene: Scene) -> Iterator[str]:
@@ -268,8 +234,10 @@ def column(scene: Scene) -> Iterator[str]:
         yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {', '.join(numbers)}"
     if layered_column.glue is not None:
         yield f"{' ' * (INSIDE + 7)}blocks glued by {layered_column.glue:g} Pa/m"
-    if layered_column.law != "bonded":
-        yield from _contacts_of_column(layered_column)
+    # the keys of contacts that open or slip and have no joint of their own
+    words = [described(name, value, key) for name, value, key in stated(layered_column) if name in OF_CONTACTS]
+    if layered_column.law != "bonded" and words:
+        yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
     base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
     yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"
 
@@ -295,9 +263,19 @@ def boxes(section: RigidSection) -> Iterator[str]:
             words = beside[row] if row < len(beside) else ""
             yield (f"{margin}|{inside}|".ljust(INSIDE + BESIDE) + words).rstrip()
         yield f"{margin}+{'-' * across}+"
-    ground, *more = _ground(section)
-    yield f" {'=' * (INSIDE + 4)}  {ground}"
-    yield from (" " * (INSIDE + BESIDE) + line for line in more)
+    slope = "level ground"
+    if section.slope:
+        slope = f"slope of {abs(section.slope):g} deg, down to the {'right' if section.slope > 0 else 'left'}"
+    contacts = "frictionless" if section.friction == 0 else f"friction {section.friction:g} deg"
+    springs = "rigid or as a program has them"
+    if section.stiffness is not None:
+        springs = f"{section.stiffness:g} N/m below box 1"
+    yield f" {'=' * (INSIDE + 4)}  contacts: {contacts}, restitution {section.restitution:g}, {springs}"
+    margin = " " * (INSIDE + BESIDE)
+    yield f"{margin}{slope}, g = {section.gravity:g} m/s2"
+    if section.base_amplitude:
+        motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
+        yield f"{margin}ground moved by A (1 - cos 2 pi f t), {motion}"
 
 
 def _box(box: BoxSection, count: int) -> list[str]:
@@ -308,20 +286,3 @@ def _box(box: BoxSection, count: int) -> list[str]:
         described(name, value, key) for name, value, key in stated(box) if name not in ("width", "height", "density")
     ]
     return [*lines, ", ".join(start)] if start else lines
-
-
-def _ground(section: RigidSection) -> Iterator[str]:
-    """Yield what the boxes stand on and how its contacts are, then what moves them."""
-    contacts = ["frictionless" if section.friction == 0 else f"friction {section.friction:g} deg"]
-    contacts.append(f"restitution {section.restitution:g}")
-    contacts.append(
-        "rigid or as a program has them" if section.stiffness is None else f"{section.stiffness:g} N/m below box 1"
-    )
-    yield f"contacts: {', '.join(contacts)}"
-    slope = f"slope of {section.slope:g} deg, down to the right" if section.slope > 0 else "level ground"
-    if section.slope < 0:
-        slope = f"slope of {-section.slope:g} deg, down to the left"
-    yield f"{slope}, g = {section.gravity:g} m/s2"
-    if section.base_amplitude:
-        motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
-        yield f"ground moved by A (1 - cos 2 pi f t), {motion}"
