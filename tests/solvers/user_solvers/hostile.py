@@ -4,7 +4,6 @@ import atexit
 import gc
 import os
 import resource
-import subprocess
 import sys
 import threading
 import time
