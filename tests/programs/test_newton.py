@@ -13,7 +13,14 @@ from peers.newton import XPBD, SemiImplicit, SemiImplicitAsItComes, XPBDAsItCome
 from programs.rigid_scenes import euler, rigid_scene
 
 # To look for it costs nothing; to import it takes seconds in every process that collects these tests.
-installed = pytest.mark.skipif(not find_spec("newton"), reason="NOT RUN: Newton is not installed")
+is_absent = pytest.mark.skipif(not find_spec("newton"), reason="NOT RUN: Newton is not installed")
+
+
+def installed(test):
+    """Mark a test that runs the program as long; what it has in common with other programs has short tests there."""
+    return pytest.mark.long(is_absent(test))
+
+
 ALL = [XPBD(), XPBDAsItComes(), SemiImplicit(), SemiImplicitAsItComes()]
 every = pytest.mark.parametrize("solver", ALL, ids=lambda solver: type(solver).__name__)
 SLOPE = math.radians(20.0)
