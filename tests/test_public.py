@@ -99,6 +99,3 @@ def test_a_folder_of_the_users_named_dda_is_named_by_python_too(tmp_path: Path) 
     code = "import validation\ntry:\n    validation.solve\nexcept ImportError as error:\n    print(error)"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.startswith(f"{tmp_path / 'dda'} is in the way of the package dda") and "rename it" in done.stdout
-    command = [sys.executable, "-P", "-m", "dda_validation", "list", "studies"]  # as an installed command starts
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0 and "core" in done.stdout, done.stderr

@@ -227,14 +227,14 @@ def test_every_public_name_has_a_docstring() -> None:
 
 
 EXAMPLES = [
-    path
+    pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem == "across" else [])  # seconds
     for package in ("dda", "fem_reference", "validation")
     for path in sorted((ROOT / package).rglob("*.py"))
     if ">>>" in path.read_text()
 ]
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EXAMPLES)
 def test_examples_of_docstrings_print_what_they_say(path: Path) -> None:
     module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
     result = doctest.testmod(module)

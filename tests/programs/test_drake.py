@@ -2,6 +2,7 @@
 
 import math
 import sys
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -9,12 +10,11 @@ from peers.boxes import spring_step, substeps
 from peers.drake import OWN_STEP, SPRING_SHARE, AsItComes, Drake, program
 from programs.rigid_scenes import euler, rigid_scene
 
-try:
-    program()
-    ABSENT = False
-except NotImplementedError:
-    ABSENT = True
-installed = pytest.mark.skipif(ABSENT, reason="NOT RUN: Drake is not installed")
+# To look for it costs nothing; to import it takes seconds in every process that collects these tests.
+installed = pytest.mark.skipif(not find_spec("pydrake"), reason="NOT RUN: Drake is not installed")
+# Thousands of steps a second with the chosen settings, few as it comes.
+slowly = pytest.mark.parametrize("solver", [pytest.param(Drake(), marks=pytest.mark.long), AsItComes()],
+                                 ids=["chosen", "default"])  # fmt: skip
 both = pytest.mark.parametrize("solver", [Drake(), AsItComes()], ids=["chosen", "default"])
 SLOPE = math.radians(20.0)
 
@@ -75,7 +75,7 @@ def test_a_box_slides_with_coulomb_friction_to_the_order_of_the_step():
 
 
 @installed
-@both
+@slowly
 def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
     scene = rigid_scene({"width": 2.0, "height": 1.5}, stiffness=1e7)
     weight = 9.81 * 3000.0
@@ -83,7 +83,7 @@ def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
 
 
 @installed
-@both
+@slowly
 def test_no_dissipation_gives_the_speed_back_where_the_step_resolves_the_contact(solver):
     """Over half a period implicit steps of length h take away pi (k/m)^(1/2) h / 2 of the speed."""
     scene = rigid_scene({"velocity": (0.0, -1.0)}, restitution=1.0, stiffness=1e6, gravity=0.0, refine=4, steps=20)

@@ -5,18 +5,22 @@ Warp compiles a solver's kernels when it is used first, for a minute or two, and
 
 import math
 import sys
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from peers.newton import XPBD, SemiImplicit, SemiImplicitAsItComes, XPBDAsItComes, program
+from peers.newton import XPBD, SemiImplicit, SemiImplicitAsItComes, XPBDAsItComes
 from programs.rigid_scenes import euler, rigid_scene
 
-try:
-    program()
-    ABSENT = False
-except NotImplementedError:
-    ABSENT = True
-installed = pytest.mark.skipif(ABSENT, reason="NOT RUN: Newton is not installed")
+# To look for it costs nothing; to import it takes seconds in every process that collects these tests.
+is_absent = pytest.mark.skipif(not find_spec("newton"), reason="NOT RUN: Newton is not installed")
+
+
+def installed(test):
+    """Mark a test that runs the program as long; what it has in common with other programs has short tests there."""
+    return pytest.mark.long(is_absent(test))
+
+
 ALL = [XPBD(), XPBDAsItComes(), SemiImplicit(), SemiImplicitAsItComes()]
 every = pytest.mark.parametrize("solver", ALL, ids=lambda solver: type(solver).__name__)
 SLOPE = math.radians(20.0)

@@ -98,11 +98,11 @@ def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
 
 
 @pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
-def test_a_worker_process_has_one_thread(many_threads: None, tmp_path: Path, method: str) -> None:
+def test_a_worker_process_has_one_thread(many_threads: None, method: str) -> None:
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method(method, force=True)
     try:
-        with _pool(1, tmp_path) as pool:
+        with _pool(1) as pool:
             assert pool.submit(threads_of_worker).result() == {1}
     finally:
         multiprocessing.set_start_method(before, force=True)
@@ -113,13 +113,13 @@ def threads_of_worker() -> set[int]:
     return threads()
 
 
-def test_a_worker_process_logs_what_this_one_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
     for log in solver_logs():
         monkeypatch.setattr(log, "level", logging.ERROR)
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method("spawn", force=True)
     try:
-        with _pool(1, tmp_path) as pool:
+        with _pool(1) as pool:
             assert pool.submit(log_levels).result() == [logging.ERROR] * 2
     finally:
         multiprocessing.set_start_method(before, force=True)

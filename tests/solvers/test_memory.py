@@ -1,9 +1,8 @@
-"""Memory: limits of control groups and of the process count, and a refusal for want of it is not kept."""
+"""Memory: limits of control groups count, and a refusal for want of it is not kept."""
 
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import pytest
@@ -35,7 +34,6 @@ def left(root: Path) -> float:
 
 
 V2 = "0::/user.slice/job.scope\n"
-V1 = "12:cpu,cpuacct:/\n9:memory:/docker/abc\n1:name=systemd:/docker/abc\n"
 JOB, USER = "user.slice/job.scope", "user.slice"
 
 
@@ -58,16 +56,6 @@ JOB, USER = "user.slice/job.scope", "user.slice"
             },
             70 * MB,
         ),
-        (V1, {"memory/docker/abc/memory.limit_in_bytes": "9223372036854771712"}, math.inf),
-        (
-            V1,
-            {
-                "memory/memory.limit_in_bytes": f"{100 * MB}",
-                "memory/memory.usage_in_bytes": f"{80 * MB}",
-                "memory/memory.stat": f"cache 1\ntotal_inactive_file {20 * MB}\n",
-            },
-            40 * MB,
-        ),
         ("rubbish\n", {"memory.max": "1"}, math.inf),
     ],
 )
@@ -81,20 +69,6 @@ def test_the_least_of_all_limits_is_what_there_is(monkeypatch: pytest.MonkeyPatc
     assert memory.available() <= there / 4
     monkeypatch.setattr(memory, "of_groups", lambda root: iter([-1.0]))
     assert memory.available() == 0.0
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="sizes of a process are read from /proc")
-@pytest.mark.parametrize(("limit", "field"), [("RLIMIT_AS", "VmSize"), ("RLIMIT_DATA", "VmData")])
-def test_limits_of_the_process_count(limit: str, field: str) -> None:
-    import resource
-
-    number, rest = getattr(resource, limit), 2**28
-    before = resource.getrlimit(number)
-    resource.setrlimit(number, (int(memory._fields(Path("/proc/self/status"))[field]) + rest, before[1]))
-    try:
-        assert 0 < memory.available() <= 1.1 * rest  # this process may have given some back meanwhile
-    finally:
-        resource.setrlimit(number, before)
 
 
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

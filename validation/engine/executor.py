@@ -8,12 +8,10 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, as_completed
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from validation.engine.case import Case
 from validation.engine.measure import execute, failed_row
@@ -27,7 +25,6 @@ from validation.solvers.logs import solver_logs
 PARENT_CHECK_INTERVAL = 0.25  # s
 DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
 Ending = tuple[Row, History | None]
-_note_file = Path()  # of a worker: which case it runs
 
 
 @dataclass(frozen=True)
@@ -92,13 +89,12 @@ def executed(
     large = {task.key for task in pending if task.memory() > share}
     remaining = {task.key: task for task in pending if task.key not in large}
     while remaining:
-        with TemporaryDirectory() as notes, closing(run_on_processes(remaining, jobs, Path(notes))) as endings:
+        with closing(run_on_processes(remaining.values(), jobs)) as endings:
             for row, history in endings:
                 del remaining[row.key]
                 yield row, history
-            suspects = [path.read_text() for path in Path(notes).iterdir()]
-        running = [key for key in suspects if key in remaining] or list(remaining)[:1]
-        for key in running:
+        # Cases are begun in their order: those that were on the workers of a lost pool are the first that remain.
+        for key in list(remaining)[:jobs]:
             yield run_in_own_process(remaining.pop(key))
     for task in pending:
         if task.key in large:
@@ -118,13 +114,10 @@ def _on_cluster(pending: Sequence[Pending], executor: Executor) -> Generator[End
             yield futures[future].failed(error_text(error))
 
 
-def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> Generator[Ending, None, None]:
-    """Run cases on worker processes; those that a lost worker has taken with it are left out.
-
-    Each worker keeps a note of the case that it runs, in a file of its own in the directory `notes`.
-    """
-    with _pool(min(jobs, len(pending)), notes) as pool:
-        futures = {pool.submit(_run_with_note, task): task for task in pending.values()}
+def run_on_processes(pending: Collection[Pending], jobs: int) -> Generator[Ending, None, None]:
+    """Run cases on worker processes; those that a lost worker has taken with it are left out."""
+    with _pool(min(jobs, len(pending))) as pool:
+        futures = {pool.submit(task.run): task for task in pending}
         for future in as_completed(futures):
             error = future.exception()
             if error is None:
@@ -133,17 +126,9 @@ def run_on_processes(pending: Mapping[str, Pending], jobs: int, notes: Path) -> 
                 yield futures[future].failed(error_text(error))
 
 
-def _run_with_note(task: Pending) -> Ending:
-    _note_file.write_text(task.key)
-    try:
-        return task.run()
-    finally:
-        _note_file.unlink()
-
-
 def run_in_own_process(task: Pending) -> Ending:
     """Run a case in a process of its own: one that kills its worker is a row like any other."""
-    with _pool(1, Path()) as pool:  # `task.run` writes no note
+    with _pool(1) as pool:
         try:
             return pool.submit(task.run).result()
         except BrokenExecutor:
@@ -151,9 +136,9 @@ def run_in_own_process(task: Pending) -> Ending:
 
 
 @contextmanager
-def _pool(jobs: int, notes: Path) -> Iterator[Executor]:
+def _pool(jobs: int) -> Iterator[Executor]:
     """Yield a pool of processes that goes down at once on an interruption."""
-    arguments = (os.getpid(), solver_logs()[0].level, notes)
+    arguments = (os.getpid(), solver_logs()[0].level)
     pool = ProcessPoolExecutor(jobs, initializer=_initialize_worker, initargs=arguments)
     wait = True
     try:
@@ -168,10 +153,8 @@ def _pool(jobs: int, notes: Path) -> Iterator[Executor]:
         pool.shutdown(wait=wait, cancel_futures=True)
 
 
-def _initialize_worker(parent: int, log_level: int, notes: Path) -> None:
+def _initialize_worker(parent: int, log_level: int) -> None:
     """Bind a worker's life to its parent's, leave Ctrl-C to the parent, which ends the workers; one BLAS thread."""
-    global _note_file
-    _note_file = notes / str(os.getpid())
     limit_process()
     for log in solver_logs():
         log.setLevel(log_level)

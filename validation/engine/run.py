@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -25,7 +25,6 @@ from validation.runs.records import (
     AlarmRecord,
     Annotations,
     CaseRecord,
-    ComparisonRecord,
     DerivedRecord,
     Manifest,
     VerdictRecord,
@@ -80,12 +79,7 @@ class StudyCases:
 
 def study_cases(study: Study, full: bool = False, ranks: int = 1) -> StudyCases:
     """Return the cases of a study with their keys; the parameters are those of `Study.cases`."""
-    return keyed_cases(study.cases(full, ranks), study)
-
-
-def keyed_cases(cases: Sequence[Case], study: Study) -> StudyCases:
-    """Return cases with their keys, and the study whose names their rows get."""
-    return StudyCases(study, [(case, case.key()) for case in cases])
+    return StudyCases(study, [(case, case.key()) for case in study.cases(full, ranks)])
 
 
 def run_study(
@@ -132,7 +126,7 @@ def finish(
     progress: Progress | None = None,
 ) -> Finished:
     """Take finished cases from the results directory and run the others; the parameters are those of `run_study`."""
-    group = keyed_cases(cases, study)
+    group = StudyCases(study, [(case, case.key()) for case in cases])
     (ended,) = run_cases([group], results, jobs=jobs, executor=executor, progress=progress)
     return ended.finished(results)
 
@@ -167,7 +161,9 @@ def run_cases(
     pooled: dict[str, Pending] = {}
     missing: dict[str, list[StudyCases]] = {}  # by key, the studies that wait for its row
     for group in untimed:
-        group.rows.update(_valid_rows(group.keyed, finished_rows, results))
+        for case, key in group.keyed:
+            if key in finished_rows and _is_valid(finished_rows[key], case, results):
+                group.rows[key] = finished_rows[key]
         for task in group.pending():
             pooled.setdefault(task.key, task)
             missing.setdefault(task.key, []).append(group)
@@ -202,16 +198,22 @@ def judge_study(group: StudyCases, results: Results) -> JudgedStudy:
     finished = group.finished(results)
     scenes = list({case.scene.name: case.scene for case in group.cases}.values())
     annotations = _annotated(study, scenes, finished)
-    manifest = _manifest(study, group.cases, finished, list(compare(finished, study.pairs)), annotations)
+    manifest: Manifest = {
+        "study": study.name,
+        "title": study.title,
+        "purpose": study.purpose,
+        "cases": [_case_record(case, finished) for case in group.cases],
+        "comparisons": list(compare(finished, study.pairs)),
+        "derived": [_derived_record(finished, *name) for name in finished.derived],
+        "data": dict(study.data()),
+        "budgets": annotations["budgets"],
+        "alarms": annotations["alarms"],
+        "provenance": of_rows(finished.rows.values()),
+    }
     verdicts = [evaluate(gate, finished) for gate in existing(study.gates(), scenes, finished)]
     results.write_json(f"studies/{study.name}.json", manifest)
     results.write_verdicts(study.name, [_record(verdict, study, annotations["alarms"]) for verdict in verdicts])
     return JudgedStudy(study, verdicts, {case: row.outcome for case, row in finished.rows.items()})
-
-
-def _valid_rows(keyed: Sequence[tuple[Case, str]], rows: Mapping[str, Row], results: Results) -> dict[str, Row]:
-    """Return the rows of the results directory that need not be made again."""
-    return {key: rows[key] for case, key in keyed if key in rows and _is_valid(rows[key], case, results)}
 
 
 def _is_valid(row: Row, case: Case, results: Results) -> bool:
@@ -263,25 +265,4 @@ def _case_record(case: Case, finished: Finished) -> CaseRecord:
         "solver": case.solver,
         "key": finished.rows[case.scene.name, case.solver].key,
         "definition": case.scene.definition(),
-    }
-
-
-def _manifest(
-    study: Study,
-    cases: Sequence[Case],
-    finished: Finished,
-    comparisons: list[ComparisonRecord],
-    annotations: Annotations,
-) -> Manifest:
-    return {
-        "study": study.name,
-        "title": study.title,
-        "purpose": study.purpose,
-        "cases": [_case_record(case, finished) for case in cases],
-        "comparisons": comparisons,
-        "derived": [_derived_record(finished, *name) for name in finished.derived],
-        "data": dict(study.data()),
-        "budgets": annotations["budgets"],
-        "alarms": annotations["alarms"],
-        "provenance": of_rows(finished.rows.values()),
     }

@@ -16,7 +16,6 @@ COPIES = 4  # of a history while it is made, observed, checked and kept
 UNKNOWN = 3000  # bytes of assembly for each unknown: element matrices, indices, M, K and S
 FILL = 150  # bytes of the factor for each unknown and doubling of the mesh
 REFUSED = "must fit into memory"  # what a refusal says; it holds for the moment and is not kept
-UNLIMITED = 2.0**60  # bytes: control groups of version 1 say "no limit" as a number next to 2^63
 MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
 
@@ -90,94 +89,51 @@ def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
 
 def available() -> float:
     """Return the bytes that can be had without swapping; infinite where the system does not say."""
-    return max(0.0, min([_of_machine(), *of_groups(Path("/")), *_of_process()]))
+    return max(0.0, min([_of_machine(), *of_groups(Path("/"))]))
 
 
 def _of_machine() -> float:
-    available_bytes = _fields(Path("/proc/meminfo")).get("MemAvailable")
-    if available_bytes is not None:
-        return available_bytes
+    sizes = _numbers(Path("/proc/meminfo"))
+    if "MemAvailable:" in sizes:
+        return 1024.0 * sizes["MemAvailable:"]
     try:
         return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
         return math.inf
 
 
-def _fields(path: Path) -> dict[str, float]:
-    """Return the sizes of a file of ``Name: 123 kB`` lines [bytes]; none where it cannot be read."""
-    try:
-        words = [line.split() for line in path.read_text(encoding="utf-8", errors="replace").splitlines()]
-    except OSError:
-        return {}
-    sizes = (w for w in words if len(w) == 3 and w[2] == "kB" and w[1].isdecimal())
-    return {name.rstrip(":"): 1024.0 * int(size) for name, size, _ in sizes}
-
-
-# ---- control groups -------------------------------------------------------------------------------------------------
-
-
 def of_groups(root: Path) -> Iterator[float]:
-    """Yield what each control group of this process leaves, of version 2 and of version 1, up to the root's."""
-    for controllers, group in _groups(root):
-        limits = ["memory.max", "memory.high"]
-        used = "memory.current"
-        mount = root / "sys/fs/cgroup"
-        if controllers:
-            limits = ["memory.limit_in_bytes"]
-            used = "memory.usage_in_bytes"
-            mount = mount / "memory"
-        if controllers and "memory" not in controllers.split(","):
-            continue
-        place = mount / group.lstrip("/")
-        for directory in (d for d in (place, *place.parents) if d.is_relative_to(mount)):
-            limit = min((_number(directory / name) for name in limits), default=math.inf)
-            if limit < UNLIMITED:
-                yield limit - _unreclaimable(directory, used)
+    """Yield what the control group of this process leaves, and each above it up to the root's (version 2 of Linux).
+
+    Pages of files can be dropped and do not count as held.
+    """
+    mount = root / "sys/fs/cgroup"
+    for line in _lines(root / "proc/self/cgroup"):
+        _, is_unified, group = line.partition("0::/")
+        place = mount / group
+        for directory in (d for d in (place, *place.parents) if is_unified and d.is_relative_to(mount)):
+            limit = min(_number(directory / "memory.max"), _number(directory / "memory.high"))
+            if math.isfinite(limit):
+                held = _number(directory / "memory.current")
+                files = _numbers(directory / "memory.stat").get("inactive_file", 0.0)
+                yield limit - (max(0.0, held - files) if math.isfinite(held) else 0.0)
 
 
-def _groups(root: Path) -> list[tuple[str, str]]:
-    """Return the controllers and the path of each group that this process is in."""
+def _lines(path: Path) -> list[str]:
+    """Return the lines of a file, none where it cannot be read."""
     try:
-        lines = (root / "proc/self/cgroup").read_text(encoding="utf-8", errors="replace").splitlines()
+        return path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return []
-    parts = [line.split(":", 2) for line in lines]
-    return [(part[1], part[2]) for part in parts if len(part) == 3]
 
 
-def _unreclaimable(directory: Path, used: str) -> float:
-    """Return the bytes that a group holds and cannot give back: its files' pages can be dropped."""
-    current = _number(directory / used)
-    statistics = directory / "memory.stat"
-    try:
-        words = [line.split() for line in statistics.read_text(encoding="ascii").splitlines()]
-        of = {w[0]: float(w[1]) for w in words if len(w) == 2}
-    except (OSError, ValueError):
-        of = {}
-    files = of.get("total_inactive_file", of.get("inactive_file", 0.0))
-    return max(0.0, current - files) if math.isfinite(current) else 0.0
+def _numbers(path: Path) -> dict[str, float]:
+    """Return the second words of a file's lines by the first ones, where they are counts."""
+    words = [line.split() for line in _lines(path)]
+    return {w[0]: float(w[1]) for w in words if len(w) > 1 and w[1].isdecimal()}
 
 
 def _number(path: Path) -> float:
     """Return a limit or a size [bytes]; infinite where there is none."""
-    try:
-        text = path.read_text(encoding="ascii").strip()
-        return math.inf if text == "max" else float(text)
-    except (OSError, ValueError):
-        return math.inf
-
-
-# ---- limits of the process ------------------------------------------------------------------------------------------
-
-
-def _of_process() -> Iterator[float]:
-    """Yield what the limits of the address space and of the data leave (``ulimit -v`` and ``-d``)."""
-    try:
-        import resource
-    except ImportError:
-        return
-    sizes_in_use = _fields(Path("/proc/self/status"))
-    for limit, field in ((resource.RLIMIT_AS, "VmSize"), (resource.RLIMIT_DATA, "VmData")):
-        soft = resource.getrlimit(limit)[0]
-        if soft != resource.RLIM_INFINITY:
-            yield soft - sizes_in_use.get(field, 0.0)
+    text = "".join(_lines(path)).strip()
+    return float(text) if text.isdecimal() else math.inf

@@ -103,7 +103,8 @@ class Worker:
             try:
                 answer = dict(json.loads(line))
             except (ValueError, TypeError, RecursionError):
-                raise WorkerDied(f"no answer but {line[:60].decode(errors='replace').rstrip()!r}: {self._tail()}") from None
+                beginning = line[:60].decode(errors="replace").rstrip()
+                raise WorkerDied(f"no answer but {beginning!r}: {self._tail()}") from None
             if answer.pop("id", None) == self._request_number:
                 return answer
 
