@@ -16,12 +16,14 @@ from dda import ContactResult, Unilateral
 from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
-from validation.engine.run import finish
+from validation.engine.run import _derived_record, finish
+from validation.engine.study import Study
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.studies.claims import REGISTER, Band, Claim, Evidence, Finding, page
+from validation.studies.claims import REGISTER, Band, Evidence, Finding, Register, page
+from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE, STUDY
 from validation.studies.paper import friction, open_close
 from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
@@ -31,39 +33,53 @@ NEEDED = {need for claim in CLAIMS for need in claim.needs}
 OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS | friction.TESTS for need in claim.needs}
 
 
-@pytest.fixture(scope="module")
-def sound(finished_cases: Path) -> Finished:
-    return run(finished_cases)
-
-
 def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
     cases = [case for case in PAPER.cases() if (case.scene.name, case.solver) in needed]
     return finish(cases, PAPER, Results(directory))
 
 
-def findings(finished: Finished) -> dict[str, Finding]:
-    rows = {claim.id: finished.row(REGISTER, claim.id) for claim in CLAIMS}
-    return {name: Finding(int(row.metrics["verdict"])) for name, row in rows.items()}
+REGISTERS = {
+    "paper": (CLAIMS_OF_THE_PAPER, PAPER, run),
+    "literature": (CLAIMS_OF_THE_LITERATURE, STUDY, lambda directory: finish(STUDY.cases(), STUDY, Results(directory))),
+}
 
 
-def test_every_claim_has_its_expected_verdict(sound: Finished) -> None:
-    assert findings(sound) == {claim.id: claim.expected for claim in CLAIMS}
-    assert {f"C{i}" for i in range(1, 23)} <= set(findings(sound))
-    assert all(evaluate(gate, sound).status is Status.PASS for gate in PAPER.gates())
+@pytest.fixture(scope="module", params=REGISTERS)
+def kept(request: pytest.FixtureRequest, finished_cases: Path) -> tuple[Register, Study, Finished]:
+    """Return a register, its study and its finished cases."""
+    register, study, finished = REGISTERS[request.param]
+    return register, study, finished(finished_cases)
 
 
-@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.id)
-def test_a_changed_threshold_turns_the_verdict_over(claim: Claim, sound: Finished) -> None:
-    numbers = claim.measure(Evidence(sound))
-    wide = tuple(Band(band.number, -np.inf, np.inf) for band in claim.printed)
-    shut = tuple(Band(band.number, band.high + 1, band.high + 2) for band in claim.printed)
-    changed = replace(claim, printed=shut if claim.expected is Finding.CONFIRMED else wide)
-    assert changed.finding(numbers) is not claim.expected
-    if claim.expected is Finding.CONDITIONAL:
-        shut = tuple(Band(band.number, band.high + 1, band.high + 2) for band in claim.conditional)
-        assert replace(claim, conditional=shut).finding(numbers) is Finding.REFUTED
-    verdict = evaluate(replace(claim.gate(), low=-1.0, high=-0.5), sound)
-    assert verdict.status is Status.FAIL
+def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(kept: tuple[Register, Study, Finished]) -> None:
+    register, study, finished = kept
+    found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in register.claims}
+    assert found == {claim.id: claim.expected for claim in register.claims}
+    assert all(evaluate(gate, finished).status is Status.PASS for gate in study.gates())
+
+
+def test_a_changed_threshold_turns_the_verdict_over(kept: tuple[Register, Study, Finished]) -> None:
+    register, _, finished = kept
+    for claim in register.claims:
+        numbers = claim.measure(Evidence(finished))
+        bands = (*claim.printed, *claim.conditional)
+        assert {band.number for band in bands} | {name for name, _, _ in claim.numbers} <= numbers.keys(), claim.id
+        wide = tuple(Band(band.number, -np.inf, np.inf) for band in claim.printed)
+        shut = tuple(Band(band.number, band.high + 1, band.high + 2) for band in claim.printed)
+        changed = replace(claim, printed=shut if claim.expected is Finding.CONFIRMED else wide)
+        assert changed.finding(numbers) is not claim.expected, claim.id
+        for band in claim.conditional:
+            shut = (replace(band, low=band.high + 1, high=band.high + 2),)
+            assert replace(claim, conditional=shut).finding(numbers) is Finding.REFUTED, claim.id
+        assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
+
+
+def test_the_page_in_docs_is_what_a_fresh_run_writes(kept: tuple[Register, Study, Finished]) -> None:
+    register, _, finished = kept
+    rows = [_derived_record(finished, REGISTER, claim.id) for claim in register.claims]
+    text = (ROOT / register.page).read_text(encoding="utf-8")
+    assert text == page(register, rows)
+    assert "below 1e-12" in text and not re.search(r"e-1[0-9]", text.replace("below 1e-12", ""))
 
 
 def damped(delta: float) -> float:
@@ -104,7 +120,7 @@ FAULTS = {  # seam, what is made of it, and the claims that it turns over
 
 
 @pytest.fixture(scope="module")
-def killed(sound: Finished, tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
+def killed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
     """Gates that fail under each fault; all of them pass in the sound run."""
     found = {}
     for fault, (seam, replacement, _) in FAULTS.items():
@@ -130,18 +146,6 @@ def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed
     # no fault of ours makes a refuted statement true: those gates are bitten by changed thresholds alone
     refuted = {claim.gate().id for claim in CLAIMS if claim.expected is Finding.REFUTED}
     assert unbitten <= refuted, sorted(unbitten - refuted)
-
-
-def test_the_page_in_docs_is_what_a_fresh_run_writes(sound: Finished) -> None:
-    from validation.engine.run import _derived_record
-
-    rows = [_derived_record(sound, REGISTER, claim.id) for claim in CLAIMS]
-    assert (ROOT / "docs" / "claims.md").read_text(encoding="utf-8") == page(CLAIMS_OF_THE_PAPER, rows)
-
-
-def test_the_page_in_docs_holds_no_digits_of_rounding() -> None:
-    text = (ROOT / "docs" / "claims.md").read_text(encoding="utf-8")
-    assert "below 1e-12" in text and not re.search(r"e-1[0-9]", text.replace("below 1e-12", ""))
 
 
 def test_the_command_needs_results(tmp_path: Path) -> None:

@@ -35,19 +35,6 @@ FEW = (
     "fem: delta 0.1 % high",
     "bar: base spring k/2",
 )
-BITING = (  # enough to bite every gate of the other scenes
-    "dda: gg missing in the predictor",
-    "dda: delta 0.1 % high",
-    "dda: delta forgotten",
-    "dda: springs p/2",
-    "dda: one step late",
-    "dda: histories with another delta",
-    "fem: histories with another delta",
-    "fem: foundation k/2",
-    "fem: column's spring 1e-6 stiff",
-    "bar: base spring k/2",
-    "bar: delta missing in the step",
-)
 
 FAULTS = [
     Fault("dda: gg missing in the predictor", ("dda",), seams.DDA_PREDICTOR, no_discount(0)),
@@ -92,11 +79,6 @@ def check(slow: bool, names: Collection[str], directory: Path, finished_cases: P
     faults = [fault for fault in FAULTS if fault.name in names]
     assert len(faults) == len(names)
     check_kill_matrix(CORE, cases, gates, faults, directory, finished_cases)
-
-
-@pytest.mark.long
-def test_every_gate_is_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    check(False, BITING, tmp_path, finished_cases)
 
 
 @pytest.mark.long

@@ -174,15 +174,6 @@ def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package() 
         assert motion.overturned is falls
 
 
-def test_the_small_quarter_period_and_the_rate_ratio_are_the_textbook_ones() -> None:
-    for ratio, housner in ((1.0, 0.25), (2.0, 0.70), (4.0, 0.912)):
-        block, tilt = Rectangle(2.0, 2.0 * ratio, 9.81), 1e-7
-        inertia_by_mass = (block.width**2 + block.height**2) / 3
-        small = math.sqrt(2 * tilt * inertia_by_mass / (block.gravity * block.width / 2))
-        assert block.quarter_period(tilt) == pytest.approx(small, rel=1e-6)
-        assert block.housner == pytest.approx(housner, abs=5e-4)
-
-
 def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
     page = (Path(__file__).parents[2] / "docs/rotation.md").read_text(encoding="utf-8")
     blocks = [Rectangle(2.0, height, 9.81) for height in (2.0, 4.0, 8.0)]

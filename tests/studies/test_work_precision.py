@@ -1,7 +1,6 @@
 """Error against run time: points, fronts, the record, the commands, and the kill matrix of the study's gates."""
 
 import json
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,10 +17,8 @@ from validation.cli.app import app
 from validation.engine.run import finish, run_study
 from validation.errors import InputError
 from validation.runs.results import Results
-from validation.studies.bands import fitted_order
 from validation.studies.work import record as work_record
 from validation.studies.work import study as work_study
-from validation.studies.work.points import cheapest, floor, front, points
 from validation.studies.work.study import WORK_PRECISION
 
 ROOT = Path(__file__).parents[2]
@@ -39,14 +36,6 @@ def few(tmp_path_factory, finished_cases):
     """Return the results of the coarsest levels of one scene, by all four solvers."""
     kept = beside(finished_cases, tmp_path_factory.mktemp("few"))
     run_study(FEW, kept)
-    return kept
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory, finished_cases):
-    kept = beside(finished_cases, tmp_path_factory.mktemp("work"))
-    verdicts = run_study(COARSE, kept)
-    assert [str(v.status) for v in verdicts] == ["PASS"] * len(verdicts)
     return kept
 
 
@@ -77,26 +66,6 @@ def softer(problem):
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
-
-
-def test_orders_carry_their_sign():
-    sizes = [1.0, 0.5, 0.25, 0.125]
-    assert fitted_order(sizes, [s**2 for s in sizes]) == pytest.approx(2)
-    assert fitted_order(sizes, [1 / s for s in sizes]) == pytest.approx(-1)
-
-
-@pytest.mark.long
-def test_front_and_cheapest(results):
-    assert front([(1, 5), (2, 6), (3, 1), (2, 2), (4, 1)]) == [(1, 5), (2, 2), (3, 1)]
-    found = points(results, results.manifest("work-precision"), "work-average")
-    assert {p.method for p in found} == {"dda", "fem, linear", "fem, quadratic", "bar"}
-    level = floor(found, "displacement", "continuum")
-    dda_best = min(p.errors["displacement", "continuum"] for p in found if p.method == "dda")
-    assert level is not None and level > 0.1 and dda_best > 0.1  # the model form: no step brings DDA below it
-    assert cheapest(found, 1e-9) is None
-    best = cheapest(found, 0.1)
-    assert best is not None and best.errors["contact pressure", "continuum"] <= 0.1
-    assert all(p.seconds >= best.seconds for p in found if max(p.errors.values()) <= 0.1)
 
 
 def test_rows_are_a_table_of_every_run(few, tmp_path):
@@ -153,12 +122,6 @@ def test_the_command_refuses_to_compare_with_nothing(few, tmp_path, monkeypatch,
     done = CliRunner().invoke(app, ["record", "--results", str(few.directory)])
     assert isinstance(done.exception, InputError) and words in str(done.exception)
     assert "worst ratio" not in done.output
-
-
-def test_the_wheel_holds_the_record():
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
-    package = work_record.PATH.parent.relative_to(ROOT).as_posix().replace("/", ".")
-    assert work_record.PATH.name in settings["package-data"][package]
 
 
 def test_a_study_of_timings_repeats_and_keeps_the_spread(tmp_path):

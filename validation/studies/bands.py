@@ -51,6 +51,11 @@ def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
+def short(values: ArrayLike, digits: int = 5) -> list[float]:
+    """Return the numbers of a curve, to some digits."""
+    return [float(f"{value:.{digits}g}") for value in np.asarray(values)]
+
+
 def order_row(
     name: str, solvers: tuple[str, str], key: str, quantities: tuple[str, ...] = ("displacement",)
 ) -> Derived:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import enum
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -185,21 +185,12 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
     return tuple(claims)
 
 
-def number_gates(claims: Iterable[Claim]) -> Iterator[Gate]:
-    """Yield the gates on numbers that an independent program gives."""
-    for claim in claims:
-        for number, value, half in claim.numbers:
-            why = "whole number" if half == 0 else "half a unit of its last digit"
-            reason = f"independent program: {why}"
-            yield gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half)
-
-
 # ---- the page -----------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Register:
-    """A register of claims, as the command and the documentation show it."""
+    """A register of claims, as its study, the command and the documentation have it."""
 
     study: str
     title: str
@@ -207,6 +198,23 @@ class Register:
     speaker: str  # who says what it lists
     introduction: str
     claims: tuple[Claim, ...]
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gates on the verdicts of all claims, and on numbers that an independent program gives."""
+        gates = [claim.gate() for claim in self.claims]
+        for claim in self.claims:
+            for number, value, half in claim.numbers:
+                reason = f"independent program: {'half a unit of its last digit' if half else 'whole number'}"
+                gates.append(gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half))
+        return tuple(gates)
+
+    def rows(self) -> tuple[Derived, ...]:
+        """Return the rows of the register."""
+        return tuple(claim.row() for claim in self.claims)
+
+    def data(self, *fields: str) -> dict[str, Any]:
+        """Return fields of the claims, for the chapter."""
+        return {"claims": [{name: getattr(claim, name) for name in fields} for claim in self.claims]}
 
 
 def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -130,6 +130,17 @@ class Part:
         write_atomically(self.directory / name, lambda stream: stream.write(text.encode()))
 
 
+def number(scene: Scene, quantity: str, value: float, unit: str, uncertainty: float, **identity: str) -> dict[str, Any]:
+    """Return a single number of a scene as a row of a pack, its uncertainty to two digits."""
+    row = {"scene": slug(scene.name), **identity, "quantity": quantity, "value": value, "unit": unit}
+    return row | {"uncertainty": two_digits(uncertainty)}
+
+
+def two_digits(value: float) -> float:
+    """Return an uncertainty as it is written."""
+    return float(f"{value:.1e}")
+
+
 def readme_of(module: str) -> str:
     """Return the README of the part of a pack that a module writes: the file beside it, ``pack.md`` of ``pack.py``."""
     return Path(module).with_suffix(".md").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from validation.solvers.rigid.impacts import impact_restitution
 from validation.studies.bands import cases
 from validation.studies.contact.rebound import STIFF
 from validation.studies.opening import front
-from validation.studies.pack import Part, slug
+from validation.studies.pack import Part, number
 
 SCENES = ("unlocked", "unlocked-other", "impact", "drop", "bouncing-bar")
 COLUMNS = ("displacement", "contact_pressure", "gap_m", "normal_force_m")
@@ -68,7 +68,7 @@ def numbers(scene: Scene, motion: str, part: Part) -> Iterator[dict[str, Any]]:
     for name, value in values.items():
         if isinstance(value, float):
             unit = "1" if name == "restitution" else "s"
-            yield _number(scene, motion, name, value, unit, ROUNDED * value)
+            yield number(scene, name, value, unit, ROUNDED * value, motion=motion)
     if scene.time.steps <= FEW:
         yield from _instants(scene, motion, history)
 
@@ -81,12 +81,7 @@ def _instants(scene: Scene, motion: str, history: History) -> Iterator[dict[str,
             front_uncertainty = jump if name == "contact_pressure" else 0.0
             quantity = f"{name} at {float(t)!r} s"
             uncertainty = ROUNDED * abs(float(value)) + front_uncertainty
-            yield _number(scene, motion, quantity, float(value), UNITS[name], uncertainty)
-
-
-def _number(scene: Scene, motion: str, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
-    identity = {"scene": slug(scene.name), "motion": motion, "quantity": quantity}
-    return identity | {"value": value, "unit": unit, "uncertainty": float(f"{uncertainty:.1e}")}
+            yield number(scene, quantity, float(value), UNITS[name], uncertainty, motion=motion)
 
 
 def restitutions() -> Iterator[dict[str, float]]:

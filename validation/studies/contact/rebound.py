@@ -22,7 +22,7 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.studies import tables
-from validation.studies.bands import Band, about, cases, gate
+from validation.studies.bands import Band, about, cases, gate, short
 from validation.studies.declaration import Study
 
 KINDS = ("constant", "average", "implicit", "conserving")
@@ -151,12 +151,8 @@ def data() -> Mapping[str, Any]:
         rows = np.ones((len(PARTS), len(grid)))
         if scheme is not None:
             rows = np.array([impact_statistics(*scheme, 1.0, float(x)) for x in grid]).T
-        curves[kind] = {part: _short(row) for part, row in zip(PARTS, rows, strict=True)}
-    return {"omega": _short(grid), "schemes": curves}
-
-
-def _short(values: Any) -> list[float]:
-    return [float(f"{value:.5g}") for value in values]
+        curves[kind] = {part: short(row) for part, row in zip(PARTS, rows, strict=True)}
+    return {"omega": short(grid), "schemes": curves}
 
 
 STUDY = Study(

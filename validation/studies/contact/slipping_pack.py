@@ -18,7 +18,7 @@ from validation.solvers.registry import get_solver
 from validation.solvers.rigid.rocking import overturning_acceleration, quarter_period
 from validation.solvers.rigid.sliding import harmonic_slide
 from validation.studies.contact.pack import ROUNDED
-from validation.studies.pack import Part, slug
+from validation.studies.pack import Part, number, slug, two_digits
 
 MOTION = "block-events"
 HALF = math.degrees(math.atan(0.5))  # deg: tan(phi) = 0.5
@@ -110,7 +110,7 @@ def numbers(scene: Scene, part: Part, enclosed: list[dict[str, Any]]) -> Iterato
         enclosed.append(identity | {"midpoint": midpoint, "radius": _rounded_up(radius)})
     for n, switch in enumerate(prepared.switches()[:LISTED_SWITCHES], start=1):
         quantity = f"switch {n}: {switch.corner} {kind(switch)}"
-        yield _number(scene, quantity, switch.time, "s", ROUNDED * switch.time)
+        yield number(scene, quantity, switch.time, "s", ROUNDED * switch.time)
     yield from _instants(scene, history)
 
 
@@ -130,21 +130,12 @@ def _instants(scene: Scene, history: History) -> Iterator[dict[str, Any]]:
         for name, column in columns.items():
             quantity = f"{name} at {float(history.time[n])!r} s"
             uncertainty = ROUNDED * float(np.abs(column).max())
-            yield _number(scene, quantity, float(column[n]), VALUES.get(name, "m"), uncertainty)
-
-
-def _number(scene: Scene, quantity: str, value: float, unit: str, uncertainty: float) -> dict[str, Any]:
-    identity = {"scene": slug(scene.name), "quantity": quantity}
-    return identity | {"value": value, "unit": unit, "uncertainty": _rounded(uncertainty)}
-
-
-def _rounded(uncertainty: float) -> float:
-    return float(f"{uncertainty:.1e}")
+            yield number(scene, quantity, float(column[n]), VALUES.get(name, "m"), uncertainty)
 
 
 def _rounded_up(radius: float) -> float:
     """Return a radius that is no smaller, of two digits; that of the printed midpoint is added."""
-    return float(f"{1.1 * radius + PRINTED:.1e}")
+    return two_digits(1.1 * radius + PRINTED)
 
 
 def shakes() -> Iterator[dict[str, float]]:
@@ -155,24 +146,18 @@ def shakes() -> Iterator[dict[str, float]]:
             motion = harmonic_slide(slope, phi, amplitude, rate, duration, end, two_way)
             parameters = {"slope": slope, "friction": phi, "amplitude": amplitude, "rate": rate, "duration": duration}
             answer = {"two_way": int(two_way), "slide": float(motion.slide[0]), "slip": motion.slip}
-            yield parameters | answer | {"uncertainty": _rounded(ROUNDED * motion.slip)}
+            yield parameters | answer | {"uncertainty": two_digits(ROUNDED * motion.slip)}
 
 
 def rockings() -> Iterator[dict[str, Any]]:
     """Yield quarter periods of rigid blocks, and accelerations that overturn them."""
     for width, height in BLOCKS:
-        size = {"width": width, "height": height}
-        for share in TILTS:
-            tilt = share * math.atan2(width, height)
-            value = quarter_period(width, height, tilt)
-            yield {
-                **size,
-                "quantity": "quarter period [s]",
-                "at": tilt,
-                "value": value,
-                "uncertainty": _rounded(ROUNDED * value),
-            }
-        for duration in PULSES:
-            value = overturning_acceleration(width, height, duration)
-            overturning = {"quantity": "overturning half sine [m/s2]", "at": duration}
-            yield {**size, **overturning, "value": value, "uncertainty": _rounded(BISECTED * value)}
+        tilts = [share * math.atan2(width, height) for share in TILTS]
+        for quantity, function, instants, relative in (
+            ("quarter period [s]", quarter_period, tilts, ROUNDED),
+            ("overturning half sine [m/s2]", overturning_acceleration, PULSES, BISECTED),
+        ):
+            for at in instants:
+                value = function(width, height, at)
+                row = {"width": width, "height": height, "quantity": quantity, "at": at, "value": value}
+                yield row | {"uncertainty": two_digits(relative * value)}

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from validation.engine.finished import Derived
-from validation.gates.gate import Gate
-from validation.studies.claims import Register, number_gates, read_claims
+from validation.studies.claims import Register, read_claims
 from validation.studies.declaration import Study
 from validation.studies.literature import register
 
@@ -29,28 +24,12 @@ CLAIMS_OF_THE_LITERATURE = Register(
 )
 
 
-def gates() -> tuple[Gate, ...]:
-    """Return the gates on the verdicts of all claims, and on the numbers behind them."""
-    return (*(claim.gate() for claim in CLAIMS), *number_gates(CLAIMS))
-
-
-@functools.cache
-def derived() -> tuple[Derived, ...]:
-    """Return the rows of the register."""
-    return tuple(claim.row() for claim in CLAIMS)
-
-
-def data() -> Mapping[str, Any]:
-    """Return the claims, for the chapter."""
-    return {"claims": [{name: getattr(claim, name) for name in CHAPTER_FIELDS} for claim in CLAIMS]}
-
-
 STUDY = Study(
     name="literature",
     title="Claims of the literature",
     purpose="What publications say of schemes, contacts and boundaries that are proposed for DDA, put to the test.",
     scenes=register.SCENES,
-    gates=gates,
-    derived=derived,
-    data=data,
+    gates=CLAIMS_OF_THE_LITERATURE.gates,
+    derived=CLAIMS_OF_THE_LITERATURE.rows,
+    data=lambda: CLAIMS_OF_THE_LITERATURE.data(*CHAPTER_FIELDS),
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from dda.scheme.spectral import spectral_radius
-from validation.engine.finished import Derived
-from validation.gates.gate import Gate
-from validation.studies.claims import Register, number_gates, read_claims
+from validation.studies.bands import short
+from validation.studies.claims import Register, read_claims
 from validation.studies.declaration import Study
 from validation.studies.paper import friction, open_close, register, slips, viscous
 
@@ -40,30 +38,15 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 }
 
 
-def gates() -> tuple[Gate, ...]:
-    """Return the gates on the verdicts of all claims, and on the numbers behind them."""
-    return (*(claim.gate() for claim in CLAIMS), *number_gates(CLAIMS))
-
-
-@functools.cache
-def derived() -> tuple[Derived, ...]:
-    """Return the rows of the register."""
-    return tuple(claim.row() for claim in CLAIMS)
-
-
 def data() -> Mapping[str, Any]:
     """Return the claims, and Figure 1: spectral radius over w dt, and the square root of 1 + h that the paper draws."""
     omega = np.geomspace(0.1, 100, 241)
     curves = {}
     for name, (alpha, delta) in SCHEMES.items():
         printed = np.sqrt(np.abs(1 + (0.5 - delta) * omega**2 / (1 + alpha * omega**2)))
-        curves[name] = {"radius": _short(spectral_radius(omega, alpha, delta, 1.0)), "printed": _short(printed)}
-    claims = [{name: getattr(claim, name) for name in CHAPTER_FIELDS} for claim in CLAIMS]
-    return {"omega": _short(omega), "schemes": curves, "claims": claims}
-
-
-def _short(values: Any) -> list[float]:
-    return [float(f"{value:.6g}") for value in values]
+        radius = spectral_radius(omega, alpha, delta, 1.0)
+        curves[name] = {"radius": short(radius, 6), "printed": short(printed, 6)}
+    return {"omega": short(omega, 6), "schemes": curves} | CLAIMS_OF_THE_PAPER.data(*CHAPTER_FIELDS)
 
 
 PAPER = Study(
@@ -82,7 +65,7 @@ PAPER = Study(
         "creep-claim",
         "slope-sliding",
     ),
-    gates=gates,
-    derived=derived,
+    gates=CLAIMS_OF_THE_PAPER.gates,
+    derived=CLAIMS_OF_THE_PAPER.rows,
     data=data,
 )

@@ -18,11 +18,11 @@ import numpy as np
 from validation.advice.response import Response, polar, response
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Value
 from validation.scenes.record import read_record
 from validation.scenes.scene import SCENE_DIRECTORY, Scene, load_scene
-from validation.studies.bands import about, cases, gate
+from validation.studies.bands import about, cases, gate, short
 from validation.studies.declaration import Study
 from validation.theory import vibration
 from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
@@ -280,16 +280,12 @@ def curves() -> Mapping[str, Any]:
         "dda, exact in time": exact.reported("dda", DRAWN),  # type: ignore[arg-type]
         "continuum": response(exact.scene, DRAWN, "continuum"),
     }
-    return {"frequency": _short(DRAWN), "curves": [_curve(name, reported) for name, reported in responses.items()]}
+    return {"frequency": short(DRAWN), "curves": [_curve(name, reported) for name, reported in responses.items()]}
 
 
 def _curve(name: str, reported: Response) -> dict[str, Any]:
-    parts = {column: [_short(part) for part in polar(values)] for column, values in reported.columns.items()}
+    parts = {column: [short(part) for part in polar(values)] for column, values in reported.columns.items()}
     return {"name": name, "solver": reported.solver, "exact": reported.exact, "columns": parts}
-
-
-def _short(values: Array) -> list[float]:
-    return [float(f"{value:.5g}") for value in values]
 
 
 STUDY = Study(

@@ -15,7 +15,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.bands import about, cases, fitted_order, gate, near
+from validation.studies.bands import about, cases, fitted_order, gate, near, short
 from validation.studies.waves.measure import Guide, joint_parts
 from validation.theory import waves
 
@@ -215,7 +215,7 @@ def curves() -> dict[str, list[dict[str, object]]]:
         remaining_share = np.exp(-np.abs(k.imag) * 10 * blocks * guide.column.height)
         scheme = "(1/2, 1)" if (case.time.alpha, case.time.delta) == CONSTANT else "(1/4, 1/2)"
         series = {"speed": omega / k.real / guide.speed - 1, "left": remaining_share, "blocks": blocks}
-        values = {name: [float(f"{x:.5g}") for x in part] for name, part in series.items()}
+        values = {name: short(part) for name, part in series.items()}
         courant = round(guide.speed * case.time.step / guide.column.height, 6)
         drawn.append({"scheme": scheme, "courant": courant, **values})
     return {"curves": drawn}

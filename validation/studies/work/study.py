@@ -12,13 +12,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from validation.engine.finished import Derived, Finished
-from validation.gates.gate import Gate
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.bands import OWN, about, fitted_order, gate
+from validation.studies import tables
+from validation.studies.bands import fitted_order
 from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
@@ -32,14 +32,8 @@ ORDER_STEPS = 200  # how many of them
 REFERENCE = 2**8  # how much finer the reference of the orders in dt is
 MESHES = (8, 16, 32, 64)
 SAFETY = 1.25  # of the grid-convergence index, for three meshes and more
-GCI = {"displacement": 5.350e-5, "pressure": 5.786e-5}  # of 64 elements a side, mu = 0.25
 QUANTITIES = {"displacement": DISPLACEMENT, "pressure": PRESSURE}
-TIME_ORDERS = {
-    ("constant", "zero"): 1.0,
-    ("constant", "consistent"): 1.0,
-    ("average", "zero"): 1.0,
-    ("average", "consistent"): 2.0,
-}
+STARTS = (("constant", "zero"), ("constant", "consistent"), ("average", "zero"), ("average", "consistent"))
 
 
 def scene(name: str, title: str, values: Mapping[str, Any], sweep: Mapping[str, Any]) -> Scene:
@@ -75,7 +69,7 @@ def refined_together() -> Iterator[Scene]:
 
 def refined_steps() -> Iterator[Scene]:
     """Yield the scenes of the block alone whose step is refined."""
-    for scheme, start in TIME_ORDERS:
+    for scheme, start in STARTS:
         values = scheme_values(scheme, start, ("dda",))
         factors = [2**k for k in range(ORDER_LEVELS)]
         if (scheme, start) == ("average", "consistent"):
@@ -175,7 +169,7 @@ def grid_convergence() -> Derived:
 @functools.cache
 def derived() -> tuple[Derived, ...]:
     """Return the rows of orders, of the grid-convergence index and of the comparison with the record."""
-    times = [order_in_time(f"work-dt-{scheme}-{start}") for scheme, start in TIME_ORDERS]
+    times = [order_in_time(f"work-dt-{scheme}-{start}") for scheme, start in STARTS]
     meshes = [order_in_mesh(f"work-h-degree-{degree}") for degree in (1, 2)]
     return (*times, *meshes, grid_convergence(), work_record.compared(study_cases()))
 
@@ -190,51 +184,13 @@ def study_cases() -> tuple[tuple[str, str], ...]:
     return tuple(pairs)
 
 
-# ---- gates ----------------------------------------------------------------------------------------------------------
-
-
-def gates() -> tuple[Gate, ...]:
-    """Return all gates of the study."""
-    return (*time_orders(), *mesh_orders(), *work_record.gates())
-
-
-def time_orders() -> Iterator[Gate]:
-    """Yield the gates on orders in dt."""
-    why = (
-        "order of the scheme from this start, fitted with its sign on five steps; the coarsest one damps the second "
-        "mode by w^2 dt T / 2 = 0.11, of which the slope keeps a tenth as the next term"
-    )
-    for (scheme, start), value in TIME_ORDERS.items():
-        for q in QUANTITIES:
-            yield gate(f"work-dt-{scheme}-{start}", "order", f"order.{q}", about(value, 0.02), why)
-
-
-def mesh_orders() -> Iterator[Gate]:
-    """Yield the gates on orders in h, and on the index of the finest mesh where no closed form exists."""
-    why = (
-        "twice the degree, fitted with its sign on four meshes; 8 elements resolve the first mode, b/n = 0.13, "
-        "and leave (b/n)^2, a percent, of the next term"
-    )
-    for degree in (1, 2):
-        for q in QUANTITIES:
-            yield gate(f"work-h-degree-{degree}", "order", f"order.{q}", about(2.0 * degree, 0.02), why)
-    smooth = "linear elements on a smooth foundation: order 2 from successive changes; corners of the base are weak"
-    index = (
-        f"grid-convergence index of the finest mesh, {SAFETY} |last change| / (2^order - 1): the uncertainty of "
-        "the reference where no closed form exists; this suite's own last value, two percent for other roundings"
-    )
-    for q in QUANTITIES:
-        yield gate("work-h-poisson", "gci", f"order.{q}", (1.85, 2.15), smooth)
-        yield gate("work-h-poisson", "gci", f"gci.{q}", (0.98 * GCI[q], 1.02 * GCI[q]), index, OWN)
-
-
 WORK_PRECISION = Study(
     name="work-precision",
     title="Error against run time",
     purpose="Which method gives which error at which cost, where the model form of DDA stops it, and the orders "
     "behind the lines.",
     scenes=scenes(),
-    gates=gates,
+    gates=lambda: (*tables.gates(__name__), *work_record.gates()),
     derived=derived,
     timed=True,
     pairs=(("dda", "bar"), ("dda", "continuum"), ("fem", "bar"), ("fem", "continuum"), ("bar", "continuum")),

@@ -1,0 +1,261 @@
+"""Kill matrices of studies: every gate is bitten by a seeded fault, and every fault is seen by a gate.
+
+Those of studies that have tests of their own stand beside these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg
+from conftest import beside
+from faults import seams
+from faults.fault import Fault, late, no_damping, of_first, thousandth, times, told, with_scheme
+from faults.kill_matrix import cases_of, check_kill_matrix
+
+import dda
+from dda.one_block.natural_modes import ModalForm
+from validation.engine.run import run_study
+from validation.gates.gate import Gate, Status
+from validation.report.book import build, figures
+from validation.report.chapters.registry import CHAPTERS
+from validation.studies.catalogue import get_study
+
+# ---- columns ---------------------------------------------------------------------------------------------------------
+
+DDA, EVENTS, BARS = ("dda",), ("column-events",), ("bars-events",)
+
+
+def wrong_sign(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a push at a block's foot move its top the other way."""
+
+    def faulty(*given: Any, **named: Any) -> Any:
+        numbers, blocks, joints = sound(*given, **named)
+        return numbers, blocks, joints._replace(coupling=-joints.coupling)
+
+    return faulty
+
+
+def larger(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply what a column's history holds."""
+    return told(lambda result: {"columns": {name: factor * x for name, x in result.columns.items()}})
+
+
+def heavier(part: str, factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the density of blocks or bars."""
+    return of_first(lambda p: {part: tuple(replace(one, density=factor * one.density) for one in getattr(p, part))})
+
+
+def stronger(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the strength of joints."""
+    return of_first(
+        lambda p: {"joints": tuple(one and replace(one, strength=factor * one.strength) for one in p.joints)}
+    )
+
+
+COLUMNS = [
+    Fault("blocks: coupling of the wrong sign", DDA, seams.CONTACT_EQUATIONS, wrong_sign),
+    Fault("blocks: every solve counted twenty times", DDA, seams.CONTACT_COLUMN,
+          told(lambda result: {"step_solves": 20 * result.step_solves})),
+    Fault("blocks: histories 2 % high", DDA, seams.CONTACT_COLUMN, larger(1.02)),
+    Fault("blocks: delta 10 % high", DDA, seams.CONTACT_COLUMN, with_scheme(1, delta=lambda delta: 1.1 * delta)),
+    Fault("exact columns: blocks 1e-7 heavy", EVENTS, seams.EVENTS_COLUMN, heavier("blocks", 1 + 1e-7)),
+    Fault("exact columns: blocks 2 % heavy", EVENTS, seams.EVENTS_COLUMN, heavier("blocks", 1.02)),
+    Fault("exact bars: 1e-6 heavy", BARS, seams.EVENTS_BARS, heavier("bars", 1 + 1e-6)),
+    Fault("exact bars: joints 5 % strong", BARS, seams.EVENTS_BARS, stronger(1.05)),
+]  # fmt: skip
+
+# ---- waves -----------------------------------------------------------------------------------------------------------
+
+
+def a_hair_more(prop: property) -> property:
+    """Change a property by one in ten million."""
+    return property(lambda self: prop.fget(self) * (1 + 1e-7))  # type: ignore[misc]
+
+
+def deeper(sound: Callable[..., object]) -> Callable[..., object]:
+    """Take a layer's depth one per cent too large."""
+    return lambda modulus, density, depth, w2, state: sound(modulus, density, 1.01 * depth, w2, state)
+
+
+def slower(sound: Callable[..., tuple[np.ndarray, np.ndarray]]) -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+    """Forget the kinetic discount in the displacement, of the two formulas that have it."""
+
+    def faulty(scheme: object, D: np.ndarray, V: np.ndarray, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        displaced, moving = sound(scheme, D, V, A)
+        return displaced + (1 - scheme.gg) * scheme.step * V, moving  # type: ignore[attr-defined]
+
+    return faulty
+
+
+WAVES = [
+    Fault("blocks: inertia 1e-7 heavy", DDA, seams.COLUMN_INERTIA, times(1 + 1e-7)),
+    Fault("blocks: stiffness 1e-7 high", DDA, seams.COLUMN_STIFFNESS, times(1 + 1e-7)),
+    Fault("springs: 1e-6 stiff", DDA, seams.COLUMN_SPRINGS, times(1 + 1e-6)),
+    Fault("springs: 0.1 % soft", DDA, seams.COLUMN_SPRINGS, times(0.999)),
+    Fault("base: dashpot 1e-7 strong", DDA, seams.COLUMN_BASE, a_hair_more),
+    Fault("steps: delta 0.1 % high in the matrix", DDA, seams.COLUMN_EFFECTIVE, with_scheme(0, delta=thousandth)),
+    Fault("steps: delta 0.1 % high", DDA, seams.COLUMN_PREDICTORS, with_scheme(0, delta=thousandth)),
+    Fault("steps: gg in one formula of two", DDA, seams.COLUMN_PREDICTORS, slower),
+    Fault("steps: one late", DDA, seams.COLUMN_RUN, late),
+    Fault("steps: 2 % high", DDA, seams.COLUMN_RUN, times(1.02)),
+    Fault("fem: delta 0.1 % high", ("fem",), seams.FEM_VELOCITY, with_scheme(2, delta=thousandth)),
+    Fault("fem: joints 1e-6 stiff", ("fem",), seams.LINE_SPRINGS, times(1 + 1e-6)),
+    Fault("fem: one step late", ("fem",), seams.LINE_HISTORIES, late),
+    Fault("fem: 2 % high", ("fem",), seams.LINE_HISTORIES, times(1.02)),
+    Fault("layers: one per cent deep", ("layers",), seams.LAYERS_THROUGH, deeper),
+]
+
+# ---- sub-blocks ------------------------------------------------------------------------------------------------------
+
+# Larger systems take seconds a fault: their gates measure what those of the smaller ones measure.
+LEFT_OUT = (
+    "subblocks-locking",
+    "16x16",
+    "1x16",
+    "1x32",
+    "5x5",
+    "=4x4,fem",
+    "8x8",
+    "=100,",
+    "=10]",
+    "width=0.6",
+    "width=0.2",
+)
+
+
+def soft_glue(sound: Callable[..., object]) -> Callable[..., object]:
+    """Glue with half the stiffness."""
+    return lambda model, columns, rows, glue, pattern: sound(model, columns, rows, glue / 2, pattern)
+
+
+SUBBLOCKS = [
+    Fault("joints: base springs 1e-6 stiff", DDA, seams.SYSTEM_BASE, times(1 + 1e-6)),
+    Fault("joints: glue of half the stiffness", DDA, seams.SYSTEM_GLUE, soft_glue),
+    Fault("joints: rows of a point 1e-6 long", DDA, seams.SYSTEM_JOINT_ROWS, times(1 + 1e-6)),
+    Fault("system: mass 0.1 % heavy", DDA, seams.SYSTEM_MASS, times(1.001)),
+    Fault("system: loads 1e-6 high", DDA, seams.SYSTEM_LOAD, times(1 + 1e-6)),
+    Fault("system: forces of half the flexibility", DDA, seams.SYSTEM_FLEXIBILITY, times(0.5)),
+    Fault("system: delta 0.1 % high", DDA, seams.SYSTEM_VELOCITY, with_scheme(0, delta=thousandth)),
+    Fault("system: delta forgotten", DDA, seams.SYSTEM_VELOCITY, with_scheme(0, delta=no_damping)),
+    Fault("system: one step late", DDA, seams.SYSTEM_RUN, late),
+    Fault("dda: springs 1e-9 stiff", DDA, seams.DDA_STIFFNESS, times(1 + 1e-9)),
+    Fault("fem: nodal springs of half the length", ("fem",), seams.FEM_FOUNDATION, times(2.0)),
+    Fault("fem: foundation 5 % soft", ("fem",), seams.FEM_FOUNDATION, times(1.05)),
+    Fault("fem: mass 5 % heavy", ("fem",), seams.FEM_MASS, times(1.05)),
+    Fault("fem: rotation of the other sign", ("fem",), seams.FEM_ROTATION, times(-1.0)),
+    Fault("fem: delta 0.1 % high", ("fem",), seams.FEM_VELOCITY, with_scheme(2, delta=thousandth)),
+]
+
+# ---- stability, stiff contact, limits --------------------------------------------------------------------------------
+
+
+def printed_recursion(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Swap the robust form for the textbook one."""
+    return lambda model, scheme, steps, columns, full=False: dda.solve_textbook(model, scheme, steps, columns)
+
+
+def robust_form(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Swap the textbook form for the robust one."""
+    return lambda model, scheme, steps, columns: dda.solve(model, scheme, steps, columns)
+
+
+def unscaled_modes(sound: Callable[..., Any]) -> Callable[..., Any]:
+    """Find the modes by a general solver, which scales nothing."""
+
+    def faulty(form: Any) -> ModalForm:
+        squares, shapes = scipy.linalg.eigh(np.diag(form.K), form.M)
+        return ModalForm(np.sqrt(np.abs(squares)), shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
+
+    return faulty
+
+
+def offset(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def faulty(observed: Any, pressure: Any) -> tuple[()]:
+        observed += 1e-6
+        return ()
+
+    return faulty
+
+
+STABILITY = [
+    Fault("dda: the printed recursion", DDA, seams.DDA_SOLVE, printed_recursion),
+    Fault("dda: modes by a general solver", DDA, seams.DDA_MODES, unscaled_modes),
+    Fault("dda: load 2e-9 high", DDA, seams.DDA_LOAD, times(1 + 2e-9)),
+    Fault("dda: delta 0.1 % high", DDA, seams.DDA_VELOCITY, with_scheme(0, delta=thousandth)),
+    Fault("dda: an offset", DDA, seams.DDA_OVERFLOW, offset),
+    Fault("dda-textbook: the robust form", ("dda-textbook",), seams.DDA_TEXTBOOK, robust_form),
+]
+
+
+STIFF_CONTACT = [
+    Fault("dda: delta 0.1 % high", DDA, seams.DDA_VELOCITY, with_scheme(0, delta=thousandth)),
+    Fault("dda: one step late", DDA, seams.DDA_HISTORIES, late),
+    Fault("dda: an offset", DDA, seams.DDA_OVERFLOW, offset),
+]
+
+
+def of_degree(degree: int) -> Callable[..., Any]:
+    """Build every mesh of one degree."""
+    return lambda sound: lambda mesh, asked: sound(mesh, degree)
+
+
+LIMITS = [
+    Fault("dda: delta 1e-6 high", DDA, seams.DDA_VELOCITY, with_scheme(0, delta=lambda d: d + 1e-6)),
+    Fault("fem: always linear", ("fem",), seams.FEM_BASIS, of_degree(1)),
+    Fault("fem: always quadratic", ("fem",), seams.FEM_BASIS, of_degree(2)),
+]
+
+KILLS = {
+    "columns": COLUMNS,
+    "waves": WAVES,
+    "subblocks": SUBBLOCKS,
+    "stability-small": STABILITY,
+    "stiff-contact": STIFF_CONTACT,
+    "limits": LIMITS,
+}
+SHORT = {  # some gates and the faults that bite them, in the short tests
+    "columns": (
+        ("columns-domino", "columns-settle[time.step=0.02", "columns-slips-steps[time.step=0.005"),
+        COLUMNS[:3],
+    ),
+    "waves": (
+        ("waves-blocks[time.alpha=0.5,time.delta=1,time.step=0.001", "waves-glue[column.glue=2e+10"),
+        [WAVES[0], WAVES[2], WAVES[6]],
+    ),
+}
+
+
+def check(name: str, faults: list[Fault], is_checked: Callable[[Gate], bool], directory: Path, finished: Path) -> None:
+    """Check the kill matrix of some gates of a study."""
+    study = get_study(name)
+    gates = [gate for gate in study.gates() if is_checked(gate)]
+    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", KILLS)
+def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path, finished_cases: Path) -> None:
+    left_out = LEFT_OUT if name == "subblocks" else ()
+    check(name, KILLS[name], lambda gate: not any(w in gate.scene for w in left_out), tmp_path, finished_cases)
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_gates_of_some_scenes_are_bitten(name: str, tmp_path: Path, finished_cases: Path) -> None:
+    words, faults = SHORT[name]
+    check(name, faults, lambda gate: gate.scene.startswith(words), tmp_path, finished_cases)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ("stability-small", "stiff-contact", "limits"))
+def test_every_gate_passes_and_the_chapter_is_written(name: str, tmp_path: Path, finished_cases: Path) -> None:
+    results = beside(finished_cases, tmp_path / "results")
+    assert {verdict.status for verdict in run_study(get_study(name), results)} == {Status.PASS}
+    if name in CHAPTERS:
+        assert build(results, tmp_path / "report.pdf").stat().st_size > 20_000
+        assert all(path.exists() for path in figures(name, results, tmp_path / "figures"))
