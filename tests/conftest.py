@@ -71,7 +71,6 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_judge",
     "test_kept_numbers",
     "test_literature",
-    "test_opened_chapters",
     "test_other_versions",
     "test_own_solver",
     "test_pack",
@@ -84,14 +83,11 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_site",
     "test_site_program",
     "test_slipping_pack",
-    "test_subblocks_chapter",
     "test_sweeps",
     "test_submissions",
-    "test_turning_chapter",
     "test_user_solvers",
     "test_walls",
     "test_work_precision",
-    "test_columns_chapter",
 )
 
 
