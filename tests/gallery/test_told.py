@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +10,6 @@ import numpy as np
 import pytest
 from oracles.made_cases import kept_study, made_history, made_row
 
-from validation.errors import InputError
 from validation.gallery import cases as cases_of_gallery
 from validation.gallery import chapters, judged, scene_data, verdicts
 from validation.gallery.calculators import CALCULATORS
@@ -23,7 +20,6 @@ from validation.gallery.svg import Sheet
 from validation.problems.judge import Word
 from validation.report.blocks import Table, TableColumn
 from validation.report.chapters.data import CaseResults
-from validation.runs import files
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -162,46 +158,12 @@ def test_a_table_of_a_chapter_keeps_its_notes() -> None:
     assert "<caption>The caption</caption>" in text and '<p class="small">what it means</p>' in text
 
 
-def test_metrics_have_their_unit_before_their_meaning(tmp_path: Path) -> None:
-    row = made_row("dda", {"displacement.peak": -0.02}, CASE.name)
-    results = Results(tmp_path)
-    results.append(row, made_history(0.002, [-0.01] * 4))
-    scene = replace(scene_named("s"), cases=(CaseResults(CASE.name, "", CASE, {"dda": row}),))
-    (metric,) = scene_data.data(results, scene, 100, 100)["metrics"]
-    assert metric[:2] == ["displacement.peak", "m"] and "largest value" in metric[2].lower()
-
-
-@pytest.mark.parametrize("outcome", [Outcome.UNSTABLE, Outcome.NOT_APPLICABLE, Outcome.RAISED])
-def test_each_run_that_did_not_complete_is_told(outcome: Outcome, tmp_path: Path) -> None:
-    row = made_row("fem", {}, CASE.name, outcome=outcome, notes=("so it was",))
-    told = scene_data._case(Results(tmp_path), CaseResults("c", "", CASE, {"fem": row}), 100)["told"]
-    assert told == [f"fem: {outcome}. {outcome.sentence} so it was"]
-
-
 def test_a_full_model_is_not_shown_beside_the_one_that_it_checks(tmp_path: Path) -> None:
     results = Results(tmp_path)
     rows = [made_row(solver, {}, CASE.name) for solver in ("fem", "fem:full")]
     kept_study(results, [(CASE, row, made_history(0.002, [-0.01] * 4)) for row in rows])
     _, (scene,) = studies_and_scenes(results, ["made"])
     assert [list(case.rows) for case in scene.cases] == [["fem"]]
-
-
-def test_the_earlier_gallery_returns_where_the_new_one_cannot_take_its_place(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    out, move = tmp_path / "out", os.replace
-    out.mkdir()
-    (out / "page").write_text("earlier")
-
-    def stubborn(source: Path, target: Path) -> None:
-        if source.name == "new":
-            raise OSError(28, "No space left on device")
-        move(source, target)
-
-    monkeypatch.setattr(files.os, "replace", stubborn)
-    with pytest.raises(InputError, match="cannot be written: No space left"), files.atomic_directory(out) as place:
-        (place / "page").write_text("new")
-    assert (out / "page").read_text() == "earlier" and [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 # ---- error against cost, calculators --------------------------------------------------------------------------------

@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, places_of, rules_of
+from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, rules_of
 
-from validation.report.chapters import damping, ledger, paper
-from validation.report.chapters.limits import stability
+from validation.report.chapters import ledger, paper
 from validation.report.chapters.paper import PaperFigure, figure_block
 from validation.report.figures import cost, curves, motion
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.figures.maps import map_figure
 from validation.runs.results import Row
 from validation.scenes.scene import load_scene
 from validation.studies.work.points import Point
@@ -56,15 +54,6 @@ def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> Non
     for name, (value, drawn) in names_at(below).items():
         tail = (histories[name].displacement - histories["bar"].displacement)[-1]
         assert (value, drawn) == (pytest.approx(abs(tail) / 0.01, rel=0.1), color(name))  # one fortieth is two steps
-
-
-def test_crowded_names_keep_the_order_of_the_lines() -> None:
-    ends = {"bar": 1.000, "dda": 1.012, "fem": 0.988, "continuum": 1.006}
-    lines = {name: made_history(0.1, np.linspace(0, last, 5)) for name, last in ends.items()}
-    figure = motion.history_figure([curves.HistoryPanel("", lines, {"displacement": 1.0}, "bar")], "displacement")
-    placed = places_of(figure.axes[0])
-    assert sorted(placed, key=placed.__getitem__) == sorted(ends, key=ends.__getitem__)
-    assert min(np.diff(sorted(placed.values()))) > 0.1  # of 24 mm: letters are 2.5 mm high
 
 
 def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
@@ -156,53 +145,6 @@ def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
     assert to_hex(points.get_markeredgecolor()) == color("dda")
 
 
-def budget_of(**parts: float) -> dict[str, Any]:
-    """Return a budget of constant curves: the first mode's parts as given, the contact mode at 20 %."""
-    dt = np.geomspace(1e-5, 1e-2, 20)
-    first = {part: np.full(20, value).tolist() for part, value in parts.items()}
-    contact = {part: np.full(20, 0.2).tolist() for part in parts}
-    return {
-        "scene": "s",
-        "steps": [1e-3, 2e-3],
-        "gg": 0.98,
-        "gg_rate": None,
-        "dt": dt.tolist(),
-        "modes": {"first axial": first, "contact": contact},
-        "limits": {"real roots": 4e-3, "wave transit": 3e-4},
-        "real roots at": 3.96,
-        "floor": 1.0521,
-    }
-
-
-def test_the_damping_budget_names_its_parts_in_per_cent_at_their_own_curves() -> None:
-    budget = budget_of(total=0.05, algorithmic=0.012, kinetic=0.0015)
-    (axes,) = chart_figure([damping.budget_panel("", budget)], 40.0, damping.MARGINS).axes
-    wanted = {"first axial": 5.0, "contact": 20.0, "algorithmic part": 1.2, "kinetic part": 0.15}
-    orange, violet = color("dda"), to_hex(damping.CONTACT_COLOR)
-    colors = dict.fromkeys(wanted, orange) | {"contact": violet}
-    assert names_at(axes) == {name: (pytest.approx(value, rel=1e-6), colors[name]) for name, value in wanted.items()}
-    drawn = {(own, round(float(y[0]), 9)) for own, x, y in lines_of(axes) if x.size == 20}
-    assert drawn == {(orange, 5.0), (violet, 20.0), (orange, 1.2), (orange, 0.15)}
-
-
-def test_the_damping_budget_names_a_part_where_it_ends() -> None:
-    budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    budget["modes"]["contact"]["total"] = [*np.linspace(0.9, 0.3, 15), *[None] * 5]
-    (axes,) = chart_figure([damping.budget_panel("", budget)], 40.0, damping.MARGINS).axes
-    assert names_at(axes)["contact"][0] == pytest.approx(30)
-
-
-def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
-    budget = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    (axes,) = chart_figure([damping.budget_panel("", budget)], 40.0, damping.MARGINS).axes
-    assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
-    (steps,) = [x for own, x, y in lines_of(axes) if own == "#000000"]
-    assert list(steps) == [1e-3, 2e-3]
-    said = {text.get_text(): text.xy[0] for text in axes.texts if hasattr(text, "xy")}
-    assert said["a/c"] == 3e-4
-    assert rules_of(axes, to_hex(curves.GREY)) == ([], [3e-4])
-
-
 # ---- error against cost -------------------------------------------------------------------------------------------
 
 
@@ -254,12 +196,3 @@ def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() 
 
 
 # ---- stiff contacts and extremes ----------------------------------------------------------------------------------
-
-
-def test_a_map_shows_whole_correct_digits_and_leaves_blank_what_no_run_answers() -> None:
-    error = np.array([[1e-16, 0.9e-5], [np.nan, 2.0]])
-    figure = map_figure([[stability.digit_map("v", error)]], ["a", "b"], ["c", "d"], ("x", "y"), stability.SHADES)
-    (axes,) = figure.axes
-    assert {text.get_position(): text.get_text() for text in axes.texts} == {(0, 0): "16", (1, 0): "5", (1, 1): "0"}
-    assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
-    assert [label.get_text() for label in axes.get_xticklabels()] == ["c", "d"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -105,13 +104,6 @@ def test_the_star_is_the_best_of_more_than_one() -> None:
     assert {"Siconos ★", "Siconos, default", "Newton XPBD", "Box2D"} <= words
 
 
-def test_a_run_that_did_not_complete_has_no_point() -> None:
-    points = ENGINES.cells["standing", "siconos"].points
-    stopped = (*points[:3], replace(points[3], error=None, seconds=None))
-    figure = engine_figure(changed("standing", "siconos", points=stopped), "standing")
-    assert len(figure.axes[0].lines[2].get_xdata()) == 3
-
-
 def test_programs_of_a_family_differ_in_colour_and_have_one_everywhere() -> None:
     boxes = [known for known in KNOWN if known.boxes]
     assert {known.name for known in boxes} == set(_ENGINE_COLORS)
@@ -200,12 +192,6 @@ def test_bands_are_told_once_with_their_reason() -> None:
     ]
 
 
-def test_a_number_of_the_problem_and_of_other_cases_names_them_all() -> None:
-    (one,) = ENGINES.cells["standing", "siconos"].quantities
-    both = changed("standing", "siconos", quantities=(replace(one, case=""), one))
-    assert engines.bands(both, PROBLEMS[0]).rows[0][1] == "friction 22 deg; as titled"
-
-
 def test_what_has_no_verdict_says_why() -> None:
     rows = absent_of(ENGINES, engines.installed_programs(ENGINES)).rows
     assert ("Newton XPBD", "restitution", "it has no restitution") in rows
@@ -222,17 +208,6 @@ def test_programs_say_what_they_are_and_where_their_adapters_are() -> None:
         ("Newton XPBD", "1.5", "impulses", "settings of Newton XPBD", "newton.py"),
     )
     assert part.rows[-1][-1] == ""
-
-
-def test_the_file_of_an_adapter_is_where_the_page_says() -> None:
-    pyproject = tomllib.loads((ROOT / "examples" / "peers" / "pyproject.toml").read_text())
-    targets = pyproject["project"]["entry-points"]["dda_validation.solvers"]
-    adapters = {known.name: targets[known.name] for known in KNOWN if known.boxes and known.name in targets}
-    assert "mujoco" in adapters
-    for name, target in adapters.items():
-        module = target.partition(":")[0]
-        assert f"{module.replace('.', '/')}.py" == f"peers/{engines.adapter(name)}"
-        assert (ROOT / engines.ADAPTERS / engines.adapter(name)).is_file()
 
 
 def test_the_chapter_has_a_section_and_a_figure_for_each_problem(tmp_path: Path, monkeypatch: object) -> None:

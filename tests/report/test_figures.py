@@ -37,20 +37,6 @@ def texts(axes, renderer):
     return [t.get_window_extent(renderer) for t in axes.texts]
 
 
-@pytest.mark.parametrize(
-    ("wanted", "gap", "expected"),
-    [
-        ([0.2, 0.8], 0.1, [0.2, 0.8]),  # apart already: nothing moves
-        ([0.5, 0.5], 0.1, [0.45, 0.55]),  # equal: both move by half the gap
-        ([0.9, 0.5, 0.51], 0.2, [0.9, 0.405, 0.605]),  # order kept, only the close pair moves
-        ([0.0, 0.0, 0.0], 0.1, [0.0, 0.1, 0.2]),  # the lower limit holds
-        ([1.0, 1.0, 1.0], 0.1, [0.8, 0.9, 1.0]),  # the upper limit holds
-    ],
-)
-def test_nudge_moves_as_little_as_possible(wanted, gap, expected):
-    assert curves.nudge(wanted, gap, 0.0, 1.0) == pytest.approx(expected, abs=1e-12)  # rounding
-
-
 def test_nudge_keeps_gap_order_and_limits():
     random = np.random.default_rng(3)
     for n in range(1, 9):
@@ -71,11 +57,6 @@ def test_thin_keeps_ends_and_every_spike():
     assert {3.0, 7777.0, 19_990.0, 0.0, 19_999.0} <= set(tx)
     assert np.all(np.diff(tx) > 0)
     assert np.array_equal(ty, y[tx.astype(int)])
-
-
-def test_thin_leaves_a_short_curve_alone():
-    x = np.arange(100.0)
-    assert curves.thin(x, x, 100)[0] is x
 
 
 def test_envelope_is_the_largest_magnitude_of_each_part():
@@ -126,15 +107,6 @@ def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
         assert len(boxes) in (len(SOLVERS), len(SOLVERS) - 1)  # all, and all but the reference
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
         assert all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 for b in boxes)
-
-
-def test_axes_carry_units_and_share_their_limits():
-    figure = motion.history_figure([panel(static=-0.01), panel(static=-0.02)], "displacement", apart=True)
-    top, bottom = figure.axes[:2], figure.axes[2:]
-    assert top[0].get_ylabel() == "Displacement\n[mm]"
-    assert top[0].get_ylim() == top[1].get_ylim()
-    assert top[0].get_ylim()[0] < -20  # mm: the deeper history fits
-    assert [axes.get_xlabel() for axes in bottom] == ["Time [s]", "Time [s]"]
 
 
 def test_the_same_data_give_the_same_bytes(tmp_path):

@@ -8,20 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
-from matplotlib.text import Annotation
-from oracles.made_cases import between, lines_of, made_case, made_group, made_row, names_at, rules_of
+from oracles.made_cases import between, made_case, made_group, made_row
 
 from dda.scheme import spectral
-from validation.engine.measure import completed
 from validation.report.blocks import Callout
-from validation.report.figures import charts
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed, decisions, first
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
-from validation.solvers.registry import get_solver
 from validation.theory import spectra, statics
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
@@ -72,14 +67,6 @@ def test_what_a_discount_does_is_what_the_scheme_does() -> None:
     assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
     assert spectra.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
     assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
-
-
-def test_a_wave_runs_through_the_height_and_the_load_stands_on_the_width() -> None:
-    data = PAPER.definition()
-    del data["block"]["side"]
-    oblong = parse_scene(data | {"block": data["block"] | {"width": 3.0, "height": 1.25}}, "oblong")
-    assert spectra.transit(oblong) == pytest.approx(1.25 / math.sqrt(1e9 / 2700))
-    assert closed.penetration(oblong) == pytest.approx(3.0 * 5e6 / (2 * 1e9))
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------
@@ -300,16 +287,6 @@ def test_the_contact_flips_each_step_beyond_four_over_its_frequency_and_not_befo
     assert closed.contact_radius(closed.stiffer(PAPER, 10.0)) == pytest.approx(0.7533, abs=1e-4)  # at 2 ms
 
 
-@pytest.mark.parametrize("delta", [0.6, 0.8, 1.0, 1.5])
-def test_schemes_with_complex_roots_damp_a_stiff_contact_and_others_let_it_ring(delta: float) -> None:
-    least = (0.5 + delta) ** 2 / 4
-    stiff = np.abs(spectral.eigenvalues(1e6, least, delta, 1.0)).max()
-    assert stiff == pytest.approx(abs(delta - 1.5) / (delta + 0.5), abs=1e-3)
-    ringing = np.abs(spectral.eigenvalues(1e6, delta / 2, delta, 1.0)).max()
-    assert ringing == pytest.approx(1.0, abs=1e-9)  # the least alpha that is stable
-    assert np.abs(spectral.eigenvalues(1e6, 0.25, 0.5, 1.0)).max() == pytest.approx(1.0)  # delta = 1/2 never
-
-
 def test_a_rate_damps_alike_while_the_step_is_short() -> None:
     base = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5})
     rate = closed.rate_for(base, 0.05)
@@ -333,49 +310,7 @@ def test_the_rule_of_four_holds_up_to_ten_per_cent() -> None:
     assert np.abs(np.imag(before)).max() > 0 and np.abs(np.imag(beyond)).max() == 0 and np.real(beyond).min() < 0
 
 
-@pytest.mark.long
-def test_the_peak_of_a_landing_grows_as_the_root_of_the_springs_where_these_are_stiff() -> None:
-    scene = load_scene("field-rebound").with_values(
-        {"block.young": 1e9, "contact.gap": 0.0, "load.gravity": 0.0, "time.step": 5e-6, "time.steps": 1200}
-    )
-    peaks = {}
-    for ratio in (1.0, 10.0, 100.0):
-        run = completed(get_solver("block-events"), scene.with_values({"contact.stiffness": ratio * 1e9}))
-        peaks[ratio] = float(run.contact_pressure.max())
-    assert peaks[100.0] / peaks[10.0] == pytest.approx(math.sqrt(10), rel=0.02)
-    assert peaks[10.0] / peaks[1.0] == pytest.approx(math.sqrt(10), rel=0.12)
-
-
 # ---- what is drawn ------------------------------------------------------------------------------------------------
-
-
-def test_a_chart_names_curves_at_their_ends_and_marks_limits() -> None:
-    x = np.array([1.0, 10.0, 100.0])
-    lines = (
-        charts.ChartLine("up", x, x, "#0072b2"),
-        charts.ChartLine("gone", x, np.array([2.0, 1.0, np.nan]), "#009e73"),
-        charts.ChartLine("", x, 2 * x, "#cc79a7", width=0, dots=3.2),
-    )
-    panel = charts.ChartPanel(
-        "A title [%]", "dt [ms]", "", lines, (1.0, 100.0), (0.5, 200.0), (True, True), {"limit": 20.0}, {"5 %": 5.0}
-    )
-    (axes,) = charts.chart_figure([panel]).axes
-    assert names_at(axes) == {"up": (pytest.approx(100), "#0072b2"), "gone": (pytest.approx(1.0), "#009e73")}
-    assert [list(y) for own, _, y in lines_of(axes) if own == "#cc79a7"] == [[2, 20, 200]]  # dots, no line
-    assert rules_of(axes, to_hex("#6b6b6b")) == ([5.0], [20.0])
-    places = {text.get_text(): text.xy if isinstance(text, Annotation) else text.get_position() for text in axes.texts}
-    assert places["limit"][0] == 20.0 and places["5 %"][1] == 5.0
-    assert (axes.get_title(loc="left"), axes.get_xlabel()) == ("A title [%]", "dt [ms]")
-
-
-def test_ticks_are_numbers_or_powers_of_ten() -> None:
-    assert [charts._tick_text(value) for value in (0.1, 1.0, 1000.0, 1e5, 1e-4)] == [
-        "0.1",
-        "1",
-        "1000",
-        "$10^{5}$",
-        "$10^{-4}$",
-    ]
 
 
 def test_the_model_is_drawn_with_its_words() -> None:

@@ -20,7 +20,7 @@ from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
 from validation.report.chapters.block import core, two_codes
 from validation.report.chapters.limits import locking
-from validation.report.chapters.scene import conclusion, drift_panel, gate_count, history_block
+from validation.report.chapters.scene import conclusion, drift_panel, history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
@@ -239,12 +239,6 @@ def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
     assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
 
 
-@pytest.mark.parametrize(("verdict", "said"), [("PASS", "passes"), ("FAIL", "fails"), ("NOT RUN", "did not run")])
-def test_one_gate_is_told_as_one(verdict: str, said: str) -> None:
-    judged: Any = {"verdict": verdict}
-    assert gate_count([judged]) == f"its one gate {said}"
-
-
 def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
     case = made_case(load_scene("unlocked").expand()[0], {})
     pair = between(case.name, "block-events", "bar-events", **{"displacement.l2": 0.02, "pressure.l2": 0.5})
@@ -258,12 +252,3 @@ def test_cases_over_different_times_are_told_with_both_ends() -> None:
              zip(cases, (2.0, 0.2), strict=True)]  # fmt: skip
     said = conclusion(made_group(*cases, comparisons=tuple(pairs)))
     assert said.startswith("Against bar, dda differs by 2\u00a0% in displacement (relative L2, 0.2 to 2\u00a0s);")
-
-
-def test_the_pair_of_a_users_own_solver_is_told() -> None:
-    case = made_case(load_scene("figures-3-4").expand()[0], {})
-    pair = between(case.name, "mine", "bar", **{"displacement.l2": 0.02})
-    group = replace(made_group(case), comparisons=(pair,))
-    assert conclusion(group).startswith(
-        "Against bar, mine differs by 2\u00a0% in displacement (relative L2 over 1\u00a0s)"
-    )

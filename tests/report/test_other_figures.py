@@ -11,14 +11,13 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import line_in, lines_of, made_case, made_group, names_at, rules_of
+from oracles.made_cases import line_in, lines_of, made_case, made_group, names_at
 
 from validation.report.chapters import waves
-from validation.report.chapters.opened import rebound, turning
+from validation.report.chapters.opened import rebound
 from validation.report.figures import response
 from validation.report.figures.charts import BESIDE, ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import style_of
-from validation.report.figures.maps import NumberMap, map_figure
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import load_scene
 
@@ -82,14 +81,6 @@ def test_speed_is_in_per_cent_beside_what_is_left_as_a_share() -> None:
     assert named["(1/4, 1/2), every dt"] == (pytest.approx(1.0), waves.COLORS["(1/4, 1/2)"])
 
 
-def test_measured_waves_are_dots_at_their_own_blocks() -> None:
-    line = waves.TravelledWaves("(1/2, 1)", 0.5, np.array([8.0, 100.0]), np.zeros(2), np.ones(2))
-    dot = waves.TravelledWaves("(1/4, 1/2)", 0.5, np.array([10.0]), np.array([0.02]), np.array([0.3]))
-    for axes, value in zip(chart_figure(waves.travel_panels([line], [dot])).axes, (2.0, 0.3), strict=True):
-        dots = [(x, y) for shade, x, y in lines_of(axes) if shade == waves.COLORS["(1/4, 1/2)"]]
-        assert [(float(x[0]), float(y[0])) for x, y in dots] == [(10.0, pytest.approx(value))]
-
-
 def test_a_site_tells_the_largest_of_each_trace_in_the_unit_of_its_panel() -> None:
     time = np.array([0.0, 1.0, 2.0])
     moved = ChartLine("surface", time, np.array([0.0, -4e-3, 3e-3]), "#123456")
@@ -132,17 +123,6 @@ def test_a_restitution_has_its_mean_as_a_line_within_its_range_and_its_impacts_a
         assert (ys.min(), ys.max()) == (pytest.approx(least), pytest.approx(most))
 
 
-def test_a_map_of_numbers_says_in_each_cell_what_is_shaded_there() -> None:
-    values, texts = np.array([[0.0, 0.2, 0.4], [0.6, 0.8, 1.0]]), (("a", "b", "c"), ("d", "e", "f"))
-    number_map = NumberMap("m", values, texts)
-    (axes,) = map_figure([[number_map]], ["p", "q"], ["x", "y", "z"], ("", ""), rebound.SHADES).axes
-    said = {text.get_position(): text.get_text() for text in axes.texts}
-    assert said == {(c, r): texts[r][c] for r in range(2) for c in range(3)}
-    assert np.allclose(axes.images[0].get_array(), values)
-    labels = [[tick.get_text() for tick in ticks] for ticks in (axes.get_xticklabels(), axes.get_yticklabels())]
-    assert labels == [["x", "y", "z"], ["p", "q"]]
-
-
 # ---- slopes and turning blocks ------------------------------------------------------------------------------------
 
 
@@ -172,18 +152,3 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
 def test_a_panel_without_lines_is_empty_axes(names: Names, logarithmic: tuple[bool, bool]) -> None:
     (axes,) = chart_figure([ChartPanel("Slide", "t [s]", "", (), logarithmic=logarithmic, names=names)]).axes
     assert (len(axes.lines), axes.get_legend(), axes.get_xlabel()) == (0, None, "t [s]")
-
-
-def test_a_block_that_turns_is_named_at_its_last_value_beside_level_and_instant(
-    drawn: dict[str, Figure], tmp_path: Path
-) -> None:
-    x = np.array([0.0, 1.0, 2.0])
-    lines = [*turning.coloured([("run", x, np.array([0.0, 0.5, 0.2]))]), turning.rigid("rigid", x, 0.4 * x)]
-    panel = ChartPanel("Tilt", "t [s]", "tilt [rad]", lines, levels={"": 0.3}, marks={"": 0.36})
-    turning.drawn([panel], tmp_path, "tilt.svg", "")
-    (axes,) = drawn["tilt.svg"].axes
-    assert names_at(axes) == {
-        "run": (pytest.approx(0.2), turning.COLORS[0]), "rigid": (pytest.approx(0.8), "#000000")
-    }  # fmt: skip
-    assert rules_of(axes, "#6b6b6b") == ([0.3], [0.36])
-    assert np.allclose(line_in(axes, "#000000")[1], 0.4 * x)

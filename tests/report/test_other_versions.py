@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 from conftest import SCENE, typed
 
-from validation.gallery.site import build as build_gallery
 from validation.report.book import ordered_studies, unread_studies
 from validation.results import Results
 from validation.runs.row import Row
@@ -94,17 +93,6 @@ def changed(name: str, two: Path, tmp_path: Path) -> Results:
 def test_a_study_of_another_version_is_named(name: str, two: Path, tmp_path: Path) -> None:
     kept = changed(name, two, tmp_path)
     assert list(unread_studies(kept, ordered_studies(kept))) == ["theirs"]
-
-
-@pytest.mark.long
-def test_a_study_that_is_left_out_costs_no_other_one(two: Path, tmp_path: Path) -> None:
-    kept = changed("band", two, tmp_path)
-    build_gallery(kept, tmp_path / "gallery")
-    assert (tmp_path / "gallery" / "study-mine.html").exists()
-    assert not (tmp_path / "gallery" / "study-theirs.html").exists()
-    done = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
-    assert done.returncode == 0, done.stderr
-    assert done.stderr.startswith("note: theirs is left out: ")
 
 
 def test_a_key_that_a_later_version_adds_to_a_row_is_passed_over(two: Path, tmp_path: Path) -> None:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +13,6 @@ from oracles.made_cases import between, kept_study, made_row
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
-from validation.report.appendix import provenance as appendix_provenance
 from validation.report.blocks import (
     Beside,
     Callout,
@@ -32,9 +28,9 @@ from validation.report.blocks import (
 from validation.report.book import build, figures, ordered_studies
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import gates as chapters_gates
-from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
+from validation.report.figures.charts import _tick_text
 from validation.report.front import pages as front
 from validation.report.front.groups import groups_of_studies
 from validation.report.typesetting import typeset
@@ -45,6 +41,8 @@ from validation.scenes.scene import load_scene, parse_scene
 
 CORE = ("figures-3-4", "figure-7", "figure-8", "poisson", "corner-springs")
 FREQUENCY = {"dda": 344.561, "dda-textbook": 344.561, "fem": 327.682, "bar": 327.682, "continuum": 327.682}
+MANY = load_scene("figures-3-4").with_values({"block.young": 2e9})
+PRESSED = ((2e9, 5e6), (5e9, 2.5e6))
 CODE, MESH = 3.2e-13, 6.1e-9  # invented differences between solvers that agree
 
 
@@ -175,10 +173,6 @@ def group_of(results, name):
     return next(g for g in chapters_data.case_groups(results, results.manifest("core")) if g.name == name)
 
 
-def all_text(blocks):
-    return json.dumps([vars(block) for block in blocks], default=vars, ensure_ascii=False)
-
-
 @pytest.fixture
 def no_solver(monkeypatch):
     """Let every import of a package of solvers fail, where a module asks for it when it is called."""
@@ -213,19 +207,6 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, draw
     assert out.read_bytes() == b"old"
 
 
-@pytest.mark.long
-def test_the_report_imports_no_solver(small, tmp_path):
-    code = (
-        "import sys; from pathlib import Path; from validation.report.book import build\n"
-        "from validation.runs.results import Results\n"
-        "build(Results(sys.argv[1]), Path(sys.argv[2]))\n"
-        "print([m for m in ('dda', 'fem_reference', 'skfem', 'dolfinx') if m in sys.modules])"
-    )
-    command = [sys.executable, "-c", code, str(small.directory), str(tmp_path / "r.pdf")]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
-    assert done.stdout.strip() == "[]"
-
-
 def front_of(results, studies, directory):
     return front.front_pages(groups_of_studies(results, studies), results.verdicts(), studies, directory)
 
@@ -252,58 +233,12 @@ def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_ba
     )  # on a page of its own, before the decisions
 
 
-@pytest.mark.parametrize(
-    ("scene", "part", "expected"),
-    [
-        ("figures-3-4", "code", CODE),
-        ("figures-3-4", "mesh", MESH),
-    ],
-)
-def test_ledger_takes_the_comparison_of_its_pair(results, scene, part, expected):
-    group = group_of(results, scene)
-    for case in group.cases:
-        found = chapters_ledger.entry(group, case, part)
-        assert found == (pytest.approx(expected, rel=1e-2),) * 2  # rounding of 1 + CODE
-
-
-@pytest.mark.parametrize(("scene", "part"), [("figure-8", "code"), ("poisson", "mesh"), ("poisson", "model form")])
-def test_a_pair_that_was_not_compared_has_no_part_of_the_ledger(results, scene, part):
-    group = group_of(results, scene)
-    assert chapters_ledger.entry(group, group.cases[0], part) == chapters_ledger.NOTHING
-    assert chapters_ledger.part_values([group], part, 0) == []
-
-
 def test_scene_page_names_every_outcome_other_than_completed(results):
     (callout,) = chapters.outcomes(group_of(results, "figure-8"))
     assert callout.text == (
         "dda-textbook at α = 0.25, δ = 0.5; α = 0.5, δ = 1: not applicable. "
         f"{Outcome.NOT_APPLICABLE.sentence} alpha must be above 0"
     )
-
-
-def test_conclusion_of_a_scene_is_computed(results):
-    group = group_of(results, "figures-3-4")
-    text = chapters.conclusion(group)
-    values = sorted(group.compared(case, "dda", "bar")["displacement.l2"] for case in group.cases)
-    assert text.startswith(f"Against bar, dda differs by {chapters_text.percent(values[0])} to ")
-    assert "1 of 2 gates fails" in text
-    assert "down to −0.338 MPa in dda" in text
-    assert "the difference falls as the damping grows" in text
-    assert "damping grows" not in chapters.conclusion(group_of(results, "figure-8"))  # two cases are no trend
-
-
-@pytest.mark.parametrize(
-    ("band", "text"),
-    [
-        ((0.03, 0.04), "0.03 … 0.04"),
-        ((5.0, 5.0), "5 … 5"),
-        ((-0.0053065, -0.0053055), "−0.0053065 … −0.0053055"),
-        ((0, 1e-12), "0 … 1×10⁻¹²"),
-        ((344.561 - 3e-9, 344.561 + 3e-9), "344.561 ± 3×10⁻⁹"),
-    ],
-)
-def test_a_band_shows_as_many_digits_as_tell_its_edges_apart(band, text):
-    assert chapters_gates.band({"band": band}) == text
 
 
 def test_damping_table_joins_solvers_that_read_alike_and_tells_what_is_undefined(results):
@@ -317,59 +252,6 @@ def test_damping_table_joins_solvers_that_read_alike_and_tells_what_is_undefined
     assert row["Settling step", "press."] == "undef."
     assert row["Least pressure", "MPa"] == "−0.3380"
     assert [note.split(":")[0] for note in table.notes] == ["undef."]
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (344.561, "344.6"),
-        (0.0, "0"),
-        (-0.01, "−0.01000"),
-        (1.2344e-7, "1.234×10⁻⁷"),
-        (5e6, "5.000×10⁶"),
-        (123456.0, "123456"),
-        (1 - 1e-12, "1.000"),
-        (math.nan, "not a number"),
-        (-math.inf, "−∞"),
-    ],
-)
-def test_numbers(value, text):
-    assert chapters_text.plain(value) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "text"), [(0.0363, "3.63\u00a0%"), (43.7, "4370\u00a0%"), (2e-5, "2.0×10⁻⁵"), (0.0, "0\u00a0%")]
-)
-def test_percent(value, text):
-    assert chapters_text.percent(value) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(1e-15, "<10⁻¹²"), (-1e-12, "<10⁻¹²"), (0.0, "<10⁻¹²"), (0, "as it is"), (2e-12, "as it is"), (1e-9, "as it is")],
-)
-def test_rounding_is_told_as_a_bound(value, text):
-    assert chapters_text.bounded(value, "as it is") == text
-
-
-@pytest.mark.parametrize(
-    ("name", "labels"),
-    [
-        ("figures-3-4", ["dt = 0.01 s", "dt = 0.002 s", "dt = 0.001 s"]),
-        ("figure-7", ["p = 1E", "p = 10E", "p = 100E"]),
-        ("figure-8", ["α = 0.25, δ = 0.5", "α = 0.5, δ = 1"]),
-        ("model-form", ["dt = 0.01 s", "dt = 0.002 s", "dt = 0.001 s", "dt = 0.0001 s"]),
-    ],
-)
-def test_cases_are_labelled_in_the_symbols_of_the_text(name, labels):
-    cases = load_scene(name).expand()
-    assert chapters_text.case_labels([c.name for c in cases], cases) == labels
-
-
-def test_labels_that_would_read_alike_keep_their_steps():
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.01})
-    cases = [scene.with_values({"time.steps": n}, label=True) for n in (10, 20)]
-    assert chapters_text.case_labels([c.name for c in cases], cases) == ["steps = 10", "steps = 20"]
 
 
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
@@ -390,18 +272,6 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
         Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
-
-
-def test_provenance_says_versions_and_cost(results):
-    blocks = appendix_provenance.provenance(results, ["core"])
-    text = all_text(blocks)
-    for words in ("numpy 2.4.0", "0123abc", "a processor"):
-        assert words in text
-    cost = blocks[-1]
-    fem = next(row for row in cost.rows if row[0] == "fem")
-    cases = sum(len(load_scene(name).expand()) for name in CORE)
-    assert fem[1] == str(cases)
-    assert float(fem[-1]) == pytest.approx(0.011 * cases, rel=1e-2)  # three digits are printed
 
 
 def test_every_kind_of_block_is_set(tmp_path):
@@ -454,3 +324,54 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     assert others == [
         Paragraph("1 scene of mine: one chapter a study.", "lead"), Callout("No gate was judged.", "warn")
     ]  # fmt: skip
+
+
+def bound(value):
+    return chapters_text.bounded(value, "as it is")
+
+
+def band(edges):
+    return chapters_gates.band({"band": edges})
+
+
+def told(words):
+    return chapters.gate_count([{"verdict": word} for word in words])
+
+
+NUMBERS = [  # function, value, text
+    (chapters_text.plain, 344.561, "344.6"), (chapters_text.plain, 0.0, "0"), (chapters_text.plain, -0.01, "−0.01000"),
+    (chapters_text.plain, 1.2344e-7, "1.234×10⁻⁷"), (chapters_text.plain, 5e6, "5.000×10⁶"),
+    (chapters_text.plain, 123456.0, "123456"), (chapters_text.plain, 1 - 1e-12, "1.000"),
+    (chapters_text.plain, math.nan, "not a number"), (chapters_text.plain, -math.inf, "−∞"),
+    (chapters_text.percent, 0.0363, "3.63\u00a0%"), (chapters_text.percent, 43.7, "4370\u00a0%"),
+    (chapters_text.percent, 2e-5, "2.0×10⁻⁵"), (chapters_text.percent, 0.0, "0\u00a0%"),
+    (bound, 1e-15, "<10⁻¹²"), (bound, -1e-12, "<10⁻¹²"), (bound, 0.0, "<10⁻¹²"), (bound, 0, "as it is"),
+    (bound, 2e-12, "as it is"),
+    (band, (5.0, 5.0), "5 … 5"), (band, (-0.0053065, -0.0053055), "−0.0053065 … −0.0053055"),
+    (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3e-9, 344.561 + 3e-9), "344.561 ± 3×10⁻⁹"),
+    (_tick_text, 0.1, "0.1"), (_tick_text, 1000.0, "1000"), (_tick_text, 1e5, "$10^{5}$"),
+    (told, ["PASS"], "its one gate passes"), (told, ["FAIL"], "its one gate fails"),
+    (told, ["NOT RUN"], "its one gate did not run"), (told, ["FAIL", "PASS"], "1 of 2 gates fails"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("written", "value", "text"), NUMBERS)
+def test_numbers(written, value, text):
+    assert written(value) == text
+
+
+@pytest.mark.parametrize(
+    ("scenes", "labels"),
+    [
+        (load_scene("figures-3-4").expand(), ["dt = 0.01 s", "dt = 0.002 s", "dt = 0.001 s"]),
+        (load_scene("figure-7").expand(), ["p = 1E", "p = 10E", "p = 100E"]),
+        (load_scene("figure-8").expand(), ["α = 0.25, δ = 0.5", "α = 0.5, δ = 1"]),
+        ([MANY.with_values({"time.steps": n}, label=True) for n in (10, 20)], ["steps = 10", "steps = 20"]),
+        (
+            [MANY.with_values({"contact.stiffness": p, "load.pressure": q}, label=True) for p, q in PRESSED],
+            ["p = 1E, q = 5 MPa", "p = 2.5E, q = 2.5 MPa"],
+        ),
+    ],
+)
+def test_cases_are_labelled_in_the_symbols_of_the_text(scenes, labels):
+    assert chapters_text.case_labels([scene.name for scene in scenes], scenes) == labels

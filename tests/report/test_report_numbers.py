@@ -32,7 +32,6 @@ from validation.report.chapters import text as chapters_text
 from validation.report.figures.charts import chart_figure
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
-from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
@@ -115,12 +114,6 @@ def test_the_conclusion_gives_ranges_tension_and_the_trend_with_the_damping() ->
     )
 
 
-def test_outcomes_and_reasons_are_those_of_their_own_rows() -> None:
-    rows = {"dda": made_row("dda", {}, BASE.name, outcome=Outcome.OVERFLOW, notes=("at step 7",)), "bar": {}}
-    (callout,) = chapters.outcomes(made_group(made_case(BASE, rows, label="dt = 1 s")))
-    assert callout.text == f"dda at dt = 1 s: overflow. {Outcome.OVERFLOW.sentence} at step 7"
-
-
 # ---- figures of a page --------------------------------------------------------------------------------------------
 
 
@@ -186,11 +179,6 @@ def ledger_group() -> Any:
 def test_each_part_of_the_ledger_is_its_own_pair(part: str) -> None:
     group = ledger_group()
     assert chapters_ledger.entry(group, group.cases[0], part) == PAIRS[part][2:]
-
-
-def test_the_lines_of_the_ledger_are_those_of_their_parts() -> None:
-    ((_, entries),) = chapters_ledger.ledger_lines([ledger_group()], chapters_ledger.PARTS)
-    assert entries == {part: values[2:] for part, values in PAIRS.items()}
 
 
 OPENING_PAIRS = {  # contact that opens: part of the ledger -> solver, reference, displacement, pressure
@@ -277,11 +265,3 @@ def test_the_data_of_a_scene_are_those_of_the_scene_with_their_units() -> None:
     for part in ("law = unilateral", "band = 0.001, 0 m", "base motion = slope-base.csv", "mass = 0.5 1/s"):
         assert f", {part}," in f", {line}"
     assert "φ" not in line and "cut" not in line
-
-
-def test_labels_of_cases_carry_stiffness_over_e_and_pressures_in_megapascals() -> None:
-    base = BASE.with_values({"block.young": 2e9})
-    scenes = [base.with_values({"contact.stiffness": p, "load.pressure": q}, label=True)
-              for p, q in ((2e9, 5e6), (5e9, 2.5e6))]  # fmt: skip
-    labels = chapters_text.case_labels([scene.name for scene in scenes], scenes)
-    assert labels == ["p = 1E, q = 5 MPa", "p = 2.5E, q = 2.5 MPa"]

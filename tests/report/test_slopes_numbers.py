@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from oracles.made_cases import between, made_case, made_group, made_row
+from oracles.made_cases import made_case, made_group, made_row
 
 from validation.report.blocks import Callout, Table
-from validation.report.chapters.block import core, two_codes
+from validation.report.chapters.block import two_codes
 from validation.report.chapters.data import CaseGroup
 from validation.report.chapters.opened import rebound, turning
 from validation.report.chapters.slopes import creeping, sliding
@@ -78,13 +78,7 @@ def test_a_run_behind_the_closed_form_is_told_with_its_sign() -> None:
     scene = load_scene(study.SLIDING).expand()[0]
     free = float(friction.free_motion(scene, friction.sliding_acceleration(scene))[0][-1])
     moved = {"dda": {"horizontal.final": free - 25e-6}, "fem": {"horizontal.final": 2.0}}
-    assert sliding._run_out(made_case(scene, moved))[-2:] == ("−25.00", "2.00000")
-
-
-def test_a_block_that_slides_has_its_slip_rate_in_millimetres_a_second() -> None:
-    scene = load_scene(study.THRESHOLD).expand()[0].with_values({"load.slope": 31.0})
-    *_, table = sliding.thresholds([made_case(scene, {"dda": {"contact.slip_rate": 0.0125}})])
-    assert isinstance(table, Table) and table.rows[0][-1] == "12.50" and table.rows[0][:2] == ("31.00", "30.00")
+    assert sliding.run_outs([made_case(scene, moved)]).rows[0][-2:] == ("−25.00", "2.00000")
 
 
 def test_a_base_that_shakes_has_the_rigid_slide_dda_s_the_difference_and_what_is_allowed() -> None:
@@ -140,14 +134,6 @@ def test_switches_are_told_over_those_of_the_exact_motion() -> None:
 
 
 # ---- the block and its vibration ----------------------------------------------------------------------------------
-
-
-def test_the_error_of_a_mesh_is_told_from_the_coarsest_to_the_finest(drawn: dict[str, Figure], tmp_path: Path) -> None:
-    meshes = [PAPER.with_values({"fem.elements": n}, label=True) for n in (16, 4)]
-    pairs = tuple(between(m.name, "fem", "bar", displacement_l2=0.16 / m.fem.per_side) for m in meshes)
-    group = made_group(*(made_case(m, {}) for m in meshes), comparisons=pairs)
-    _, figure, *_ = core.mesh_blocks({"mesh-convergence": group}, tmp_path)
-    assert "the power −1.00 where the front is sharpest, from 4\u00a0% to 1\u00a0%" in figure.caption  # type: ignore[union-attr]
 
 
 def test_a_code_that_is_not_there_is_named_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -35,8 +35,9 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
     "power": lambda value, _: bounded(value, power(value)),
     "g": lambda value, _: f"{value:g}",
+    "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
 }
-CaseValue = Callable[[CaseResults], Value]
+CaseValue = Value | Callable[[CaseResults], Value]
 
 
 @dataclass(frozen=True)
@@ -72,11 +73,12 @@ class CaseColumn:
     def of_case(
         self, case: CaseResults | None, group: CaseGroup | None = None, own: Mapping[str, CaseValue] = {}
     ) -> str:
-        """Return the cell of a case of a group; `own` are values that a module computes from a case."""
+        """Return the cell of a case of a group; `own` are values, or functions of the case."""
         if case is None:
             return DASH
         if self.of in own:
-            return self.text(own[self.of](case))
+            value = own[self.of]
+            return self.text(value(case) if callable(value) else value)
         source, _, metric = self.of.partition(" ")
         if not metric:
             return self.text(operator.attrgetter(source)(case if source == "label" else case.scene))
@@ -111,8 +113,8 @@ class Description:
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
 
     def cells(self, name: str, case: CaseResults | None, own: Mapping[str, CaseValue] = {}) -> list[str]:
-        """Return the cells of a case in a table."""
-        return [column.of_case(case, None, own) for column in self.columns(name)]
+        """Return the cells of a case in those columns of a table that say what they are of."""
+        return [column.of_case(case, None, own) for column in self.columns(name) if column.of]
 
     def case_table(
         self,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
-from validation.report.chapters.damping import budget_blocks, damping_table
+from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
 from validation.report.chapters.text import (
@@ -52,7 +52,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
         columns = _columns(group)[:1] if len(groups) > FEW else None
         blocks += scene_section(group, directory, columns, apart=len(groups) == 1)
     if len(groups) == 1:
-        return [*blocks, *budget_blocks(groups[0], directory)]
+        return blocks
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 

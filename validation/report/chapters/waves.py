@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Heading, Paragraph, Table, table
+from validation.report.blocks import Blocks, Heading, Paragraph, Table
 from validation.report.chapters.data import (
     CaseGroups,
     CaseResults,
@@ -21,22 +21,21 @@ from validation.report.chapters.data import (
     groups_by_name,
     verdicts_of,
 )
+from validation.report.chapters.described import Description
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, capital, percent, plain, short
-from validation.report.figures import histories
-from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.chapters.text import DASH, capital, percent
+from validation.report.figures.charts import ChartLine, ChartPanel
 from validation.report.figures.curves import engineering
-from validation.report.figures.histories import Margins
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.studies.waves.rows import COUNTS, row_name
 
+PAGE = Description(__file__)
 SCHEMES = {1.0: "(1/2, 1)", 0.5: "(1/4, 1/2)"}  # by delta
 COLORS = {"(1/2, 1)": "#d55e00", "(1/4, 1/2)": "#0072b2"}
 DASHES = {0.1: (1.0, 1.2), 0.25: (2.5, 1.2), 0.5: (5.0, 1.5)}  # by c dt/h
-BLOCKS = (8, 10, 20, 40, 100)  # ticks
 
 
 @dataclass(frozen=True)
@@ -58,12 +57,7 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     blocks = opening(manifest, verdicts_of(groups.values()), lead(measured))
     if measured:
         curves = [_curve(data) for data in manifest.get("data", {}).get("curves", [])]
-        caption = (
-            "Waves in welded blocks: closed forms (lines) and what was measured on stepped histories (dots); solid "
-            "c dt/h = 1, long dashes 1/2, short dashes 1/4, dots 1/10."
-        )
-        figure = chart_figure(travel_panels(curves, measured), 52.0, Margins(13.0, 34.0, 6.0, 9.5))
-        blocks.append(histories.saved(figure, directory, "waves-travel.svg", caption))
+        blocks.append(PAGE.figure("travel", travel_panels(curves, measured), directory))
     tables = (_others(groups, rows), _joints(groups, rows), _base(groups, rows))
     blocks += [table for table in tables if table.rows]
     return [*blocks, *_site(groups, directory)]
@@ -119,10 +113,7 @@ def lead(measured: Sequence[TravelledWaves]) -> str:
         if travel.scheme == "(1/2, 1)" and travel.courant == 0.5 and at.size:
             speed_error = percent(travel.speed[at[0]])
             amplitude = percent(travel.amplitude[at[0]])
-            return (
-                f"Ten blocks a wavelength are a rule for the speed only: at c dt/h = 1/2 the wave is {speed_error} "
-                f"too fast, but under (1/2, 1) {amplitude} of its amplitude is left after ten wavelengths."
-            )
+            return PAGE.text("lead", speed_error=speed_error, amplitude=amplitude)
     return ""
 
 
@@ -141,17 +132,7 @@ def travel_panels(curves: Sequence[TravelledWaves], measured: Sequence[Travelled
         dots: dict[str, Any] = {"color": COLORS[waves.scheme], "width": 0, "dots": 2.6}
         speeds.append(ChartLine("", waves.blocks, 100 * waves.speed, **dots))
         amplitudes.append(ChartLine("", waves.blocks, waves.amplitude, **dots))
-    axes: dict[str, Any] = {"x_range": (7.0, 115.0), "logarithmic": (True, False)}
-    axes["x_ticks"] = {float(blocks): str(blocks) for blocks in BLOCKS}
-    label = "blocks a wavelength"
-    # A zero would meet the other axis' last tick.
-    shares = {share: f"{share:.1f}" for share in (0.2, 0.4, 0.6, 0.8, 1.0)}
-    return [
-        ChartPanel("Error of the phase speed [%]", label, "", speeds, y_range=(-3.0, 4.0), levels={"": 0.0}, **axes),
-        ChartPanel(
-            "Amplitude left after ten wavelengths", label, "", amplitudes, y_range=(-0.02, 1.04), y_ticks=shares, **axes
-        ),
-    ]
+    return [PAGE.panel("speed", speeds), PAGE.panel("amplitude", amplitudes)]
 
 
 def _others(groups: Groups, rows: DerivedRows) -> Table:
@@ -162,19 +143,15 @@ def _others(groups: Groups, rows: DerivedRows) -> Table:
         if column is None:
             continue
         layer = column.layer[0]
-        glue = DASH
-        if column.glue is not None:
-            glue = short(column.glue * layer.thickness / layer.blocks / column.modulus(layer))
         time = case.scene.time
-        scheme = f"{time.alpha:g}, {time.delta:g}, {time.discount:g}"
+        own: dict[str, Any] = {
+            "glue": column.glue and column.glue * layer.thickness / layer.blocks / column.modulus(layer),
+            "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
+            "courant": f"{_courant(case.scene):.3g}",
+        }
         for count, wave in _waves(case, rows, "wave.left"):
-            numbers = (f"{100 * wave['wave.speed_error']:.3f}".replace("-", "−"), plain(wave["wave.left"]))
-            lines.append((column.motion, glue, scheme, f"{_courant(case.scene):.3g}", str(count), *numbers))
-    return table(
-        ("Motion", "kg h / E", "α, δ, gg", "c dt/h", "Blocks", "Speed error [%]", "Left after 10"),
-        lines,
-        "Glue of finite stiffness, kinetic damping, and shear waves, as measured",
-    )
+            lines.append(PAGE.cells("others", case, {**own, "blocks": count, **wave}))
+    return PAGE.table("others", lines)
 
 
 # ---- joints and base ------------------------------------------------------------------------------------------------
@@ -184,11 +161,10 @@ def _joints(groups: Groups, rows: DerivedRows) -> Table:
     """Return what a joint of kj = rho c w lets through."""
     lines = []
     for case in cases_of(groups, *(name for name in groups if name.startswith("waves-joint"))):
+        own: dict[str, Any] = {"scheme": _scheme, "courant": f"{_courant(case.scene):g}"}
         for count, wave in _waves(case, rows, "joint.transmitted"):
-            parts = [f"{wave[f'joint.{part}']:.6f}" for part in ("transmitted", "reflected", "energy")]
-            lines.append((_scheme(case), str(count), f"{_courant(case.scene):g}", *parts))
-    caption = "A joint of kj = ρ c ω, whose |T| in the continuum is 0.894427"
-    return table(("α, δ", "Blocks", "c dt/h", "|T|", "|R|", "|T|² + |R|²"), lines, caption)
+            lines.append(PAGE.cells("joints", case, {**own, "blocks": count, **wave}))
+    return PAGE.table("joints", lines)
 
 
 def _base(groups: Groups, rows: DerivedRows) -> Table:
@@ -200,8 +176,8 @@ def _base(groups: Groups, rows: DerivedRows) -> Table:
         counts = [count for count, _ in waves]
         reflected = (f"{100 * wave['base.reflected']:.3f}" for _, wave in waves)
         lines.append((_scheme(case), f"{_courant(case.scene):g}", *reflected))
-    caption = "A transmitting base of the column's own impedance, which sends nothing back in the continuum"
-    return table(("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts))), lines, caption)
+    heads = ("α, δ", "c dt/h", ("|R| [%] by blocks a wavelength", *map(str, counts)))
+    return PAGE.table("base", lines, heads)
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------
@@ -229,12 +205,10 @@ def _site(groups: Groups, directory: Path) -> Blocks:
         site_panel("Surface displacement", "m", traces[DISPLACEMENT], ""),
         site_panel("Shear stress on the base", "Pa", traces[PRESSURE], "Time [s]"),
     ]
-    figure = chart_figure(panels, [(32.0, 9.0), (32.0, 0.0)], Margins(13.0, 36.0, 6.0, 9.0))
-    caption = "Four layers on rock under a record: the exact layers, DDA converged, and DDA at a usual step."
     return [
         Heading("A site under a record", 2),
         Paragraph(_site_sentence(groups_of_site)),
-        histories.saved(figure, directory, "waves-site.svg", caption),
+        PAGE.figure("site", panels, directory),
     ]
 
 

@@ -10,30 +10,24 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table, table
 from validation.report.chapters.data import Groups
-from validation.report.chapters.measures import MetricColumn, cells, heads
+from validation.report.chapters.described import Description
 from validation.report.chapters.text import DASH, cell, percent, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
 from validation.report.front.groups import at_ratio, by_step, case_where, milliseconds
+from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
 
+PAGE = Description(__file__)
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
 TARGET_DAMPING = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
 DISCOUNTS = (1.0, 0.98, 0.95, 0.9)  # of the paper's Figure 9
 STEPS = (1e-2, 2e-3, 1e-3, 1e-4)  # s
 STEP = 2e-3  # s, of the page on springs
 RATE_STEPS = (1e-3, 2e-3, 1e-2, 2e-2)  # s, at which the damping of a discount that is held as a rate is given
-SETTLING = (
-    MetricColumn("displacement.settling_step", 1.0, "displ.", "steps to 1 %", decimals=0),
-    MetricColumn("pressure.settling_step", 1.0, "press.", "steps to 1 %", decimals=0),
-)
-FINE_SETTLING = (
-    MetricColumn("displacement.fine_settling_step", 1.0, "displ.", "steps to 0.01 %", decimals=0),
-    MetricColumn("pressure.fine_settling_step", 1.0, "press.", "steps to 0.01 %", decimals=0),
-)
 SCHEMES = {"(1/2, 1)": (0.5, 1.0), "(9/16, 1)": (0.5625, 1.0)}
 RANGE = (0.01, 20.0)  # ms
 
@@ -208,7 +202,7 @@ def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
     usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
     case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
-    displacement, pressure = cells(FINE_SETTLING, case)
+    displacement, pressure = (column.of_case(case) for column in PAGE.columns("springs")[8:])
     as_run = ""
     if DASH not in (pressure, displacement):
         as_run = (
@@ -233,28 +227,19 @@ def spring_table(groups: Groups, base: Scene) -> Table:
     for ratio in RATIOS:
         scene = closed.stiffer(base, ratio)
         case, fine = (case_where(groups.get(name), at_ratio(ratio, 0.5)) for name in ("figures-5-6", "stiff-contact"))
-        closed_form_cells = (
-            f"{1e3 * statics.static_displacement(scene):.3f}".replace("-", "−"),
-            f"{1e3 * closed.penetration(scene):.3g}",
-            percent(closed.first_damping(scene)),
-            f"{closed.contact_radius(scene):.4f}",
-            f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
-        )
-        settling_cells = cells(SETTLING, case) + cells(FINE_SETTLING, fine or case)
-        rows.append((f"{ratio:g}E", *closed_form_cells, *settling_cells))
-    return table(
-        (
-            "p",
-            "v at rest [mm]",
-            "springs [mm]",
-            "ξ₁",
-            "|λ| contact",
-            "4/ω contact [ms]",
-            *heads(SETTLING + FINE_SETTLING),
-        ),
-        rows,
-        f"Springs at dt = {milliseconds(STEP)}, constant acceleration; steps to settle as run.",
-    )
+        numbers: dict[str, Value] = {
+            "ratio": ratio,
+            "at rest": statics.static_displacement(scene),
+            "springs": f"{1e3 * closed.penetration(scene):.3g}",
+            "damping": closed.first_damping(scene),
+            "contact": closed.contact_radius(scene),
+            "limit": f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
+        }
+        columns = PAGE.columns("springs")
+        row = [column.text(numbers[column.of]) for column in columns[:6]]
+        row += [column.of_case(case) for column in columns[6:8]]
+        rows.append([*row, *(column.of_case(fine or case) for column in columns[8:])])
+    return PAGE.table("springs", rows, step=milliseconds(STEP))
 
 
 # ---- which discount -----------------------------------------------------------------------------------------------

@@ -6,20 +6,20 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Heading, Table, table
-from validation.report.chapters.data import Groups, cases_of, groups_by_name
+from validation.report.blocks import Blocks, Heading, Table
+from validation.report.chapters.data import CaseResults, Groups, groups_by_name
+from validation.report.chapters.described import Description
 from validation.report.chapters.ledger import ledger_blocks
-from validation.report.chapters.measures import MetricColumn, cells, heads
 from validation.report.chapters.scene import drift_panel, drift_values, opening, scene_section
-from validation.report.chapters.text import DASH, percent, plain, short
-from validation.report.figures import histories
-from validation.report.figures.charts import DOTS, ChartLine, ChartPanel, chart_figure
+from validation.report.chapters.text import percent, plain
+from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
+PAGE = Description(__file__)
 DRAWN_COLUMNS = {  # scene -> columns that its figure holds
     "figures-3-4": (DISPLACEMENT, PRESSURE),
     "figures-5-6": (DISPLACEMENT, PRESSURE),
@@ -29,9 +29,6 @@ DRAWN_COLUMNS = {  # scene -> columns that its figure holds
     "model-form": (DISPLACEMENT, PRESSURE),
 }
 UNDER_THE_STEP = ("figures-3-4", "figures-5-6", "model-form")  # where the undamped continuum would hide the rest
-AT_REST = tuple(
-    MetricColumn("displacement.static", 1e3, solver, decimals=3, solver=solver) for solver in ("dda", "fem")
-)
 IN_WORDS = ("mesh-convergence", "poisson", "poisson-statics", "corner-springs")  # without histories
 
 
@@ -54,21 +51,10 @@ def mesh_blocks(groups: Groups, directory: Path) -> Blocks:
     if points is not None:
         n, error = points
         slope = float(np.polyfit(np.log(n), np.log(error), 1)[0])
-        charts.append(
-            ChartPanel(
-                "Error of fem against the bar [-]",
-                "elements a side n",
-                "",
-                (ChartLine("fem", n, error, dots=DOTS),),
-                (n[0] / 1.3, n[-1] * 1.3),
-                (error.min() / 3, 3 * error.max()),
-                (True, True),
-            )
-        )
-        sentences.append(
-            f"Under average acceleration the error of quadratic elements falls as n to the power {plain(slope, 3)} "
-            f"where the front is sharpest, from {percent(error[0])} to {percent(error[-1])}."
-        )
+        ranges = {"x_range": (n[0] / 1.3, n[-1] * 1.3), "y_range": (error.min() / 3, 3 * error.max())}
+        charts.append(PAGE.panel("mesh", (ChartLine("fem", n, error, dots=DOTS),), **ranges))
+        ends = {"first": percent(error[0]), "last": percent(error[-1])}
+        sentences.append(PAGE.text("mesh", slope=plain(slope, 3), **ends))
     drift = drift_values(groups["corner-springs"]) if "corner-springs" in groups else []
     if len(drift) > 1:
         chart, sentence = drift_panel(groups["corner-springs"], drift)
@@ -76,7 +62,7 @@ def mesh_blocks(groups: Groups, directory: Path) -> Blocks:
         sentences.append(sentence)
     if not charts:
         return []
-    figure = histories.saved(chart_figure(charts, 38.0), directory, "core-mesh.svg", " ".join(sentences))
+    figure = PAGE.figure("mesh", charts, directory, sentences=" ".join(sentences))
     table = lateral_table(groups)
     return [Heading("Mesh, point springs and lateral strain", 2), figure, *([table] if table.rows else [])]
 
@@ -99,10 +85,11 @@ def mesh_errors(groups: Groups) -> tuple[np.ndarray, np.ndarray] | None:
 
 def lateral_table(groups: Groups) -> Table:
     """Return the displacement at rest of block and elements for a Poisson ratio above 0."""
-    rows = []
-    for case in cases_of(groups, "poisson-statics"):
-        dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
-        ratio = DASH if not dda or not fem else percent(abs(dda / fem - 1))
-        rows.append((case.label, short(case.scene.block.poisson), *cells(AT_REST, case), ratio))
-    caption = "Lateral strain: v at rest [mm] on the same total stiffness, corner springs beside a whole foundation."
-    return table(("Case", "μ", *heads(AT_REST), "apart"), rows, caption)
+    lateral = [groups[name] for name in ("poisson-statics",) if name in groups]
+    return PAGE.case_table("lateral", lateral, {"apart": apart})
+
+
+def apart(case: CaseResults) -> float | None:
+    """Return how far DDA's displacement at rest is from that of the elements [1]."""
+    dda, fem = (case.number(solver, "displacement.static") for solver in ("dda", "fem"))
+    return abs(dda / fem - 1) if dda and fem else None

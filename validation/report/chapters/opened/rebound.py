@@ -10,23 +10,22 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Head, Heading, Paragraph, Table, TableColumn, table
+from validation.report.blocks import Blocks, Heading, Paragraph, Table
 from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, Verdicts, case_groups, verdicts_of
-from validation.report.chapters.measures import MetricColumn, cells, heads
+from validation.report.chapters.described import Description
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, capital, cell, short
+from validation.report.chapters.text import DASH, capital, short
 from validation.report.figures import histories
-from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.figures.histories import Margins
+from validation.report.figures.charts import ChartLine
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.theory import landing
 
+PAGE = Description(__file__)
 EXACT = "block-events"
 IMPACT = "rebound-"  # prefix of the scenes of single landings
 MAP = "contact-map-"  # prefix of the scenes over step and springs
-MARKS = {"0.3": 0.3, "2": 2.0}
 COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7")
 SHADES = MapScale("Greys", 1.6, cell=6.5)
 WORDS = {  # the ends of the scenes' names
@@ -41,14 +40,6 @@ TITLES = {  # of the panels
     "implicit": "implicit contact",
     "conserving": "energy-conserving contact",
 }
-LOST = "Lost by, over the energy given"
-BUDGET = (
-    MetricColumn("energy.switching_gain", -1.0, "switching", LOST, digits=3),
-    MetricColumn("contact.peak_force", 1e-6, "Peak force [MN]", digits=3),
-    MetricColumn("contact.penetration", 1e3, "Penetration [mm]", digits=3),
-    MetricColumn("contact.open_share", 100.0, "Open [%]", digits=3),
-    MetricColumn("horizon.time", 1.0, "Repeatable up to [s]", digits=3),
-)
 BUDGET_STEPS = (1e-3, 2e-4)  # time steps in the table of budgets [s]
 
 
@@ -83,39 +74,13 @@ def restitution_blocks(data: dict[str, Any], impacts: CaseGroups, directory: Pat
             ChartLine("", omega, mean, color, shaded=(low, high)),
             ChartLine("", x, e, color, width=0, dots=2.4, hollow=True),
         )
-        panels.append(
-            ChartPanel(
-                TITLES.get(name, name),
-                r"$\Omega = \omega_c\,dt$",
-                "Restitution e",
-                lines,
-                (omega[0], omega[-1]),
-                (0.0, top),
-                (True, False),
-                MARKS,
-                {"": 1.0},
-            )
-        )
-    caption = (
-        "Share of its landing speed that a rigid block keeps, over ω_c dt: mean (line) and range over the phase of the "
-        "landing within a step (shaded), in closed form; circles: impacts of a rigid block, dda. Without a time "
-        "step a rigid block keeps all of it, e = 1."
-    )
-    exact = {ratio: landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
-    text = (
-        "Up to ω_c dt = 0.3 the restitution follows the scheme's damping, e ≈ exp(−π ω_c dt / 4) for (1/2, 1); at ω_c "
-        "dt = 2 contact lasts two steps and e is 1/3 and 1, whatever the phase; beyond, it is the phase that "
-        "decides: 0 to 1 for (1/2, 1), 1/3 to 3 for (1/4, 1/2), whose impacts multiply the energy by 91/27 = 3.37 on "
-        "average. This is a rigid mass. The block of one strain is one only in two limits, with a quarter of its mass, "
-        "ω_c = √(8 p / m), at p ≫ E, and with all of it, ω_c = √(2 p / m), at p ≪ E; without a time step its own "
-        f"restitution is {exact[1.0]:.3f}, {exact[10.0]:.3f} and {exact[100.0]:.3f} at p = 1, 10 and 100E, and "
-        "at p ≫ E it lands in three contacts in a row."
-    )
-    figure = chart_figure(panels, 45.0, Margins(13.0, 3.0, 6.0, 10.0), shared=True)
+        ranges = {"x_range": (omega[0], omega[-1]), "y_range": (0.0, top)}
+        panels.append(PAGE.panel("restitution", lines, title=TITLES.get(name, name), **ranges))
+    exact = {f"at{ratio:g}": landing.own_landing(2 * ratio).restitution for ratio in (1.0, 10.0, 100.0)}  # of a square
     return [
         Heading("What a landing returns", 2),
-        histories.saved(figure, directory, "rebound-restitution.svg", caption),
-        Paragraph(text),
+        PAGE.figure("restitution", panels, directory),
+        Paragraph(PAGE.text("restitution", **exact)),
     ]
 
 
@@ -182,28 +147,15 @@ def map_blocks(maps: CaseGroups, verdicts: Verdicts, directory: Path) -> Blocks:
     rows = [f"p = {short(r)}E" for r in ratios]
     figure = map_figure(number_maps, rows, [short(1e3 * step) for step in steps], ("dt [ms]", ""), SHADES)
     schemes = ", ".join(WORDS.get(kind(group), group.title) for group in maps)
-    caption = (
-        "The paper's block, unlocked, over 0.2 s, dda: solves of the open-close iteration a step (mean), greatest "
-        "energy above that given, over it, and openings and closings over those of the exact motion; from above: "
-        f"{schemes}."
-    )
-    remark = HORIZON
+    remark = PAGE.text("horizon")
     if verdicts:
         remark += f" {gate_count(verdicts).capitalize()}."
     return [
         Heading("Energy, switches and solves", 2),
-        histories.saved(figure, directory, "rebound-maps.svg", caption),
+        histories.saved(figure, directory, "rebound-maps.svg", PAGE.text("maps", schemes=schemes)),
         budget_table(maps),
         Paragraph(remark),
     ]
-
-
-HORIZON = (
-    "Repeatable up to: the time for which a run with p (1 + 10⁻¹²) stays within 10⁻⁶; beyond, two correct "
-    "programs differ, and only balances of momentum and energy are left to compare. Energies are those lost "
-    "(negative: gained) by the end, over what start and loads give: the scheme's own damping of what keeps its "
-    "contact state, and openings and closings apart."
-)
 
 
 def number_maps_of(
@@ -247,20 +199,23 @@ def _number(value: float) -> str:
 
 def budget_table(maps: CaseGroups) -> Table:
     """Return where the energy went, the peak force and the horizon of every case."""
-    titles: tuple[Head, ...] = ("Scheme", "p", TableColumn("dt [ms]"), (LOST, "scheme"), *heads(BUDGET))
     rows = []
     for group in maps:
         name = kind(group)
         cases = [case for case in group.cases if case.scene.time.step in BUDGET_STEPS]
         for case in sorted(cases, key=lambda c: (ratio(c), -c.scene.time.step)):
-            rows.append((name, f"{short(ratio(case))}E", short(1e3 * case.scene.time.step), *budget_cells(case)))
+            rows.append((name, *budget_cells(case)))
             name = ""
-    return table(titles, rows, "Budget of the cases of two time steps, dda.", ruled=False)
+    return PAGE.table("budget", rows)
 
 
-def budget_cells(case: CaseResults) -> tuple[str, ...]:
-    """Return losses, peak force, penetration, share open and horizon of a case."""
-    input_energy = case.number("dda", "energy.given")
+def budget_cells(case: CaseResults) -> list[str]:
+    """Return stiffness, step, losses, peak force, penetration, share open and horizon of a case."""
+    return PAGE.cells("budget", case, {"stiffness": f"{short(ratio(case))}E", "lost": lost_by_scheme})
+
+
+def lost_by_scheme(case: CaseResults) -> float | None:
+    """Return the energy that the scheme itself has damped over the energy given [1]."""
     lost = case.number("dda", "energy.lost_algorithmic")
-    share = None if lost is None or not input_energy else lost / input_energy
-    return (cell(share, digits=3), *cells(BUDGET, case))
+    given = case.number("dda", "energy.given")
+    return lost / given if lost is not None and given else None

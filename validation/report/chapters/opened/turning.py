@@ -6,37 +6,27 @@ import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Paragraph, Table, table
+from validation.report.blocks import Blocks, Paragraph, Table
 from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults, case_groups, verdicts_of
+from validation.report.chapters.described import Description
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, plain, short
-from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.figures.histories import Margins, saved
+from validation.report.chapters.text import DASH, short
+from validation.report.figures.charts import ChartLine, ChartPanel
 from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
+from validation.runs.row import Value
 from validation.studies.rocking.read import increments, rectangle
 from validation.studies.rocking.rocking import DURATION, LET_GO, PULSE, PUSH
 from validation.studies.rocking.toppling import TURN, beyond
 
 COLORS = ("#d55e00", "#0072b2", "#009e73", "#666666")
-SWINGS = (
-    "The quarter period of a rigid block, by quadrature, is met up to the settlement of the corner. How much of its "
-    "rate a block keeps after an impact is no property of DDA: springs have no restitution of their own, and the ratio "
-    "depends on time step, springs and scheme. Constant acceleration gains no energy, so that it stays below one."
-)
-PULSES = (
-    "The threshold of the acceleration is that of the rigid block, in closed form; tilt and time are DDA's over the "
-    "rigid block's."
-)
-FALLS = (
-    f"Times are those of a turn by {TURN} rad over the rigid block's. A tower that stands on its base is early, "
-    "because its upper corner pushes before it lifts, by an amount proportional to 1/√p. First-order rotation, "
-    "x − r y, y + r x, multiplies the area by 1 + r² in every step."
-)
+PAGE = Description(__file__)
+ABSENT: dict[str, Any] = dict.fromkeys(("quarter period", "rate ratio", "peak", "time"))  # numbers without a gate
 QUANTITIES = {  # metric -> words
     "moved": "distance in the second half, over a sliding block's or the width",
     "identity": "u + tan φ v less the free motion, over the distance",
@@ -54,33 +44,22 @@ def rocking_chapter(results: Results, manifest: Manifest, directory: Path) -> Bl
     swings = [group for group in groups if group.name in LET_GO]
     pulses = [group for group in groups if group.name == PULSE]
     panels = [swing_panel(group) for group in swings[-1:]] + [pulse_panel(group) for group in pulses]
-    caption = (
-        "Left: tilt over that of the release, over time in quarter periods of the rigid block, which lies flat at 1. "
-        "Right: tilt over the tipping angle on a base that accelerates for 0.36 s, by the pulse over the least that "
-        "overturns the rigid block."
-    )
-    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(SWINGS), swing_table(swings)]
-    blocks += [Paragraph(PULSES), pulse_table(pulses)]
-    return [*blocks, *drawn(panels, directory, "rocking.svg", caption)]
+    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(PAGE.text("swings")), swing_table(swings)]
+    blocks += [Paragraph(PAGE.text("pulses")), pulse_table(pulses)]
+    return [*blocks, *drawn("rocking", panels, directory)]
 
 
 def toppling_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter of `toppling`."""
     groups = case_groups(results, manifest)
-    caption = (
-        "Left: turn of a tower of 10 m × 25 m on a slope of 40° (dashed: rigid block, released on its corner). Right: "
-        "its area over that of the start (dashed: the product of 1 + r² over the steps)."
-    )
-    panels = [fall_panel(groups), area_panel(groups)]
-    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(FALLS), fall_table(groups)]
-    return [*blocks, *drawn(panels, directory, "toppling.svg", caption)]
+    blocks = [*opening(manifest, verdicts_of(groups)), Paragraph(PAGE.text("falls", turn=TURN)), fall_table(groups)]
+    return [*blocks, *drawn("toppling", [fall_panel(groups), area_panel(groups)], directory)]
 
 
-def drawn(panels: Sequence[ChartPanel], directory: Path, file: str, caption: str) -> Blocks:
+def drawn(name: str, panels: Sequence[ChartPanel], directory: Path) -> Blocks:
     """Return the figure of the panels that have lines, nothing where no case finished."""
     filled = [panel for panel in panels if panel.lines]
-    margins = Margins(13.0, 20.0, 6.0, 10.0, 33.0)
-    return [saved(chart_figure(filled, 42.0, margins), directory, file, caption)] if filled else []
+    return [PAGE.figure(name, filled, directory)] if filled else []
 
 
 def coloured(curves: Sequence[tuple[str, Array, Array]]) -> list[ChartLine]:
@@ -93,10 +72,10 @@ def rigid(name: str, x: Array, y: Array) -> ChartLine:
     return ChartLine(name, x, y, "#000000", (3.0, 2.0))
 
 
-def judged(group: CaseGroup, case: CaseResults, metric: str) -> str:
-    """Return the value that a gate saw, as text."""
-    values = [v["value"] for v in group.verdicts if v["scene"] == case.name and v["metric"] == metric]
-    return short(values[0]) if values and isinstance(values[0], int | float) else DASH
+def judged(group: CaseGroup, case: CaseResults) -> dict[str, Value]:
+    """Return the numbers that the gates of a case saw, by metric."""
+    own = [v for v in reversed(group.verdicts) if v["scene"] == case.name]
+    return {v["metric"]: v["value"] for v in own if isinstance(v["value"], int | float)}
 
 
 def swing_table(swings: CaseGroups) -> Table:
@@ -105,15 +84,13 @@ def swing_table(swings: CaseGroups) -> Table:
     for group in swings:
         for case in group.cases:
             block = rectangle(case.scene)
-            tilt = math.radians(case.scene.block.tilt)
-            measured = (judged(group, case, metric) for metric in ("quarter period", "rate ratio"))
-            ratio = plain(block.height / block.width, 2)
-            rows.append((ratio, plain(tilt / block.alpha, 2), *measured, plain(block.housner, 3)))
-    caption = (
-        "Blocks of a = 2 m released from a tilt. Quarter period over the rigid block's; rate after over before the "
-        "impact."
-    )
-    return table(("h/a", "tilt / tipping", "quarter period", "rate ratio", "Housner"), rows, caption)
+            own: dict[str, Any] = {
+                "slenderness": block.height / block.width,
+                "tilt": math.radians(case.scene.block.tilt) / block.alpha,
+                "housner": block.housner,
+            }
+            rows.append(PAGE.cells("swings", case, ABSENT | own | judged(group, case)))
+    return PAGE.table("swings", rows)
 
 
 def size(case: CaseResults) -> float:
@@ -127,12 +104,8 @@ def pulse_table(pulses: CaseGroups) -> Table:
     rows = []
     for group in pulses:
         for case in group.cases:
-            rows.append((plain(size(case), 3), judged(group, case, "peak"), judged(group, case, "time")))
-    return table(
-        ("pulse / threshold", "peak tilt", "time of tipping"),
-        rows,
-        "Towers of 4 m on a base that accelerates; DDA over the rigid block.",
-    )
+            rows.append(PAGE.cells("pulses", case, ABSENT | {"size": size} | judged(group, case)))
+    return PAGE.table("pulses", rows)
 
 
 def fall_table(groups: CaseGroups) -> Table:
@@ -144,9 +117,11 @@ def fall_table(groups: CaseGroups) -> Table:
             for verdict in (v for v in group.verdicts if v["scene"] == case.name):
                 words = QUANTITIES.get(verdict["metric"], verdict["metric"])
                 edges = (short(edge, 7) for edge in verdict["band"])
-                rows.append((label, words, judged(group, case, verdict["metric"]), *edges))
+                value = verdict["value"]
+                measured = short(value) if isinstance(value, int | float) else DASH
+                rows.append((label, words, measured, *edges))
                 label = ""
-    return table(("Scene", "Quantity", "DDA", "from", "to"), rows)
+    return PAGE.table("falls", rows)
 
 
 def swing_panel(group: CaseGroup) -> ChartPanel:
@@ -159,7 +134,7 @@ def swing_panel(group: CaseGroup) -> ChartPanel:
             x = history.time / block.quarter_period(tilt)
             y = 1 + history.columns["rotation"] / tilt
             lines.append((f"h/a = {block.height / block.width:g}", x[x < 2], y[x < 2]))
-    return ChartPanel("Released", "t / T", "tilt / first tilt", coloured(lines), levels={"": 0.0}, marks={"": 1.0})
+    return PAGE.panel("swings", coloured(lines))
 
 
 def pulse_panel(group: CaseGroup) -> ChartPanel:
@@ -169,9 +144,7 @@ def pulse_panel(group: CaseGroup) -> ChartPanel:
         if (history := case.histories.get("dda")) is not None:
             tilt = history.columns["rotation"] / rectangle(case.scene).alpha
             lines.append((f"{size(case):.2f}", history.time, tilt))
-    title = "A pulse of the base"
-    y_label = "tilt / tipping angle"
-    return ChartPanel(title, "t [s]", y_label, coloured(lines), levels={"": 1.0}, marks={"": DURATION})
+    return PAGE.panel("pulses", coloured(lines), marks={"": DURATION})
 
 
 def finished_cases(groups: CaseGroups, name: str) -> list[CaseResults]:
@@ -192,7 +165,7 @@ def fall_panel(groups: CaseGroups) -> ChartPanel:
         turns = np.linspace(0.0, -float(case.histories["dda"].columns["rotation"][-1]), 101)[1:]
         times = np.array([rectangle(case.scene).fall_time(beyond(case.scene), turn) for turn in turns])
         lines.append(rigid("rigid", times, turns))
-    return ChartPanel("Toppling", "t [s]", "turn [rad]", lines)
+    return PAGE.panel("falls", lines)
 
 
 def area_panel(groups: CaseGroups) -> ChartPanel:
@@ -207,4 +180,4 @@ def area_panel(groups: CaseGroups) -> ChartPanel:
         history = case.histories["dda"]
         product = 100 * (np.cumprod(1 + increments(history) ** 2) - 1)
         lines.append(rigid("product", history.time, np.asarray(product, dtype=np.float64)))
-    return ChartPanel("Growth of the area", "t [s]", "area / first area − 1 [%]", lines)
+    return PAGE.panel("areas", lines)

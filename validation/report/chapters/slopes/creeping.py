@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.report.blocks import Blocks, FigureBlock, Paragraph, Table, table
+from validation.report.blocks import Blocks, FigureBlock, Paragraph, Table
 from validation.report.chapters.data import CaseResults, Groups, cases_of, groups_by_name, verdicts_of
+from validation.report.chapters.described import Description
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import cell, plain
-from validation.report.figures.charts import BESIDE, DOTS, ChartLine, ChartPanel, chart_figure
-from validation.report.figures.histories import saved
+from validation.report.chapters.text import cell
+from validation.report.figures.charts import DOTS, ChartLine
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.slopes import creep as study
@@ -24,27 +24,13 @@ AMBER = "#e69f00"
 BLUE = "#0072b2"
 GREEN = "#009e73"
 BLACK = "black"
-CAPTION = (
-    "Constant acceleration stops the creep, average acceleration keeps it, and lagged friction with dead bands speeds "
-    "it up as the step is refined. "
-    "Left: mean slide of the corners of a block at 20 degrees under 30 degrees of friction. Right: slip per second "
-    "over the step; the horizontal line is the exact block's. Lagged friction with dead bands is under another load, "
-    "nine times the weight, and is compared with an established program (circles)."
-)
-EXPLANATION = (
-    "The normal springs ring when the weight is applied. Each cycle unloads the base, friction is lost, and the block "
-    "moves by about g/ωₙ²: undamped it creeps on and on, on this slope by half to twice g/ωₙ = g √(m/2p) per second. "
-    "A scheme that damps the ringing lets it stop, the sooner the larger the step; one that does not lets it creep as "
-    "the exact block does, or hop where the step does not follow the ringing. Where friction is that of the "
-    "iteration before and stick and slip are not checked, the block keeps moving: with an open "
-    "contact that closes only beyond a dead band, ever faster as the step is refined."
-)
+PAGE = Description(__file__)
 
 
 def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     """Return the chapter: the figure and the table by steps."""
     groups = groups_by_name(results, manifest)
-    blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(EXPLANATION)]
+    blocks = [*opening(manifest, verdicts_of(groups.values())), Paragraph(PAGE.text("explanation"))]
     if groups.get(study.STEPS):
         blocks += [over_time_and_step(groups, directory), by_step(groups)]
     blocks += by_stiffness(groups)
@@ -70,11 +56,8 @@ def over_time_and_step(groups: Groups, directory: Path) -> FigureBlock:
     slips += [across(case) for case in exact[:1]]
     lines = [line for line in lines if len(line.x)]
     slips = [line for line in slips if len(line.x)]
-    panels = (
-        ChartPanel("Slide", "t [s]", "slide [mm]", lines, names="upper left"),
-        ChartPanel("Slip in a second", "dt [ms]", "slip [mm]", slips, logarithmic=(True, True), names="upper center"),
-    )
-    return saved(chart_figure(panels, margins=BESIDE), directory, "creep.svg", CAPTION)
+    panels = (PAGE.panel("slide", lines), PAGE.panel("slip", slips))
+    return PAGE.figure("creep", panels, directory)
 
 
 def of(case: CaseResults, kind: str) -> bool:
@@ -135,13 +118,7 @@ def by_step(groups: Groups) -> Table:
         slips = [next((slip(c) for c in steps if of(c, kind) and at(c, step)), None) for kind in (CONSTANT, AVERAGE)]
         slips.append(next((slip(c) for c in lagged(groups) if at(c, step)), None))
         rows.append(tuple(cell(value, 1e3, 3) for value in (step, *slips, program_slip)))
-    scale = friction.creep_scale(steps[0].scene)
-    caption = f"Slip per second. g/ωₙ = {1e3 * scale:.3g} mm/s for the block under its own weight."
-    return table(
-        ("dt [ms]", "(1/2, 1) [mm]", "(1/4, 1/2) [mm]", "lagged, bands [mm]", "an established program [mm]"),
-        rows,
-        caption,
-    )
+    return PAGE.table("steps", rows, scale=1e3 * friction.creep_scale(steps[0].scene))
 
 
 def by_stiffness(groups: Groups) -> Blocks:
@@ -151,22 +128,16 @@ def by_stiffness(groups: Groups) -> Blocks:
     for case in sorted(cases_of(groups, study.STIFFNESS), key=lambda one: one.scene.contact.stiffness):
         p = case.scene.contact.stiffness
         stopping = [one for one in damped if one.scene.contact.stiffness == p]
-        by_step_alone = next((slip(one) for one in stopping if one.scene.time.discount == 1), None)
-        by_discount = next((slip(one) for one in stopping if one.scene.time.discount < 1), None)
-        numbers = (
-            friction.creep_scale(case.scene),
-            speed(case, "block-events"),
-            speed(case, "dda"),
-            by_step_alone,
-            by_discount,
-        )
-        rows.append((plain(p / case.scene.block.young, 3), *(cell(value, 1e3, 3) for value in numbers)))
-    titles = ("p/E", "g/ω_n [mm/s]", "exact [mm/s]", "(1/4, 1/2) [mm/s]", "(1/2, 1) [mm]", "with gg [mm]")
-    caption = (
-        "Springs of other stiffness, with steps to match: mean speed over seven cycles, and the slide at which the "
-        "block stops under constant acceleration (ω_n dt = 0.43) and under gg = 0.996 per step (ω_n dt = 0.17)."
-    )
-    return [table(titles, rows, caption)] if rows else []
+        own = {
+            "ratio": p / case.scene.block.young,
+            "scale": friction.creep_scale(case.scene),
+            "exact": speed(case, "block-events"),
+            "dda": speed(case, "dda"),
+            "by step": next((slip(one) for one in stopping if one.scene.time.discount == 1), None),
+            "by discount": next((slip(one) for one in stopping if one.scene.time.discount < 1), None),
+        }
+        rows.append(PAGE.cells("stiffness", case, own))
+    return [PAGE.table("stiffness", rows)] if rows else []
 
 
 def speed(case: CaseResults, solver: str) -> float | None:
