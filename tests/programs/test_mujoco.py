@@ -188,7 +188,7 @@ MORE = {
     ),
     "layers and a joint": layered(),
     "springs below": layered(base="springs", base_stiffness=1e9),
-    "a half-space below": layered(base="transmitting", base_density=2200.0, base_young=4e9, base_poisson=0.1),
+    "a half-space below": layered(base="transmitting", base_density=2200.0, base_speed=1364.0),
     "a tilt to the right": changed("rocking", block__tilt=-10.0, block__width=1.5, load__gravity=3.0),
 }
 

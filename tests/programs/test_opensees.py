@@ -215,7 +215,7 @@ FROM_BELOW = {"at": "base", "shape": "half-sine", "velocity": 0.5, "duration": 0
                     "motion": "shear",
                     "base": "transmitting",
                     "base_density": 2500.0,
-                    "base_young": 1e10,
+                    "base_speed": 1414.0,
                     "joint": JOINTS,
                 },
                 {"at": "base", "shape": "ricker", "velocity": 0.5, "frequency": 15.0},

@@ -27,18 +27,8 @@ SCENES: dict[str, dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8")
 )
 NOT_LINEAR = (
-    "opening in a ramp",
-    "adaptive",
-    "opening",
-    "opening sub-blocks",
-    "landing",
-    "sliding",
-    "lagged",
-    "turning",
-    "column that opens",
-    "column that slips",
-    "bars that open",
-    "bars that slip",
+    *("opening in a ramp", "adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning"),
+    *("column that opens", "column that slips", "bars that open", "bars that slip"),
 )
 OF_CONTACTS = NOT_LINEAR[-4:]  # columns
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m

@@ -63,18 +63,8 @@ CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 def problem_data(posed: Problem, reference: Standard) -> ProblemData:
     """Return a problem as plain data."""
-    scene = posed.scene
-    judged = [_judged(column, reference.bands[column]) for column in scene.run.columns]
-    return ProblemData(
-        problem=posed.name,
-        digest=digest(posed),
-        title=posed.title,
-        asks=posed.asks,
-        **parts(scene),
-        sampling=SamplingData(step_s=scene.time.step, count=len(reference.exact.time)),
-        answer=tuple(judged),
-        exact=f"exact/{posed.name}.csv",
-    )
+    judged = tuple(_judged(column, reference.bands[column]) for column in posed.columns)
+    return _data(posed, judged, exact=f"exact/{posed.name}.csv")
 
 
 def box_problem_data(question: BoxQuestion) -> ProblemData:
@@ -83,16 +73,20 @@ def box_problem_data(question: BoxQuestion) -> ProblemData:
     for quantity in question.quantities:
         band = {"exact": quantity.exact, "low": quantity.low, "high": quantity.high}
         numbers.append(NumberData(name=quantity.name, unit=quantity.unit, reason=quantity.reason, **band))
+    columns = tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in question.columns)
+    return _data(question, columns, numbers=tuple(numbers), exact=None)
+
+
+def _data(question: Question, columns: tuple[ColumnOfAnswer, ...], **others: Any) -> ProblemData:
     return ProblemData(
         problem=question.name,
         digest=digest(question),
         title=question.title,
         asks=question.asks,
         **parts(question.scene),
-        sampling=SamplingData(step_s=question.scene.time.step, count=question.scene.time.steps),
-        answer=tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in question.columns),
-        numbers=tuple(numbers),
-        exact=None,
+        sampling=SamplingData(step_s=question.scene.time.step, count=len(question.instants)),
+        answer=columns,
+        **others,
     )
 
 

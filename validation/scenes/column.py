@@ -106,9 +106,7 @@ class ColumnSection(Section):
     base: Annotated[Literal["rigid", "springs", "transmitting", "free"], Key("", "what the column stands on")] = "rigid"
     base_stiffness: Annotated[Positive | None, Key("Pa/m", "of base = springs")] = None
     base_density: Annotated[Positive | None, Key("kg/m3", "of the half-space below a transmitting base")] = None
-    base_speed: Annotated[Positive | None, Key("m/s", "of its waves; or base_young")] = None
-    base_young: Annotated[Positive | None, Key("Pa", "Young's modulus of the half-space")] = None
-    base_poisson: Annotated[PoissonRatio, Key("", "with base_young")] = 0.0
+    base_speed: Annotated[Positive | None, Key("m/s", "of its waves")] = None
     heights: Annotated[tuple[NonNegative, ...], Field(max_length=MOST_HEIGHTS), Key("m", "where a history looks")] = ()
 
     @model_validator(mode="after")
@@ -123,21 +121,11 @@ class ColumnSection(Section):
 
     def _check_base(self) -> None:
         base_keys = sorted(name for name in self.model_fields_set if name.startswith("base_"))
-        allowed = {"rigid": (), "springs": ("base_stiffness",)}.get(
-            self.base, ("base_density", "base_speed", "base_young", "base_poisson")
-        )
-        if wrong := [name for name in base_keys if name not in allowed]:
+        required = {"springs": ["base_stiffness"], "transmitting": ["base_density", "base_speed"]}.get(self.base, [])
+        if wrong := [name for name in base_keys if name not in required]:
             raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got {getattr(self, wrong[0])!r}")
-        if self.base == "springs" and self.base_stiffness is None:
-            raise ValueError("base_stiffness is required with base = 'springs', got nothing")
-        if self.base == "transmitting":
-            if self.base_density is None or (self.base_speed is None) == (self.base_young is None):
-                raise ValueError(
-                    "base_density and either base_speed or base_young are required with base = 'transmitting', got "
-                    f"{', '.join(base_keys) or 'nothing'}"
-                )
-            if self.base_speed is not None and "base_poisson" in base_keys:
-                raise ValueError(f"base_poisson goes with base_young only, got {self.base_poisson:g} with base_speed")
+        if missing := [name for name in required if getattr(self, name) is None]:
+            raise ValueError(f"{missing[0]} is required with base = {self.base!r}, got nothing")
         if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
             raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
 
@@ -192,12 +180,9 @@ class ColumnSection(Section):
     @property
     def impedance(self) -> float | None:
         """Impedance rho c of the half-space below [Pa s/m]; None where the base moves as it is told."""
-        if self.base != "transmitting" or self.base_density is None:
+        if self.base_density is None or self.base_speed is None:
             return None
-        if self.base_speed is not None:
-            return self.base_density * self.base_speed
-        modulus = plane_modulus(self.base_young or 0.0, self.base_poisson, self.motion)
-        return math.sqrt(self.base_density * modulus)
+        return self.base_density * self.base_speed
 
     @property
     def faces(self) -> tuple[float, ...]:

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.files import read_table
 from validation.runs.history import Array
 from validation.scenes.column import InputSection
+from validation.scenes.record import read_columns
 from validation.scenes.scene import Scene
 
 ORDERS = {"velocity": 1, "acceleration": 2, "pressure": 1}  # column of a record to its derivatives of a displacement
@@ -50,7 +50,7 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
 
 def _signal(section: InputSection) -> Signal:
     if section.record is not None:
-        return read_signal(Path(section.record), section.at)
+        return partial(recorded, *read_drive(Path(section.record), section.at))
     size = (section.velocity if section.at == "base" else section.pressure) or 0.0
     if section.shape in ("half-sine", "triangle"):
         pulse = half_sine if section.shape == "half-sine" else triangle
@@ -96,29 +96,22 @@ def cosine(size: float, frequency: float, time: Array) -> Parts:
     return size / w * np.sin(w * time), size * np.cos(w * time), -size * w * np.sin(w * time)
 
 
-def read_signal(path: Path, at: str) -> Signal:
-    """Read a record; before its first and after its last row its column is zero."""
-    return partial(recorded, *read_record(path, at))
-
-
-def read_record(path: Path, at: str) -> tuple[Array, Array, int]:
+def read_drive(path: Path, at: str) -> tuple[Array, Array, int]:
     """Return instants and values of a record, and which derivative of a displacement (of an impulse) the values are.
+
+    Before its first and after its last row its column is zero.
 
     Raises
     ------
     InputError
-        The file cannot be read, its header is another, or its instants do not increase.
+        It is no such record.
     """
-    names, table = read_table(path)
-    allowed = ("velocity", "acceleration") if at == "base" else ("pressure",)
-    if len(names) != 2 or names[1] not in allowed:
-        headers = " or ".join(f"time,{name}" for name in allowed)
-        raise InputError(f"header must be {headers}", source=path, value=repr(",".join(names)))
-    if len(table) < 2 or not np.all(np.isfinite(table)):
-        raise InputError("must hold at least two rows of finite numbers", source=path, value=f"{len(table)} rows")
-    if np.any(np.diff(table[:, 0]) <= 0):
-        raise InputError("time must increase from row to row", source=path, value="another order")
-    return table[:, 0], table[:, 1], ORDERS[names[1]]
+    names = ("velocity", "acceleration") if at == "base" else ("pressure",)
+    columns = read_columns(path, [f"time,{name}" for name in names])
+    name = next(name for name in names if name in columns)
+    if len(columns["time"]) < 2:
+        raise InputError("must hold at least two rows", source=path, value=f"{len(columns['time'])} rows")
+    return columns["time"], columns[name], ORDERS[name]
 
 
 def recorded(instants: Array, values: Array, order: int, time: Array) -> Parts:

@@ -139,12 +139,3 @@ class SceneTables(Section):
         if column is None:
             return False
         return (column.law == "unilateral" and column.gravity > 0) or any(layer.velocity for layer in column.layer)
-
-    def files(self) -> tuple[tuple[str, str | None], ...]:
-        """Return the fields that name a file, and what they name."""
-        load, drive = self.stated_load, self.stated_input
-        return (
-            ("fem: mesh", self.fem.mesh),
-            ("load: base_motion", None if load is None else load.base_motion),
-            ("input: record", None if drive is None else drive.record),
-        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 STRAIGHT = 1e-9  # of a path, across it
-HEADERS = (["time", "x"], ["time", "y"], ["time", "x", "y"], ["time", "y", "x"])
+HEADERS = ("time,x", "time,y", "time,x,y", "time,y,x")
 
 
 @dataclass(frozen=True)
@@ -33,26 +34,31 @@ class Record:
     y: Array
 
 
-def read_record(path: Path) -> Record:
-    """Read a record.
+def read_columns(path: Path, headers: Sequence[str]) -> dict[str, Array]:
+    """Read the columns of a record whose instants increase, under one of some headers.
 
     Raises
     ------
     InputError
-        The file cannot be read, its header is another, or its instants do not increase.
+        The file cannot be read, its header is another, its numbers are not finite, or its instants do not increase.
     """
     names, table = read_table(path)
-    if names not in HEADERS:
-        raise InputError("header must be time,x or time,y or time,x,y", source=path, value=repr(",".join(names)))
-    columns = dict(zip(names, table.T, strict=True))
-    time = columns["time"]
+    if ",".join(names) not in headers:
+        raise InputError(f"header must be {' or '.join(headers)}", source=path, value=repr(",".join(names)))
     if not np.all(np.isfinite(table)):
         raise InputError("must hold finite numbers", source=path, value="others")
-    if np.any(np.diff(time) <= 0):
-        late = int(np.argmax(np.diff(time) <= 0)) + 1
-        raise InputError(
-            "time must increase from row to row", source=path, value=f"{time[late]:g} after {time[late - 1]:g}"
-        )
+    time = table[:, 0]
+    late = np.flatnonzero(np.diff(time) <= 0) + 1
+    if len(late):
+        value = f"{time[late[0]]:g} after {time[late[0] - 1]:g}"
+        raise InputError("time must increase from row to row", source=path, value=value)
+    return dict(zip(names, table.T, strict=True))
+
+
+def read_record(path: Path) -> Record:
+    """Read a record of a base's motion; see `read_columns`."""
+    columns = read_columns(path, HEADERS)
+    time = columns["time"]
     still = np.zeros_like(time)
     return Record(time, columns.get("x", still), columns.get("y", still))
 

@@ -40,65 +40,52 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for field, values in self._swept().items():
-            if not (isinstance(values, list) and values):
-                raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
-            if field not in _sweepable():
-                raise ValueError(f'sweep: must name a key of a table, such as "time.step", got {field!r}')
-        mode, lists = self.sweep.get("mode", "product"), self._swept()
-        if mode not in ("product", "zip"):
-            raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
-        if mode == "zip" and len({len(v) for v in lists.values()}) > 1:
-            raise ValueError(f"sweep: lists of a zip must have one length, got {[*map(len, lists.values())]}")
-        count = max(map(len, lists.values()), default=1) if mode == "zip" else math.prod(map(len, lists.values()))
-        if count > MOST_CASES:
-            raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
-        return self
-
-    @model_validator(mode="after")
-    def _check_needs(self) -> Self:
+        self._check_sweep()
         check_needs(self.tables())
-        return self
-
-    @model_validator(mode="after")
-    def _check_patch(self) -> Self:
-        if self.fem.patch_width is not None and self.fem.patch_width > self.block.base_length / 2:
-            raise ValueError(
-                f"fem: patch_width must be at most half the base length "
-                f"{self.block.base_length / 2:g}, got {self.fem.patch_width:g}"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _check_pressed_part(self) -> Self:
-        if self.kind != "block":
-            return self
-        (x1, y1), (x2, y2) = self.block.edge(self.block.top)
-        half = math.hypot(x2 - x1, y2 - y1) / 2
-        if self.load.eccentricity and abs(self.load.eccentricity) >= half:
-            raise ValueError(
-                f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _check_columns_of_boxes(self) -> Self:
+        self._check_lengths()
         if self.rigid is not None:
             for name in self.run.columns:
                 if name not in self.rigid.columns:
                     raise ValueError(f"run: columns must be among {', '.join(self.rigid.columns)}, got {name!r}")
-        return self
-
-    @model_validator(mode="after")
-    def _check_discount(self) -> Self:
         if self.damping.kinetic == "adaptive" and self.time.discount != 1:
             raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
+        if self.kind == "block" and self.contact.rule not in ("newmark", "augmented"):
+            self._check_rule()
+        self._check_files()
         return self
 
-    @model_validator(mode="after")
-    def _check_rule(self) -> Self:
-        if self.kind != "block" or self.contact.rule in ("newmark", "augmented"):
-            return self
+    def _check_sweep(self) -> None:
+        lists = self._swept()
+        for field, values in lists.items():
+            if not (isinstance(values, list) and values):
+                raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
+            if field not in _sweepable():
+                raise ValueError(f'sweep: must name a key of a table, such as "time.step", got {field!r}')
+        mode = self.sweep.get("mode", "product")
+        lengths = [len(values) for values in lists.values()]
+        if mode not in ("product", "zip"):
+            raise ValueError(f"sweep: mode must be 'product' or 'zip', got {mode!r}")
+        if mode == "zip" and len(set(lengths)) > 1:
+            raise ValueError(f"sweep: lists of a zip must have one length, got {lengths}")
+        count = max(lengths, default=1) if mode == "zip" else math.prod(lengths)
+        if count > MOST_CASES:
+            raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
+
+    def _check_lengths(self) -> None:
+        """Check lengths of load and springs against those of the block."""
+        width = self.fem.patch_width
+        if width is not None and width > self.block.base_length / 2:
+            rule = f"must be at most half the base length {self.block.base_length / 2:g}"
+            raise ValueError(f"fem: patch_width {rule}, got {width:g}")
+        if self.kind == "block" and self.load.eccentricity:
+            half = math.dist(*self.block.edge(self.block.top)) / 2
+            if abs(self.load.eccentricity) >= half:
+                raise ValueError(
+                    f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
+                )
+
+    def _check_rule(self) -> None:
+        """Check the scheme of a rule that steps the block by its own one."""
         rule = f"rule = {self.contact.rule!r}"
         t = self.time
         if t.scheme != "newmark":
@@ -117,19 +104,18 @@ class Scene(SceneTables):
                 f"contact: {rule} steps the block by average acceleration: time.alpha must be 0.25 and time.delta "
                 f"0.5, {numbers}"
             )
-        return self
 
-    @model_validator(mode="after")
-    def _check_files(self) -> Self:
-        for field, name in self.files():
+    def _check_files(self) -> None:
+        for field in FILES:
+            section, _, key = field.partition(".")
+            name = getattr(self.tables().get(section), key, None)
             try:
                 if name is not None:
                     regular(Path(name))
             except InputError as error:
-                raise ValueError(f"{field}: {error}") from None
+                raise ValueError(f"{section}: {key}: {error}") from None
             except (OSError, ValueError):  # that it cannot be read is said where it is read
                 continue
-        return self
 
     def tables(self) -> dict[str, Section]:
         """Return the tables that the scene has, by the names that its file gives them."""
@@ -261,7 +247,7 @@ def _sweepable() -> set[str]:
     }
 
 
-_FILES = ("fem.mesh", "load.base_motion", "input.record")
+FILES = ("fem.mesh", "load.base_motion", "input.record")
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
     "time.gg_rate": ("time.gg",),
@@ -364,7 +350,7 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
     def beside(value: object) -> object:
         return str(directory / value) if isinstance(value, str) else value
 
-    for field in _FILES:
+    for field in FILES:
         section, _, key = field.partition(".")
         table, sweep = data.get(section), data.get("sweep")
         if isinstance(table, dict) and key in table:

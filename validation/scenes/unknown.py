@@ -3,59 +3,18 @@
 from __future__ import annotations
 
 import difflib
+import tomllib
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
 from validation.scenes.keys import Section, keys_of
 from validation.scenes.kinds import OF_KIND
 
-# What other programs, and the symbols of the text, call a key; compared in lower case without separators.
-OTHER_NAMES = {
-    "title": ("name", "description"),
-    "time.step": ("timestep", "stepsize", "deltat", "g1"),
-    "time.steps": ("nsteps", "numberofsteps", "nstep", "n"),
-    "time.gg": ("dynamic", "discount", "kineticdamping"),
-    "time.scheme": ("integrator", "method", "timeintegration", "algorithm"),
-    "time.rho_inf": ("rhoinfinity", "rhoinfty", "spectralradius", "rho8"),
-    "time.alpha": ("beta", "newmarkbeta"),
-    "time.delta": ("gamma", "newmarkgamma"),
-    "block.side": ("size", "length"),
-    "block.density": ("rho", "mass", "unitweight"),
-    "block.young": ("e", "youngsmodulus", "modulus", "emodulus", "elasticity"),
-    "block": ("material", "geometry"),
-    "block.poisson": ("nu", "mu", "poissonsratio", "poissonratio"),
-    "block.subdivide": ("subblocks",),
-    "contact.stiffness": ("penalty", "normalstiffness", "spring", "springs", "g0", "kn"),
-    "contact.shear_stiffness": ("shearpenalty", "tangentialstiffness", "ks"),
-    "contact.friction": ("phi", "frictionangle", "frictioncoefficient"),
-    "contact.damping_ratio": ("zeta", "xi", "dashpot", "dashpots", "contactdamping", "criticaldamping"),
-    "contact.restitution": ("cor", "coefficientofrestitution", "rebound"),
-    "contact.penetration": ("tolerance", "penetrationtolerance", "gaptolerance"),
-    "load.pressure": ("load", "stress", "q"),
-    "load.gravity": ("weight",),
-    "load.slope": ("angle", "inclination", "dip"),
-    "rigid": ("rigidbody", "rigidbodies", "box", "boxes", "bodies"),
-    "rigid.friction": ("mu", "phi", "frictionangle", "frictioncoefficient"),
-    "rigid.restitution": ("cor", "coefficientofrestitution", "bounce", "bounciness", "elasticity"),
-    "rigid.slope": ("angle", "inclination", "dip"),
-    "rigid.stiffness": ("k", "kn", "penalty", "contactstiffness", "normalstiffness"),
-    "rigid.base_amplitude": ("amplitude", "motion"),
-    "rigid.base_frequency": ("frequency",),
-    "rigid.box": ("boxes", "body", "bodies", "block", "blocks"),
-    "rigid.box.width": ("w", "side", "size", "length"),
-    "rigid.box.height": ("h",),
-    "rigid.box.density": ("rho", "mass", "unitweight"),
-    "rigid.box.x": ("position",),
-    "rigid.box.lift": ("y", "gap", "drop", "clearance"),
-    "rigid.box.tilt": ("angle", "theta", "rotation"),
-    "rigid.box.velocity": ("v", "speed"),
-    "rigid.box.spin": ("omega", "angularvelocity"),
-    "damping.mass": ("a0",),
-    "damping.stiffness": ("a1",),
-    "fem.degree": ("order",),
-    "time": ("scheme", "newmark", "numerics"),
-}
+OTHER_NAMES: dict[str, list[str]] = tomllib.loads(
+    Path(__file__).with_name("other_names.toml").read_text(encoding="utf-8")
+)  # what other programs, and the symbols of the text, call a key
 SHORTEST = 3  # letters of a name that another may be spelt like
 CLOSE = 0.6  # similarity of two names from which on one may be meant for the other
 NAMED = 30  # unknown keys that are named in full

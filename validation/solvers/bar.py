@@ -105,7 +105,7 @@ class OpeningBar(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base between the steps."""
-        return switches_between_steps({"base": self.result.closed}, self.result.time)
+        return switches_between_steps({"base": self.result.closed == 0}, self.result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""

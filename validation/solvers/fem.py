@@ -207,7 +207,7 @@ class OpeningMesh(Prepared):
 
         check_columns(self.scene, UNILATERAL_COLUMNS)
         result = self._solved((*self.scene.run.columns, "contact_pressure"))
-        self.pressed = result.columns["contact_pressure"] > 0
+        self.is_open = ~(result.columns["contact_pressure"] > 0)
         self.time = result.time
         return to_run(self.scene, result)
 
@@ -220,7 +220,7 @@ class OpeningMesh(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
-        return switches_between_steps({"base": self.pressed.astype(float)}, self.time)
+        return switches_between_steps({"base": self.is_open}, self.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did, from the same steps with their energies."""

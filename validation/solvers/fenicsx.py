@@ -234,9 +234,8 @@ class RemoteMesh(Prepared):
         """Return the switches of the whole base between the steps: no point of it presses, or some do."""
         if "pressed" not in self.answer:
             raise NotReported("fenicsx has no switches of a locked base")
-        return switches_between_steps(
-            {"base": np.asarray(self.answer["pressed"], float)}, np.asarray(self.answer["time"], float)
-        )
+        is_open = ~np.asarray(self.answer["pressed"], bool)
+        return switches_between_steps({"base": is_open}, np.asarray(self.answer["time"], float))
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.errors import InputError
 from validation.runs.history import PRESSURE, Array, History
@@ -40,20 +41,24 @@ def to_run(scene: Scene, result: Any, columns: Mapping[str, Array] | None = None
     return Run(Outcome(outcome or "completed"), history, work, seconds, notes, getattr(result, "estimate", None))
 
 
-def switches_between_steps(closed: Mapping[str, Array], time: Array) -> tuple[Switch, ...]:
+def switches_between_steps(states: Mapping[str, NDArray[Any]], time: Array, slips: bool = False) -> tuple[Switch, ...]:
     """Return the switches of contacts from step to step, in the order of time.
 
     Parameters
     ----------
-    closed
-        Name of a corner to its state at each step, 1 where it is closed and 0 where it is open, shape (steps,).
+    states
+        Name of a contact to its state at each step, 0 or False where it is closed or sticks, shape (steps,).
     time
         Times of the steps [s], shape (steps,).
+    slips
+        Whether the other states are of slipping, and not of opening.
     """
     switches = []
-    for corner, state in closed.items():
-        steps = np.flatnonzero(np.diff(state)) + 1
-        switches += [Switch(float(time[n]), corner, bool(state[n] < 0.5)) for n in steps]
+    for name, values in states.items():
+        for n in np.flatnonzero(np.diff(values)) + 1:
+            is_free = bool(values[n])
+            instant = float(time[n])
+            switches.append(Switch(instant, name, None, is_free) if slips else Switch(instant, name, is_free))
     return tuple(sorted(switches, key=lambda switch: switch.time))
 
 

@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, substeps
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.scene import Scene
 
 RECIPE = "pip install pyb2d3==0.11.1"
@@ -78,26 +78,18 @@ class World:
         return [(body.position.x, body.position.y, turn) for body, turn in zip(self.boxes, self.turns, strict=True)]
 
 
-class Box2D:
+class Box2D(ExternalProgram):
     """Box2D with settings chosen for accuracy."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "Box2D v3 (pyb2d3)"
+    package = "pyb2d3"
+    recipe = RECIPE
+    model = "boxes in the plane; soft contact, relaxed in every sub-step; single precision"
     default = False
     settings = (
         f"step 1/960 s in {SUB_STEPS} sub-steps; contact of a quarter of their rate, "
         "restitution at every speed, no sleeping"
     )
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "Box2D v3 (pyb2d3)",
-            "version": version_of("pyb2d3"),
-            "recipe": RECIPE,
-            "model": "boxes in the plane; soft contact, relaxed in every sub-step; single precision",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene.

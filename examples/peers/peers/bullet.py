@@ -10,10 +10,10 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from peers.spatial import check_plane
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import BoxSection
 from validation.scenes.scene import Scene
 
@@ -204,27 +204,18 @@ class World:
         return values
 
 
-class Bullet:
+class Bullet(ExternalProgram):
     """PyBullet with settings chosen for accuracy."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "Bullet (PyBullet)"
+    package = "pybullet"
+    recipe = RECIPE
     default = False
     model = "boxes of 1 m on joints that keep them in the plane, ground a box; contact by sequential impulses"
     settings = (
         "step 1/960 s; no damping, no slop, restitution at every speed, "
         "overlap corrected at 0.2 1/s, of boxes on each other at 20 1/s"
     )
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "Bullet (PyBullet)",
-            "version": version_of("pybullet"),
-            "recipe": RECIPE,
-            "model": self.model,
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene.

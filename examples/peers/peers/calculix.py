@@ -9,10 +9,10 @@ that moves as the base does, pressure-overclosure LINEAR with slope 2p / length 
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from peers.calculix_deck import RECIPE, Stopped, refuse, run, version
+from peers.programs import ExternalProgram
 
 if TYPE_CHECKING:
     from peers.calculix_deck import Array
@@ -34,18 +34,19 @@ NO_BOXES = (
 MODEL = "one C3D8 kept affine by equations, penalty contact of its nodes; a column of C3D8 on dashpots"
 
 
-class CalculiX:
+class CalculiX(ExternalProgram):
     """CalculiX with settings chosen for accuracy: average acceleration at small increments."""
 
+    program = "CalculiX"
+    recipe = RECIPE
+    model = MODEL
     handles = HANDLED
     settings = f"average acceleration (ALPHA=0), {BLOCK} increments (columns {COLUMN}), forces to 1e-6"
     accurate = True
 
-    @cached_property
-    def about(self) -> dict[str, str]:
-        """What the solver says of itself."""
-        said = {"program": "CalculiX", "version": version(), "recipe": RECIPE}
-        return said | {"model": MODEL, "settings": self.settings}
+    def version(self) -> str:
+        """Return the version of the program."""
+        return version()
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Run a scene; a run that ccx gives up is made again with half the increments.

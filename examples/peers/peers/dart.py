@@ -7,10 +7,10 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, boxes_of, ground_ends, record
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
@@ -141,24 +141,16 @@ def _check(boxes: RigidSection) -> None:
         raise NotImplementedError(f"rigid.restitution: DART leaves away one of up to {LEAST_RESTITUTION:g}")
 
 
-class Dart:
+class Dart(ExternalProgram):
     """DART with a finer step, and bodies that do not sleep."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "DART"
+    package = "dartpy"
+    recipe = RECIPE
+    model = "free bodies in space on a long box; rigid contact with impulses, Newton's restitution"
     step = FINE_STEP
     sleeps = False
     settings = "step 0.25 ms, no sleeping; else as it comes: FCL, Dantzig's solver of the boxed LCP, no split impulse"
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "DART",
-            "version": version_of("dartpy"),
-            "recipe": RECIPE,
-            "model": "free bodies in space on a long box; rigid contact with impulses, Newton's restitution",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene.

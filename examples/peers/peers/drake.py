@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from peers.boxes import Pose, boxes_of, record, spring_step, substeps
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
@@ -195,24 +195,16 @@ def _check(boxes: RigidSection, *, chosen: bool) -> None:
         )
 
 
-class Drake:
+class Drake(ExternalProgram):
     """Drake with hydroelastic contact over the whole face of a box, and friction that hardly creeps."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "Drake"
+    package = "drake"
+    recipe = RECIPE
+    model = "bodies on planar joints over a half-space, with compliant contact"
     chosen = True
     step = OWN_STEP
     settings = "step 1 ms; hydroelastic contact of 100 GPa, given stiffness at the corners; stiction tolerance 1e-6 m/s"
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "Drake",
-            "version": version_of("drake"),
-            "recipe": RECIPE,
-            "model": "bodies on planar joints over a half-space, with compliant contact",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene.

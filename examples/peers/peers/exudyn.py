@@ -8,15 +8,14 @@ face of the other. A ground that moves is at rest in its own frame, in which a b
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from typing import Any
 
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, named, substeps
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
@@ -34,10 +33,13 @@ Columns = dict[str, Array]
 State = tuple[float, Array, Array]  # time [s], positions and velocities of the boxes, shape (boxes, 3)
 
 
-class Exudyn:
+class Exudyn(ExternalProgram):
     """Exudyn with a contact stiffness, a friction and an integrator chosen for accuracy."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "Exudyn"
+    package = PACKAGE
+    recipe = RECIPE
+    model = "planar rigid bodies; spheres at their corners on triangles: penalty contact, impact model 2"
     own_step = 5e-5  # s
     angle = 0.05  # rad of the vibration of a box on its contact in such a step
     friction_zone: float | None = 1e-6  # m/s of slip below which friction is proportional to it
@@ -45,21 +47,6 @@ class Exudyn:
         "trapezoidal rule (spectral radius 1) at 0.05 ms; boxes on their contacts at 1000 rad/s, its square as 1/step; "
         "friction proportional to slip below 1e-6 m/s; no recommended step sizes, tolerances in units of the weight"
     )
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What the program is, and how boxes are expressed in it."""
-        try:
-            version = importlib.metadata.version(PACKAGE)
-        except importlib.metadata.PackageNotFoundError:
-            version = "not installed"
-        return {
-            "program": "Exudyn",
-            "version": version,
-            "recipe": RECIPE,
-            "model": "planar rigid bodies; spheres at their corners on triangles: penalty contact, impact model 2",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> Columns:
         """Return the columns of a scene of rigid boxes.

@@ -13,15 +13,14 @@ then move with both bodies, half with each. Boxes that start tilted, slide far o
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from typing import Any
 
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, record, substeps
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
@@ -39,27 +38,15 @@ LAW = "iqsc0"  # name of a law that set_see_tables expects
 Columns = dict[str, Array]
 
 
-class LMGC90:
+class LMGC90(ExternalProgram):
     """LMGC90 at a step and a distance of detection chosen for accuracy."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "LMGC90 (compas_lmgc90)"
+    package = PACKAGE
+    recipe = RECIPE
+    model = "polyhedra kept in a plane; IQS_CLB, with restitution RST_CLB, with stiffness ELASTIC_REPELL_CLB"
     own_step = 1e-3  # s
     settings = "theta = 1/2 at 1 ms; contact is sought within twice the lift of the boxes and their size"
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What the program is, and how boxes are expressed in it."""
-        try:
-            version = importlib.metadata.version(PACKAGE)
-        except importlib.metadata.PackageNotFoundError:
-            version = "not installed"
-        return {
-            "program": "LMGC90 (compas_lmgc90)",
-            "version": version,
-            "recipe": RECIPE,
-            "model": "polyhedra kept in a plane; IQS_CLB, with restitution RST_CLB, with stiffness ELASTIC_REPELL_CLB",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> Columns:
         """Return the columns of a scene of rigid boxes.

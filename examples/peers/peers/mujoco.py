@@ -15,7 +15,7 @@ import numpy as np
 from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
 from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
-from peers.packages import version_of
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.record import base_record
@@ -202,9 +202,12 @@ def _stiff(dt: float) -> str:
     return f' solref="{-rate * rate!r} {-2 * rate!r}" solimp="0.9999 0.9999 0.001 0.5 2"'
 
 
-class MuJoCo:
+class MuJoCo(ExternalProgram):
     """MuJoCo with models and sub-steps chosen for accuracy."""
 
+    program = "MuJoCo"
+    package = "mujoco"
+    recipe = RECIPE
     handles = features.LOADS | features.RULES | OF_CONTACT
     default = False
     model = "block of one strain by masses on slide joints, springs by tendons; a rigid box where it turns"
@@ -212,17 +215,6 @@ class MuJoCo:
         "RK4, with friction the leapfrog, at fine steps; a rigid box of a block: elliptic cones, stiff contact; "
         "rigid boxes: semi-implicit Euler at 0.25 ms, elliptic cones, an approach turned in one step"
     )
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "MuJoCo",
-            "version": version_of("mujoco"),
-            "recipe": RECIPE,
-            "model": self.model,
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> Columns:
         """Return the columns of a scene.

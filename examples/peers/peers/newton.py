@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, record, substeps
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
@@ -146,24 +146,14 @@ class World:
         return poses
 
 
-class Newton:
+class Newton(ExternalProgram):
     """What all solvers of Newton share."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    package = "newton"
+    recipe = RECIPE
+    model = "free bodies in space over a plane, in single precision"
     solver = ""
     step = OWN_STEP
-    settings = ""
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": f"Newton, {self.solver}",
-            "version": version_of("newton"),
-            "recipe": RECIPE,
-            "model": "free bodies in space over a plane, in single precision",
-            "settings": self.settings,
-        }
 
     def check(self, boxes: RigidSection) -> None:
         """Refuse what the solver cannot express.
@@ -200,6 +190,7 @@ class Newton:
 class XPBDAsItComes(Newton):
     """SolverXPBD with every setting as it is."""
 
+    program = "Newton, SolverXPBD"
     solver = "SolverXPBD"
     settings = "all as it comes, restitution enabled where a scene has one; 1/500 s as in Newton's example of shapes"
 
@@ -216,6 +207,7 @@ class XPBDAsItComes(Newton):
 class SemiImplicitAsItComes(Newton):
     """SolverSemiImplicit with every setting as it is."""
 
+    program = "Newton, SolverSemiImplicit"
     solver = "SolverSemiImplicit"
     settings = "all as it comes: 2.5 kN/m and 100 N s/m a contact point; 1/500 s as in Newton's example of shapes"
 

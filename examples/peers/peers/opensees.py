@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from peers.opensees_models import NEAR, Look, Plan, block, column, loads, parts
-from peers.packages import version_of
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -42,9 +42,13 @@ class NotConverged(RuntimeError):
     """The program's Newton iteration found no equilibrium."""
 
 
-class OpenSees:
+class OpenSees(ExternalProgram):
     """OpenSees, its sub-steps refined until the history stays."""
 
+    program = "OpenSees"
+    package = PACKAGE
+    recipe = RECIPE
+    model = MODEL
     handles = (
         features.RULES
         | {features.OFF_CENTRE, features.WEIGHT, features.UNILATERAL, features.FRICTION, features.SLOPE}
@@ -52,17 +56,6 @@ class OpenSees:
         | {features.RIGID_BOXES}  # refused in words of its own
     )
     settings = f"Newmark 1/2, 1/4; sub-steps {FINER} times finer until the history changes by less than {ENOUGH:g}"
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What the program is, and what is set so that it can express the scene."""
-        return {
-            "program": "OpenSees",
-            "version": version_of(PACKAGE),
-            "recipe": RECIPE,
-            "model": MODEL,
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> Columns:
         """Return the history of a scene, a column to its values at the steps.

@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record
-from peers.packages import imported, version_of
+from peers.packages import imported
+from peers.programs import ExternalProgram
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.scene import Scene
 
 RECIPE = "pip install pymunk==7.3.1"
@@ -103,23 +103,15 @@ def _add_impulse(arbiter: Any, below: Any, impulses: list[float]) -> None:
         impulses.append(abs(arbiter.total_impulse.dot(arbiter.normal)))
 
 
-class Pymunk:
+class Pymunk(ExternalProgram):
     """pymunk with settings chosen for accuracy."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    program = "pymunk (Chipmunk)"
+    package = "pymunk"
+    recipe = RECIPE
+    model = "boxes in the plane; contact by impulses, sequentially, warm-started"
     default = False
     settings = f"step 1/1920 s, {ITERATIONS} iterations, slop 10 micrometres, overlap corrected at 60 1/s"
-
-    @property
-    def about(self) -> dict[str, str]:
-        """What is run, in words."""
-        return {
-            "program": "pymunk (Chipmunk)",
-            "version": version_of("pymunk"),
-            "recipe": RECIPE,
-            "model": "boxes in the plane; contact by impulses, sequentially, warm-started",
-            "settings": self.settings,
-        }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene.

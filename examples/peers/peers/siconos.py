@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from peers.programs import ExternalProgram
+
 PYTHON = "/usr/bin/python3"  # Debian's, for which its packages are made
 PROGRAM = Path(__file__).with_name("siconos_program.py")
 RECIPE = "Debian: apt-get install python3-siconos"
@@ -27,9 +29,11 @@ SOFT = 1e-3  # of the block's height: weight on springs or in the block from whi
 Scene = Any  # validation.scenes.scene.Scene: importing this file costs numpy only
 
 
-class Siconos:
+class Siconos(ExternalProgram):
     """Siconos with settings chosen for accuracy."""
 
+    program = "Siconos"
+    recipe = RECIPE
     fine = True
     handles = frozenset(  # words of validation.scenes.features
         (
@@ -44,14 +48,9 @@ class Siconos:
         "1 ms, relations at the middle of the step, Lemke's pivots, piles up to 100 000 iterations"
     )
 
-    def __init__(self) -> None:
-        self.about = {
-            "program": "Siconos",
-            "version": version(),
-            "recipe": RECIPE,
-            "model": self.model,
-            "settings": self.settings,
-        }
+    def version(self) -> str:
+        """Return the version of Debian's package."""
+        return version()
 
     def solve(self, scene: Scene) -> dict[str, np.ndarray]:
         """Return the columns of a scene that the model has.

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from peers.programs import ExternalProgram
 from peers.yade_block import block
 from peers.yade_bodies import RECIPE, Drive, Model, Motion, run, version
 from peers.yade_column import column
@@ -34,7 +34,7 @@ NO_BOXES = (
 MOST_STEPS = 10_000_000  # explicit steps of a run, some minutes
 
 
-class Yade:
+class Yade(ExternalProgram):
     """Yade with settings chosen for accuracy: no damping of its own, steps well below the critical one."""
 
     handles = frozenset(
@@ -44,22 +44,18 @@ class Yade:
             "rigid boxes",  # refused in words of its own
         }
     )
+    program = "Yade"
+    recipe = RECIPE
+    model = "rigid bodies on penalty springs; two of them on a bond for the strain; a column of particles"
     damping = 0.0
     fraction = FINE
     linked = LINKED
     staggered = True  # whether the velocities at t = 0 are taken half a step back, where leapfrog has them
     settings = "leapfrog without damping; step times highest frequency at most 0.05, in a column 1"
 
-    @cached_property
-    def about(self) -> dict[str, str]:
-        """What the solver says of itself."""
-        return {
-            "program": "Yade",
-            "version": version(),
-            "recipe": RECIPE,
-            "model": "rigid bodies on penalty springs; two of them on a bond for the strain; a column of particles",
-            "settings": self.settings,
-        }
+    def version(self) -> str:
+        """Return the version of the program."""
+        return version()
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene that Yade can report."""

@@ -80,9 +80,7 @@ class OpeningBlock(Prepared):
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
         result = completed(self.result)
-        return switches_between_steps(
-            {"M": result.closed_m.astype(float), "N": result.closed_n.astype(float)}, result.time
-        )
+        return switches_between_steps({"M": ~result.closed_m, "N": ~result.closed_n}, result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""

@@ -80,10 +80,8 @@ class RollingBlock(Prepared):
         """Return the switches of the base corners M and N, and of the others by number, between the steps."""
         result = completed(self.result)
         names = dict(zip(result.base_contacts, "MN", strict=True))
-        closed = result.closed.astype(float)
-        return switches_between_steps(
-            {names.get(i, f"corner {i}"): state for i, state in enumerate(closed)}, result.time
-        )
+        is_open = {names.get(i, f"corner {i}"): ~closed for i, closed in enumerate(result.closed)}
+        return switches_between_steps(is_open, result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""

@@ -23,7 +23,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import NotReported, Prepared, completed
-from validation.solvers.translation import naming, to_run
+from validation.solvers.translation import naming, switches_between_steps, to_run
 
 
 def dda_column(section: ColumnSection) -> Column:
@@ -102,17 +102,14 @@ class ContactColumn(BlockColumn):
     def switches(self) -> tuple[Switch, ...]:
         """Return the changes of the contacts' states between the steps of the history that was run."""
         result = completed(self.result)
-        switches = []
+        slips = self.column.law == "frictional"
+        contact_states = {}
         for joint in self.column.joints:
-            name = f"{joint.height:g} m"
-            state = result.state_of(self.column.face_of(joint))
-            for n in np.flatnonzero(np.diff(state)) + 1:
-                time = float(result.time[n])
-                if OPEN in (state[n], state[n - 1]):
-                    switches.append(Switch(time, name, opens=bool(state[n] == OPEN)))
-                else:
-                    switches.append(Switch(time, name, opens=None, slips=bool(abs(state[n]) == SLIP)))
-        return tuple(sorted(switches, key=lambda switch: switch.time))
+            states = result.state_of(self.column.face_of(joint))
+            contact_states[f"{joint.height:g} m"] = (
+                np.where(np.abs(states) == SLIP, states, 0) if slips else states == OPEN
+            )
+        return switches_between_steps(contact_states, result.time, slips)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contacts did in the history that was run; its steps are made again where energies lack."""

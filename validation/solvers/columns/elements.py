@@ -19,7 +19,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.columns.names import amplitude, column_of
 from validation.solvers.contract import NotReported, Prepared, completed
-from validation.solvers.translation import naming, to_run
+from validation.solvers.translation import naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
     from fem_reference.column.contacts import ColumnContactResult, ContactColumn
@@ -126,15 +126,10 @@ class ContactLineColumn(LineColumn):
     def switches(self) -> tuple[Switch, ...]:
         """Return the changes of the contacts' states between the steps of the history that was run."""
         result = completed(self.result)
-        switches = []
-        opens = self.column.law == "unilateral"
-        for contact, states in zip(self.column.contacts, result.states, strict=True):
-            for n in np.flatnonzero(np.diff(states)) + 1:
-                inside = bool(states[n] == 0)
-                time = float(result.time[n])
-                name = f"{contact.height:g} m"
-                switches.append(Switch(time, name, not inside) if opens else Switch(time, name, None, not inside))
-        return tuple(sorted(switches, key=lambda switch: switch.time))
+        slips = self.column.law == "frictional"
+        contacts = zip(self.column.contacts, result.states, strict=True)
+        states = {f"{contact.height:g} m": states for contact, states in contacts}
+        return switches_between_steps(states, result.time, slips)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contacts did in the history that was run; the elements report no energies."""

@@ -14,7 +14,7 @@ from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
 from validation.scenes.column import NEAR, ColumnSection
-from validation.scenes.drive import read_record
+from validation.scenes.drive import read_drive
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
@@ -67,7 +67,7 @@ def drive_of(scene: Scene, at: str, integral: bool) -> Drive:
         return drives.still
     section = scene.input
     if section.record is not None:
-        times, values, order = read_record(Path(section.record), section.at)
+        times, values, order = read_drive(Path(section.record), section.at)
         return drives.recorded(times.tolist(), values.tolist(), order - 1 + integral)
     size = (section.velocity if at == "base" else section.pressure) or 0.0
     if section.shape in ("half-sine", "triangle"):

@@ -29,12 +29,7 @@ SAMPLES = 64  # of a radian of rotation, in which a corner is sought that has co
 MOST_IMPACTS = 100_000
 
 
-@dataclass(frozen=True)
-class Motion:
-    """A kind of motion that is known: its name, and the columns of a scene at its steps."""
-
-    kind: str
-    columns: Callable[[Scene, Array], Mapping[str, Array]]
+Motion = Callable[[Array], Mapping[str, Array]]  # the columns of boxes at some instants [s]
 
 
 class RigidExact(Solver):
@@ -72,7 +67,7 @@ class ExactBoxes(Prepared):
         if isinstance(motion, str):
             return Run(Outcome.NOT_APPLICABLE, notes=(motion,))
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
-        columns = motion.columns(scene, time)
+        columns = motion(time)
         history = History(time, {name: np.asarray(columns[name], float) for name in scene.run.columns})
         seconds = {"setup": 0.0, "stepping": perf_counter() - start}
         return Run(Outcome.COMPLETED, history, {"steps": scene.time.steps}, seconds)
@@ -85,19 +80,19 @@ def motion_of(scene: Scene) -> Motion | str:
         return "it is of rigid boxes only"
     box = rigid.box[0]
     if len(rigid.box) > 1:
-        return _why_pile_moves(rigid) or Motion("pile at rest", _pile)
+        return _why_pile_moves(rigid) or partial(_pile, rigid)
     if rigid.base_amplitude:
-        return _why_not_shaken(rigid) or Motion("shaken", _shaken)
+        return _why_not_shaken(rigid) or partial(_shaken, rigid)
     if rigid.stiffness is not None:
-        return _why_not_on_spring(rigid) or Motion("on a spring", _on_spring)
+        return _why_not_on_spring(rigid) or partial(_on_spring, rigid)
     if box.tilt == 0 and box.spin == 0:
         if box.lift == 0 and box.velocity[1] == 0:
-            return _why_tips(rigid) or Motion("on the plane", _on_plane)
-        return _why_not_flat(rigid) or Motion("bouncing flat", _bouncing)
+            return _why_tips(rigid) or partial(_on_plane, rigid)
+        return _why_not_flat(rigid) or partial(_bouncing, rigid)
     if box.tilt == 0 and box.lift == 0 and not _turns_off(rigid, box):
-        return _why_not_about_corner(scene, rigid) or Motion("about a corner", _about_corner)
+        return _why_not_about_corner(scene, rigid) or partial(_about_corner, rigid)
     if rigid.friction == 0 and rigid.restitution == 1:
-        return Motion("tumbling", _tumbling)
+        return partial(_tumbling, rigid)
     return (
         "the motion is not known of a box that turns, apart from turning about the corner on which it stands at t = 0, "
         "and from tumbling with friction = 0 and restitution = 1"
@@ -138,8 +133,7 @@ def _is_supported(rigid: RigidSection, lowest: int) -> bool:
     return low < meets < high
 
 
-def _pile(scene: Scene, time: Array) -> dict[str, Array]:
-    rigid = _rigid(scene)
+def _pile(rigid: RigidSection, time: Array) -> dict[str, Array]:
     columns: dict[str, Array] = {}
     for number, start in enumerate(rigid.starts, start=1):
         for part, value in zip(POSE, start, strict=True):
@@ -147,12 +141,6 @@ def _pile(scene: Scene, time: Array) -> dict[str, Array]:
         weight = -rigid.pull[1] * sum(box.mass for box in rigid.box[number - 1 :])
         columns[f"{FORCE}_{number}"] = np.full(len(time), weight)
     return columns
-
-
-def _rigid(scene: Scene) -> RigidSection:
-    if scene.rigid is None:
-        raise ValueError(f"{scene.name}: must have rigid boxes, got none")
-    return scene.rigid
 
 
 def _poses(rigid: RigidSection, time: Array, **moved: Array) -> dict[str, Array]:
@@ -174,9 +162,8 @@ def _why_tips(rigid: RigidSection) -> str | None:
     return None
 
 
-def _on_plane(scene: Scene, time: Array) -> dict[str, Array]:
+def _on_plane(rigid: RigidSection, time: Array) -> dict[str, Array]:
     """Stand, slide until friction stops it, or slide on."""
-    rigid = _rigid(scene)
     box = rigid.box[0]
     along, across = rigid.pull
     grip = rigid.friction_coefficient * -across
@@ -206,8 +193,7 @@ def _why_not_flat(rigid: RigidSection) -> str | None:
     return None
 
 
-def _bouncing(scene: Scene, time: Array) -> dict[str, Array]:
-    rigid = _rigid(scene)
+def _bouncing(rigid: RigidSection, time: Array) -> dict[str, Array]:
     box = rigid.box[0]
     along, across = rigid.pull
     flights = _flights(box.lift, box.velocity[1], -across, rigid.restitution, float(time[-1]))
@@ -262,12 +248,11 @@ def _why_not_on_spring(rigid: RigidSection) -> str | None:
     return _why_not_flat(rigid)
 
 
-def _on_spring(scene: Scene, time: Array) -> dict[str, Array]:
-    rigid = _rigid(scene)
+def _on_spring(rigid: RigidSection, time: Array) -> dict[str, Array]:
     box = rigid.box[0]
     stiffness = rigid.stiffness
     if stiffness is None:
-        raise ValueError(f"{scene.name}: must have a stiffness, got none")
+        raise ValueError("rigid.stiffness: must be given, got none")
     along, across = rigid.pull
     gravity = -across
     speed = math.sqrt(box.velocity[1] ** 2 + 2 * gravity * box.lift)
@@ -301,8 +286,7 @@ def _why_not_shaken(rigid: RigidSection) -> str | None:
     return None
 
 
-def _shaken(scene: Scene, time: Array) -> dict[str, Array]:
-    rigid = _rigid(scene)
+def _shaken(rigid: RigidSection, time: Array) -> dict[str, Array]:
     box = rigid.box[0]
     force = np.full(len(time), box.mass * rigid.gravity)
     if rigid.friction == 0:
@@ -338,9 +322,8 @@ def _why_not_about_corner(scene: Scene, rigid: RigidSection) -> str | None:
     return None
 
 
-def _about_corner(scene: Scene, time: Array) -> dict[str, Array]:
+def _about_corner(rigid: RigidSection, time: Array) -> dict[str, Array]:
     """Integrate psi'' = P^2 sin(psi), psi the angle of the centre beyond the vertical through the corner."""
-    rigid = _rigid(scene)
     box = rigid.box[0]
     rectangle = Rectangle(box.width, box.height, rigid.gravity)
     radius = math.hypot(box.width, box.height) / 2
@@ -366,9 +349,8 @@ def _about_corner(scene: Scene, time: Array) -> dict[str, Array]:
 # ---- tumbling -------------------------------------------------------------------------------------------------------
 
 
-def _tumbling(scene: Scene, time: Array) -> dict[str, Array]:
+def _tumbling(rigid: RigidSection, time: Array) -> dict[str, Array]:
     """From impact to impact of a corner, without friction or loss."""
-    rigid = _rigid(scene)
     box = rigid.box[0]
     along, across = rigid.pull
     corners = np.array([(sx * box.width / 2, sy * box.height / 2) for sx in (-1, 1) for sy in (-1, 1)])
