@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array
 
@@ -123,12 +123,6 @@ def _orientation(a: Array, b: Array, c: Array) -> Array:
     return np.sign(turn)
 
 
-def _within(a: Array, b: Array, c: Array) -> NDArray[np.bool_]:
-    """Tell where c, on the line a-b, lies within the box of a and b."""
-    inside: NDArray[np.bool_] = np.all((np.minimum(a, b) <= c) & (c <= np.maximum(a, b)), axis=-1)
-    return inside
-
-
 def _touches_itself(points: Array) -> bool:
     """Tell whether two edges meet anywhere but in the corner that neighbours share."""
     n = len(points)
@@ -139,14 +133,10 @@ def _touches_itself(points: Array) -> bool:
     b = following[i]
     c = points[j]
     d = following[j]
-    abc = _orientation(a, b, c)
-    abd = _orientation(a, b, d)
-    cda = _orientation(c, d, a)
-    cdb = _orientation(c, d, b)
-    crossing = (abc * abd < 0) & (cda * cdb < 0)
-    touching = (abc == 0) & _within(a, b, c) | (abd == 0) & _within(a, b, d)
-    touching |= (cda == 0) & _within(c, d, a) | (cdb == 0) & _within(c, d, b)
-    if bool(np.any(apart & (crossing | touching))):
+    # each edge has the ends of the other one on both sides of its line, or on it; of edges on one line boxes decide
+    across = (_orientation(a, b, c) * _orientation(a, b, d) <= 0) & (_orientation(c, d, a) * _orientation(c, d, b) <= 0)
+    beside = np.all((np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b)), axis=1)
+    if bool(np.any(apart & across & beside)):
         return True
     before = np.roll(points, 1, axis=0)
     along = np.sum((points - before) * (following - points), axis=1)

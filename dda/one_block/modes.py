@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import roots, spectral, viscous
-from dda.scheme.newmark import Scheme, correctors, effective_matrix, modal_step, predictors, viscosity
+from dda.scheme.newmark import Scheme, effective_matrix, modal_step, viscosity
 
 
 @dataclass(frozen=True)
@@ -81,21 +81,15 @@ def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) 
     """
     form = model.gap_form if full else model.gap_form.reduced()
     M, k, _ = _scaled(form, scheme)
-    n = len(k)
     K = np.diag(k)
     C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * K  # dt C
+    return _operator(scheme, M, C, K)
+
+
+def _operator(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
+    """Return the matrix of a step on (D, dt V, dt^2 A) by M, dt C and dt^2 K."""
+    n = len(M)
     D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
-    if scheme.table is not None:
-        return _staged_operator(scheme, M, K, (D, V, A))
-    unit = replace(scheme, step=1.0)
-    displacement, velocity = predictors(unit, D, V, A)
-    A1 = np.asarray(-np.linalg.solve(effective_matrix(scheme, M, K), C @ velocity + K @ displacement), float)
-    return np.vstack([*correctors(unit, displacement, velocity, A1), A1])
-
-
-def _staged_operator(scheme: Scheme, M: Array, K: Array, start: tuple[Array, Array, Array]) -> Array:
-    """Return the same of a scheme by its stages, for the accelerations themselves."""
-    D, V, A = start
     D1 = D
     V1 = V
     A1 = A
@@ -103,7 +97,7 @@ def _staged_operator(scheme: Scheme, M: Array, K: Array, start: tuple[Array, Arr
         S = effective_matrix(stage, M, K)
         displacement = D1 + stage.d_u * scheme.gg * V + stage.d_g * V1 + stage.e_0 * A + stage.e_g * A1
         velocity = scheme.gg * V + stage.g_0 * A + stage.g_g * A1
-        force = -K @ ((1 - stage.af) * displacement + stage.af * D) - stage.am * (M @ A)
+        force = -K @ ((1 - stage.af) * displacement + stage.af * D) - C @ velocity - stage.am * (M @ A)
         A1 = np.asarray(np.linalg.solve(S, force) / (1 - stage.am), float)
         D1 = displacement + stage.alpha * A1
         V1 = velocity + stage.delta * A1
@@ -146,9 +140,7 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
     unit = np.ones((1, 1))
     largest = 0.0
     for mode in reached:
-        K = (mode.frequency * scheme.step) ** 2 * unit
-        D, V, A = np.eye(3).reshape(3, 1, 3)
-        operator = _staged_operator(scheme, unit, K, (D, V, A))
+        operator = _operator(scheme, unit, 0 * unit, (mode.frequency * scheme.step) ** 2 * unit)
         largest = max(largest, float(np.max(np.abs(np.linalg.eigvals(operator)))))
     return largest
 

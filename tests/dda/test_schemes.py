@@ -28,6 +28,7 @@ from dda import (
     solve_textbook,
     textbook_applicable,
 )
+from dda.one_block.modes import _operator
 from dda.scheme import named, newmark, roots
 from dda.scheme.stages import Stage, Table
 
@@ -134,15 +135,9 @@ def test_roots_are_those_of_a_step_written_as_in_the_papers(name, values, omega,
     found = roots.roots(scheme, omega)
     assert np.sort(np.abs(found)) == pytest.approx(np.sort(np.abs(expected[order])), abs=1e-9, rel=1e-9)
     assert np.sum(found) == pytest.approx(np.sum(expected), abs=1e-10, rel=1e-10)
-    operator = one_step_operator_of(scheme, omega**2 * one)
+    operator = _operator(scheme, one, 0 * one, omega**2 * one)
     largest = np.sort(np.abs(np.linalg.eigvals(operator)))[::-1][: len(found)]
     assert largest == pytest.approx(np.abs(found), abs=2e-6)
-
-
-def one_step_operator_of(scheme, K):
-    from dda.one_block.modes import _staged_operator
-
-    return _staged_operator(scheme, np.ones((1, 1)), K, tuple(np.eye(3).reshape(3, 1, 3)))
 
 
 @every_scheme
