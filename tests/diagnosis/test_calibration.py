@@ -8,20 +8,12 @@ import pytest
 from oracles import calibration
 
 
-@pytest.fixture(scope="module")
-def sixty() -> list[calibration.Judged]:
-    return calibration.judge(60, first=5000)  # others than those of the table
-
-
 @pytest.mark.long
-def test_a_named_cause_is_right(sixty: list[calibration.Judged]) -> None:
+def test_a_named_cause_is_right_and_most_are_named() -> None:
     """99 of 100 by the table: of the forty or so named here one may be wrong, and two in one run of eight hundred."""
+    sixty = calibration.judge(60, first=5000)  # others than those of the table
     wrong = [one for one in sixty if calibration.verdict(one) == "wrong"]
     assert len(wrong) <= 1, wrong
-
-
-@pytest.mark.long
-def test_most_causes_are_named_and_every_generator_takes_part(sixty: list[calibration.Judged]) -> None:
     assert {one.maker for one in sixty} == {"plain", "elements", "modes"}
     named = [one for one in sixty if calibration.verdict(one) == "right"]
     assert len(named) > len(sixty) / 2  # silence alone would never be wrong

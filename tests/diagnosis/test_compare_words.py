@@ -114,18 +114,6 @@ def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
     assert "gg" not in answer.causes
 
 
-@pytest.mark.parametrize(
-    ("times", "cause", "departs"),
-    [(0.5, "springs-factor", True), (1 / 1.04, "base-compliance", False)],
-)
-@pytest.mark.long
-def test_an_elastic_block_on_soft_springs_is_judged_alike(times: float, cause: str, departs: bool) -> None:
-    found = softened("bar", times, time__gg=0.98)
-    assert found.causes == [cause]
-    assert (found.departure is not None) == departs == (not found.sentence.startswith("Same model"))
-    assert found.departure is None or found.departure.kind == "offset"  # it comes to rest lower
-
-
 def target(**changes: Any) -> Target:
     column = rectangle_of(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}))
     assert column is not None
@@ -180,14 +168,6 @@ def test_rows_that_are_shifted_by_a_step_are_said_so(late: int, words: str) -> N
 
     answer = judged(lambda v, p: (shifted(v), shifted(p)))
     assert answer.causes == ["time-shift"] and words in answer.sentence
-
-
-@pytest.mark.long
-def test_what_no_cause_explains_departs_by_no_known_cause() -> None:
-    wiggle = 0.06 * np.sin(2.1 * np.arange(30)) * (np.arange(30) > 9)
-    answer = judged(lambda v, p: (v * (1 + wiggle), None))
-    assert answer.departure is not None and answer.departure.step >= 10
-    assert answer.misfit > 0.02 and answer.sentence.startswith("Departs from step")
 
 
 # ---- words --------------------------------------------------------------------------------------------------------

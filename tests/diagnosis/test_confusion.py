@@ -21,48 +21,32 @@ def fifty():
     return confusion.judge()
 
 
-@pytest.mark.long
-def test_there_are_fifty(fifty) -> None:
-    assert len(fifty) == 50
-
-
 def hidden(one: confusion.Known, answer: Answer) -> bool:
     """Whether nothing is named where noise may hide what tells one scheme from a strange integrator."""
     return one.cause == "scheme" and one.noise > 0 and answer.causes == ["unexplained"]
 
 
 @pytest.mark.long
-def test_every_history_is_given_its_own_cause(fifty) -> None:
-    wrong = [
-        (i, one.cause, answer.causes)
-        for i, (one, answer, _) in enumerate(fifty)
-        if confusion.told(answer) != one.cause and not hidden(one, answer)
-    ]
-    assert wrong == []
-    assert sum(hidden(one, answer) for one, answer, _ in fifty) <= 1
-
-
-@pytest.mark.long
-def test_the_scheme_is_named_and_the_open_steps_are_found(fifty) -> None:
+def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fifty) -> None:
+    assert len(fifty) == 50
+    wrong = []
     for i, (one, answer, history) in enumerate(fifty):
+        faulty = one.cause != confusion.SAME and not CAUSES[one.cause].benign
+        assert (answer.departure is not None) == faulty, i
+        assert answer.departure is None or 1 <= answer.departure.step <= 3, i  # every fault is there from the start
         if hidden(one, answer):
             continue
-        p = one.program
+        if confusion.told(answer) != one.cause:
+            wrong.append((i, one.cause, answer.causes))
         # a fitted number is known to noise / sqrt(rows) over what it does to a history, a tenth or more; without
         # noise a fit stops where it gains no more than a thousandth of seven digits' misfit
         allowed = 1e-4 + 2 * one.noise
+        p = one.program
         given = (answer.scheme["alpha"], answer.scheme["delta"], answer.scheme["gg"])
         assert given == pytest.approx((p.alpha, p.delta, p.gg), abs=allowed), i
         assert (None if answer.opened is None else list(answer.opened)) == history.opened, i
-
-
-@pytest.mark.long
-def test_a_departure_is_where_a_fault_is(fifty) -> None:
-    for i, (one, answer, _) in enumerate(fifty):
-        faulty = one.cause != confusion.SAME and not CAUSES[one.cause].benign
-        assert (answer.departure is not None) == faulty, i
-        if answer.departure is not None:
-            assert 1 <= answer.departure.step <= 3, i  # every fault here is there from the start
+    assert wrong == []
+    assert sum(hidden(one, answer) for one, answer, _ in fifty) <= 1
 
 
 @pytest.mark.long

@@ -18,6 +18,7 @@ from oracles.scheme_histories import Body, Run
 
 from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.schemes import companion_split, usual_split
 from validation.diagnosis.stepping import histories
@@ -102,16 +103,8 @@ def test_a_scene_of_another_scheme_is_stepped_as_dda_steps_it(law: str, scheme: 
     assert rectangle is not None
     stepped = histories(rectangle, [own_variant(scene)], np.full(60, 5e-4))
     assert np.max(np.abs(stepped.displacement[:, 0] - run.displacement)) < ROUNDINGS * np.max(np.abs(run.displacement))
-    answer = Case.judged(_Recorded(scene, Foreign(run.time, run.displacement, run.contact_pressure)))
+    answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
     assert answer.causes == [] and answer.misfit < 1e-9
-
-
-class _Recorded:
-    """A history beside a scene."""
-
-    def __init__(self, scene: Scene, foreign: Foreign) -> None:
-        self.scene = scene
-        self.foreign = foreign
 
 
 @pytest.mark.parametrize(
@@ -125,7 +118,7 @@ class _Recorded:
 def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes: dict[str, Any]) -> None:
     scene = other_scene("locked", **OTHER_SCHEMES[0]).with_values(changes)
     with pytest.raises(InputError) as refusal:
-        Case.judged(_Recorded(scene, Foreign(5e-4 * np.arange(1, 9), -np.ones(8))))
+        compare(scene, Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
     assert refusal.value.field == "time.scheme"
 
 
@@ -238,21 +231,12 @@ def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPat
     assert answer.causes != ["scheme", "start"]
 
 
-@pytest.fixture(scope="module")
-def sixty() -> list[tuple[Case, Answer]]:
-    return [(case, case.judged()) for case in map(made, range(80, 140))]
-
-
 @pytest.mark.long
-def test_no_made_history_is_given_a_wrong_cause(sixty: list[tuple[Case, Answer]]) -> None:
-    wrong = [(case.seed, answer.causes) for case, answer in sixty if verdict(case, answer) == "wrong"]
-    assert wrong == []
-
-
-@pytest.mark.long
-def test_most_made_histories_are_named(sixty: list[tuple[Case, Answer]]) -> None:
-    counts = Counter(verdict(case, answer) for case, answer in sixty)
-    assert counts["right"] > len(sixty) / 2
+def test_no_made_history_is_given_a_wrong_cause_and_most_are_named() -> None:
+    cases = [(case, case.judged()) for case in map(made, range(80, 140))]
+    counts = Counter(verdict(case, answer) for case, answer in cases)
+    assert counts["wrong"] == 0, [case.seed for case, answer in cases if verdict(case, answer) == "wrong"]
+    assert counts["right"] > len(cases) / 2
 
 
 def test_the_table_of_the_documentation_has_nothing_wrong() -> None:

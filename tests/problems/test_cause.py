@@ -335,18 +335,6 @@ def test_columns_on_contacts_in_millimetres_are_named(name: str) -> None:
     assert (identified.ids, identified.values) == (("unit",), dict.fromkeys(lengths, 1e3))
 
 
-@pytest.mark.long
-def test_rows_of_a_column_that_are_late_begin_with_its_state_at_rest_or_its_velocity() -> None:
-    """Half a step late between rows of the exact motion, which is kept at parts of a step."""
-    posed = problem("stack")
-    step = posed.scene.time.step
-    fine = exactly("stack", {"time.step": step / 2, "time.steps": 2 * posed.scene.time.steps})
-    late = {key: x[0::2] for key, x in fine.columns.items()}
-    identified = named("stack", History(standard(posed).exact.time, late))
-    assert identified.ids == ("shift",)
-    assert identified.values["shift"] == pytest.approx(0.5, abs=1e-2)
-
-
 def test_the_modulus_of_rigid_blocks_is_no_cause() -> None:
     posed = problem("stack")
     runs = models.runs_of(posed.scene, standard(posed))

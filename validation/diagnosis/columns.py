@@ -573,7 +573,7 @@ def _first_rows(search: ColumnSearch) -> str:
 
 def _stages(search: ColumnSearch) -> list[Stage]:
     """Return what can be seen without a cause: how it reads, and each column alone."""
-    stages = [evidence.reading_stage(search.reading.slips, search.reading.stepping.note)]
+    stages = [evidence.reading_stage(search.reading)]
     shares = search.over(search.scene_run, search.rows)
     for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.scene_run), shares, strict=False):
         beyond = np.flatnonzero(np.abs(share) > 1)

@@ -17,6 +17,7 @@ from validation.diagnosis.causes import all_benign
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import Fit
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.readings import Reading
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 from validation.metrics.poles import swing
@@ -144,15 +145,14 @@ def growth(values: Array, expected: Array) -> float | None:
     return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (len(values) / 3))
 
 
-def reading_stage(slips: Sequence[str], note: str) -> Stage:
-    """Return whether a history reads as the scene's, from its slips of sign and unit and what differs in its times."""
-    read = ", ".join(slips) if slips else "units, signs and columns are the scene's"
-    return Stage("reading", not slips, read + (f"; {note}" if note else ""), {})
+def reading_stage(reading: Reading) -> Stage:
+    """Return whether a history reads as the scene's, with its errors of sign and unit and what differs in its times."""
+    note = reading.stepping.note
+    words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
+    return Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})
 
 
-def stages(
-    target: Target, expected: Sequence[Array], slips: Sequence[str], note: str, factor: float | None
-) -> list[Stage]:
+def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:
     """Return the stages up to the damping.
 
     Parameters
@@ -161,18 +161,11 @@ def stages(
         The history as it is read.
     expected
         The scene's own displacement and pressure at the recorded rows.
-    slips
-        Ids of errors of sign and unit that reading has corrected.
-    note
-        What differs in the times.
     factor
         Growth in a step, None if bounded.
     """
     bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
-    measured = [
-        reading_stage(slips, note),
-        Stage("bounded", factor is None, bounded, {"growth": factor}),
-    ]
+    measured = [reading_stage(reading), Stage("bounded", factor is None, bounded, {"growth": factor})]
     if factor is not None:
         return measured
     for name, values, expected_values, bar in zip(

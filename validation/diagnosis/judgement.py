@@ -239,7 +239,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
 
 
 def _stages(case: Case, factor: float | None = None) -> list[Stage]:
-    return evidence.stages(case.target, case.expected, case.reading.slips, case.reading.stepping.note, factor)
+    return evidence.stages(case.target, case.expected, case.reading, factor)
 
 
 def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:

@@ -27,7 +27,6 @@ PERIODS = 5.0  # of the first mode, over which a fit does not go astray
 SHORTEST, COARSE = 30, 500  # steps of the first fits
 STRETCH = 5  # of the fitted part of a long history, from fit to fit
 KEPT = 28  # candidates that are fitted over more of the history
-CHUNK = 1500  # variants in one pass
 FIRST_ROUNDS, ROUNDS = 5, 12  # of the fits: of all candidates, of those that are left
 MANY = 140  # candidates that are fitted further
 
@@ -87,14 +86,18 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     A combination with free numbers begins at the two of its starts that come nearest.
     """
     n = len(target.steps)
-    steps = min(max(SHORTEST, math.ceil(PERIODS * _period(target) / float(np.mean(target.steps)))), COARSE)
+    # of a mass on springs as soft as block and springs together
+    c = target.column
+    period = 2 * math.pi * math.sqrt(c.density * c.width * c.height * abs(c.static) / abs(c.force or 1.0))
+    steps = min(max(SHORTEST, math.ceil(PERIODS * period / float(np.mean(target.steps)))), COARSE)
     part = target.until(steps) if steps < n else target
     explanations = _further(part, _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)[:MANY])
     while steps < n:
         steps *= STRETCH
         part = target.until(min(steps, n))
         explanations = _further(part, _leading(explanations))
-    return explanations if part.same_steps(target) else _further(target, _leading(explanations))
+    is_whole = len(part.steps) == len(target.steps) and len(part.rows) == len(target.rows)
+    return explanations if is_whole else _further(target, _leading(explanations))
 
 
 def _further(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
@@ -103,28 +106,20 @@ def _further(target: Target, explanations: Sequence[Explanation]) -> list[Explan
 
 def _fits(target: Target, starts: Sequence[Start], rounds: int) -> list[Explanation]:
     """Return the fits from some starts, the best first."""
-    fits = [
-        f
-        for i in range(0, len(starts), CHUNK)
-        for f in fit(target, [(v, free) for _, v, free in starts[i : i + CHUNK]], rounds)
-    ]
+    fits = fit(target, [(v, free) for _, v, free in starts], rounds)
     return sorted((Explanation(s[0], f) for s, f in zip(starts, fits, strict=True)), key=lambda f: f.fit.misfit)
 
 
 def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Start]:
     """Return the best two starts of every combination."""
-    every = [(i, v) for i, combo in enumerate(combos) for v in _starts(scene, combo)]
-    best: dict[int, list[tuple[float, Variant]]] = {}
-    for first in range(0, len(every), CHUNK):
-        chunk = every[first : first + CHUNK]
-        answers = target.responses([v for _, v in chunk])
-        misfits = np.linalg.norm(answers - target.values[:, None], axis=0).tolist()
-        for (i, v), misfit in zip(chunk, misfits, strict=True):
-            best.setdefault(i, []).append((misfit, v))
     chosen = []
-    for i, misfits_of_starts in best.items():
-        free = tuple(name for move in combos[i] for name in move.free)
-        chosen += [(combos[i], v, free) for _, v in sorted(misfits_of_starts, key=lambda t: t[0])[: 2 if free else 1]]
+    starts = [_starts(scene, combo) for combo in combos]
+    answers = target.responses([v for variants in starts for v in variants])
+    misfits = iter(np.linalg.norm(answers - target.values[:, None], axis=0).tolist())
+    for combo, variants in zip(combos, starts, strict=True):
+        free = tuple(name for move in combo for name in move.free)
+        ranked = sorted(((next(misfits), v) for v in variants), key=lambda t: t[0])
+        chosen += [(combo, v, free) for _, v in ranked[: 2 if free else 1]]
     return chosen
 
 
@@ -142,13 +137,6 @@ def _leading(explanations: Sequence[Explanation]) -> list[Explanation]:
         if len({ids for ids, _, _ in leading} | {f.ids}) <= KEPT:
             leading.setdefault((f.ids, f.fit.free, f.fit.variant.reset), f)
     return list(leading.values())
-
-
-def _period(target: Target) -> float:
-    """Return the period of a mass on springs as soft as block and springs together [s]."""
-    c = target.column
-    mass = c.density * c.width * c.height
-    return 2 * math.pi * math.sqrt(mass * abs(c.static) / abs(c.force or 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,7 +187,9 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
     best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
-    alike = {f.ids: f for f in reversed(close) if f.ids != best.ids and not _contained(best, f)}
+    # not the best one with a further part that has no effect
+    others = [f for f in close if f.ids != best.ids and not set(best.ids) < set(f.ids)]
+    alike = {f.ids: f for f in reversed(others) if best.ids not in WITHOUT_BAND or f.ids != ("dead-band",)}
     best, aliases = _canonical(target, best, close)
     alike = {ids: f for ids, f in alike.items() if ids not in aliases}
     is_named = not alike and _nameable(target, scene_fit, best)
@@ -207,8 +197,8 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
         is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
     ):
         return Verdict(scene_fit, Explanation((), scene_fit), True)
-    others = tuple(f for ids, f in aliases.items() if ids != best.ids)
-    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=others)
+    names = tuple(f for ids, f in aliases.items() if ids != best.ids)
+    return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=names)
 
 
 def _rounder(close: list[Explanation]) -> list[Explanation]:
@@ -289,11 +279,6 @@ def same_program(target: Target, one: Variant, other: Variant) -> bool:
             if not np.all(apart <= SAME_PROGRAM * np.max(np.abs(run), axis=1).max()):
                 return False
     return True
-
-
-def _contained(best: Explanation, other: Explanation) -> bool:
-    """Whether an explanation is the best one with a further part that has no effect."""
-    return set(best.ids) < set(other.ids) or (best.ids in WITHOUT_BAND and other.ids == ("dead-band",))
 
 
 def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:

@@ -16,6 +16,7 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import Array
 
 LEAST_ROWS = 24  # of a history that is fitted in part
+CHUNK = 1500  # variants in one pass
 ROUNDING = 1e-10  # relative L2 that no recorded history comes below
 
 
@@ -60,10 +61,12 @@ class Target:
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
-        stepped = histories(self.column, variants, self.steps)
-        with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-            joined = self.join(stepped.displacement[self.rows], stepped.pressure[self.rows])
-        return np.nan_to_num(joined, nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
+        columns = [np.empty((len(self.values), 0))]
+        for first in range(0, len(variants), CHUNK):
+            stepped = histories(self.column, variants[first : first + CHUNK], self.steps)
+            with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
+                columns.append(self.join(stepped.displacement[self.rows], stepped.pressure[self.rows]))
+        return np.nan_to_num(np.hstack(columns), nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> list[Array]:
         """Return joined rows as those of the displacement and, if given, of the pressure, in their units."""
@@ -108,10 +111,6 @@ class Target:
         """Relative L2 that the printed digits leave by themselves [-]."""
         shares = [float(np.sum((bar.rounding / bar.norm) ** 2)) / 12 for bar in self.bars]
         return max(math.sqrt(sum(shares) / len(shares)), ROUNDING)
-
-    def same_steps(self, other: Target) -> bool:
-        """Whether another target has as many steps and rows."""
-        return len(self.steps) == len(other.steps) and len(self.rows) == len(other.rows)
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""
