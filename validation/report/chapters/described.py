@@ -4,6 +4,7 @@
     [table.NAME]    columns, caption, notes, dense, ruled
     [panel.NAME]    of `ChartPanel`
     [figure.NAME]   file, caption, height, margins, shared
+    [[NAME]]        the entries of a list
 
 A column has a title, and where needed a group, a kind and what it is `of`, in a table with a row for each case:
 
@@ -93,6 +94,11 @@ class Description:
 
     def __init__(self, module: str) -> None:
         self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
+
+    def entries(self, name: str) -> list[dict[str, Any]]:
+        """Return the entries of a list."""
+        entries: list[dict[str, Any]] = self._data[name]
+        return entries
 
     def text(self, name: str, **values: Any) -> str:
         """Return a text with its values."""

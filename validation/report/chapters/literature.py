@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from validation.report.blocks import Blocks, Heading, Paragraph
-from validation.report.chapters.paper import CLAIMS, VERBS, WORDS, measured_of, reason_of, verdict_of
+from validation.report.chapters.paper import CLAIMS, VERBS, WORDS, counted_verdicts, measured_of, reason_of, verdict_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -38,10 +37,8 @@ def claim_blocks(claim: Mapping[str, Any], metrics: Mapping[str, Any]) -> Blocks
 
 def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     """Return the sentences on the register."""
-    verbs = VERBS | {WORDS[1]: UNDER_A_CONDITION}
-    count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
-    parts = [f"{count[word]} {both[count[word] > 1]}" for word, both in verbs.items() if count[word]]
+    parts = counted_verdicts(rows, VERBS | {WORDS[1]: UNDER_A_CONDITION})
     return (
-        f"Of {len(rows)} claims on schemes, contacts and boundaries that were tested, {', '.join(parts)}. "
+        f"Of {len(rows)} claims on schemes, contacts and boundaries that were tested, {parts}. "
         "Most were read as abstracts: the papers may carry the conditions that are missing there."
     )

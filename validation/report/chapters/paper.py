@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table, TableColumn, table
+from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
+from validation.report.chapters.described import Description
 from validation.report.chapters.text import DASH, bounded, capital, short
-from validation.report.figures import histories
-from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import ChartLine, ChartPanel
 from validation.report.figures.curves import style_of
-from validation.report.figures.histories import Margins
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 
@@ -45,17 +44,8 @@ class PaperFigure:
     relative: bool = False  # value / static - 1 instead of the value
 
 
-FIGURES = (
-    PaperFigure(3, "figures-3-4", "displacement", 100, "Displacement of the centroid at p = 1E for three time steps"),
-    PaperFigure(4, "figures-3-4", "pressure", 100, "Contact pressure at p = 1E for three time steps"),
-    PaperFigure(
-        5, "figures-5-6", "displacement", 100, "Displacement of the centroid at dt = 0.002 s, three stiffnesses"
-    ),
-    PaperFigure(6, "figures-5-6", "pressure", 100, "Contact pressure at dt = 0.002 s for three stiffnesses"),
-    PaperFigure(7, "figure-7", "displacement", 20000, "Displacement of the centroid at dt = 0.00001 s"),
-    PaperFigure(8, "figure-8", "displacement", 200, "Relative error of the displacement, dt = 0.001 s, p = 1E", True),
-    PaperFigure(9, "figure-9", "displacement", 200, "Displacement for four discounts, dt = 0.001 s, p = 1E"),
-)
+PAGE = Description(__file__)
+FIGURES = tuple(PaperFigure(**entry) for entry in PAGE.entries("figures"))
 COLUMNS = {
     "displacement": ("displacement", 1e3, "Displacement [mm]"),
     "pressure": ("contact_pressure", 1e-6, "Contact pressure [MPa]"),
@@ -79,9 +69,14 @@ def paper_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
 
 def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
     """Return one sentence on the register."""
-    count = Counter(WORDS.get(int(metrics.get("verdict", -1)), "not tested") for metrics in rows.values())
-    parts = [f"{count[word]} {verbs[count[word] > 1]}" for word, verbs in VERBS.items() if count[word]]
-    return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {', '.join(parts)}."
+    parts = counted_verdicts(rows, VERBS)
+    return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {parts}."
+
+
+def counted_verdicts(rows: Mapping[str, Mapping[str, Any]], verbs: Mapping[str, tuple[str, str]]) -> str:
+    """Return how many claims have each verdict, with the verbs of one and of several."""
+    count = Counter(map(verdict_of, rows.values()))
+    return ", ".join(f"{count[word]} {both[count[word] > 1]}" for word, both in verbs.items() if count[word])
 
 
 def claims_table(claims: Sequence[Mapping[str, Any]], rows: Mapping[str, Mapping[str, Any]]) -> Table:
@@ -92,16 +87,7 @@ def claims_table(claims: Sequence[Mapping[str, Any]], rows: Mapping[str, Mapping
         word = verdict_of(metrics)
         statement = f"{claim['says']} ({claim['place']})"
         lines.append((claim["id"], word, statement, reason_of(claim, word), measured_of(metrics)))
-    return table(
-        (
-            "Id",
-            "Verdict",
-            TableColumn("The paper says", "fill"),
-            TableColumn("Why", "fill"),
-            TableColumn("Measured", "fill"),
-        ),
-        lines,
-    )
+    return PAGE.table("claims", lines)
 
 
 def verdict_of(metrics: Mapping[str, Any]) -> str:
@@ -129,13 +115,8 @@ def figure_1(manifest: Manifest, groups: Groups, directory: Path) -> Blocks:
     data = manifest.get("data", {})
     if "schemes" not in data:
         return []
-    cases = cases_of(groups, "damping-map")
-    caption = (
-        "Figure 1. Spectral radius over ω dt. Dashed: √(1+h), which the paper prints for every ω dt; it holds for a "
-        "complex pair only. Circles: both modes of the DDA block at every dt and p of the damping map."
-    )
-    figure = chart_figure([radius_panel(data, _points(cases))], 58.0, Margins(13.0, 56.0, 4.0, 9.5))
-    return [histories.saved(figure, directory, "figure-1.svg", caption)]
+    points = _points(cases_of(groups, "damping-map"))
+    return [PAGE.figure("radius", [radius_panel(data, points)], directory)]
 
 
 def radius_panel(data: Mapping[str, Any], points: Sequence[tuple[float, float]]) -> ChartPanel:
@@ -152,16 +133,7 @@ def radius_panel(data: Mapping[str, Any], points: Sequence[tuple[float, float]])
             lines.append(ChartLine(words, omega[departs], printed[departs], color, (4.0, 2.0), 0.9))
     x, y = np.array(points).reshape(-1, 2).T
     lines.append(ChartLine("", x, y, style_of("dda").color, width=0, dots=2.6, hollow=True))
-    return ChartPanel(
-        "",
-        "ω dt",
-        "Spectral radius |λ|",
-        lines,
-        (omega[0], omega[-1]),
-        (0.0, 1.06),
-        (True, False),
-        {"ω dt = 4": 4.0},
-    )
+    return PAGE.panel("radius", lines, x_range=(omega[0], omega[-1]))
 
 
 def _points(cases: Sequence[CaseResults]) -> list[tuple[float, float]]:
@@ -179,15 +151,14 @@ def figure_block(figure: PaperFigure, group: CaseGroup, directory: Path) -> Figu
     """Draw one of the paper's figures and return its block."""
     panels = [_panel(figure, case, len(group.cases)) for case in group.cases]
     label = "Relative error of displacement [%]" if figure.relative else COLUMNS[figure.quantity][2]
-    caption = f"Figure {figure.number}. {figure.caption}. Hairline: static value."
+    remarks = ""
     if any(panel.marks for panel in panels):
-        caption += " Dashed: step from which DDA stays within 1 % of static."
+        remarks += PAGE.text("settled")
     pairs = zip(group.cases, panels, strict=True)
     if any("continuum" in case.histories and not _has_line(panel, "continuum") for case, panel in pairs):
-        caption += f" The continuum is left out where its period has fewer than {COARSE} steps."
+        remarks += PAGE.text("coarse", steps=COARSE)
     panels = [replace(panel, y_label=label, y_range=_range(panels)) for panel in panels]
-    chart = chart_figure(panels, 36.0, Margins(right=22.0, bottom=9.5), shared=True)
-    return histories.saved(chart, directory, f"figure-{figure.number}.svg", caption)
+    return PAGE.figure("step", panels, directory, number=figure.number, caption=figure.caption, remarks=remarks)
 
 
 def _has_line(panel: ChartPanel, name: str) -> bool:
@@ -221,14 +192,12 @@ def _panel(figure: PaperFigure, case: CaseResults, count: int) -> ChartPanel:
     settled = None if figure.relative else case.number("dda", f"{figure.quantity}.settling_step")
     marks = {} if settled is None else {f"{settled:.0f} steps": settled}
     is_wide = count <= (3 if figure.last < 1000 else 2)
-    return ChartPanel(
-        case.label,
-        "Time step",
-        "",
+    return PAGE.panel(
+        "step",
         lines,
-        (0.0, float(figure.last)),
+        title=case.label,
+        x_range=(0.0, float(figure.last)),
         marks=marks,
         levels={"": level},
         x_ticks=4 if is_wide else 2,
-        y_ticks=5,
     )

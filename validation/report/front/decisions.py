@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table, table
-from validation.report.chapters.data import Groups
+from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table
+from validation.report.chapters.data import CaseResults, Groups
 from validation.report.chapters.described import Description
-from validation.report.chapters.text import DASH, cell, percent, short
+from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
@@ -59,7 +60,7 @@ def _damping_chart(
         dash = () if scene.time.gg_rate is None else DASHED
         lines.append(ChartLine(name, 1e3 * steps, 100 * closed.over_steps(scene, steps), color, dash))
     title = f"Damping ratio of the first axial mode [%], {scheme}"
-    return ChartPanel(title, "time step dt [ms]", "", lines, RANGE, y_range, (True, True), marks, levels)
+    return PAGE.panel("damping", lines, title=title, y_range=y_range, marks=marks, levels=levels)
 
 
 # ---- which time step ----------------------------------------------------------------------------------------------
@@ -78,24 +79,13 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
         {f"{100 * xi:g} %": 100 * xi for xi in TARGET_DAMPING},
     )
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
-    caption = (
-        f"Damping @doolin2004, @lin2015 grows with the step, ξ ≈ ω₁ dt / 4, to at most {greatest:.3g} % "
-        f"at ω₁ dt = {turn:.3g}, and falls beyond; where a line ends, at ω₁ dt = 4, the mode flips "
-        "sign each step instead of oscillating. Dashed vertical: the time a wave takes from top to base; a longer "
-        "step cannot resolve it."
-    )
     step = closed.step_for(scenes[0], 0.05)
     example = f": for 5\u00a0% at p = 1E, dt = {1e3 * step:.3g}\u00a0ms" if step else ""
+    command = "advise my-block.toml --damping 0.05 --solve-for dt"
     return [
         Heading("Decision 1: which time step?", 2),
-        _rule(
-            f"Choose the damping ratio ξ of the first axial mode, then dt ≈ 4 ξ / ω₁, ω₁ its circular "
-            f"frequency (up to ξ = 10\u00a0% within 3\u00a0%){example}. "
-            "Small damping and the wave both need a short step, and no step repairs the model: what is left "
-            "when the damping is gone is one strain in place of a wave.",
-            "advise my-block.toml --damping 0.05 --solve-for dt",
-        ),
-        histories.saved(chart_figure([chart], 37.0), directory, "decision-step.svg", caption),
+        _rule(PAGE.text("step-rule", example=example), command),
+        PAGE.figure("step", [chart], directory, greatest=greatest, turn=turn),
         step_table(scenes),
         *_as_run(groups),
     ]
@@ -109,11 +99,8 @@ def step_table(scenes: Sequence[Scene]) -> Table:
         rows.append((f"{100 * xi:g} %", *(DASH if step is None else f"{1e3 * step:.3g}" for step in steps)))
     frequencies = [spectra.dda_frequency(scene) for scene in scenes]
     rows.append(("ω₁ [rad/s]", *(short(w) for w in frequencies)))
-    return table(
-        ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(s):g}E" for s in scenes))),
-        rows,
-        "Which dt for which damping ratio: constant acceleration (1/2, 1), gg = 1.",
-    )
+    heads = ("Wanted ξ", ("dt [ms]", *(f"p = {closed.ratio_of(scene):g}E" for scene in scenes)))
+    return PAGE.table("steps", rows, heads)
 
 
 def _as_run(groups: Groups) -> Blocks:
@@ -121,40 +108,22 @@ def _as_run(groups: Groups) -> Blocks:
     group = groups.get("model-form")
     if group is None:
         return []
-    rows = []
-    for case in by_step(group):
-        errors = []
-        for pair in (("dda", "bar"), ("bar", "continuum")):
-            errors += [group.number_of_pair(case, *pair, f"{name}.l2") for name in ("displacement", "pressure")]
-        minimum = case.number("dda", "pressure.minimum")
-        tension = cell(minimum, 1e-6, 3)
-        if minimum is not None and minimum >= -closed.NOISE * case.scene.load.pressure:
-            tension = "none"
-        excess = peak_excess(case)
-        peak = DASH if excess is None else signed_percent(excess)
-        shares = (case.number("dda", "mode1.damping"), *errors)
-        damping, *error_cells = [DASH if value is None else percent(value) for value in shares]
-        rows.append((f"{1e3 * case.scene.time.step:g}", damping, peak, *error_cells, tension))
-    if not rows:
-        return []
-    return [
-        table(
-            (
-                "dt [ms]",
-                "ξ₁",
-                ("DDA − bar: model", "first peak", "displ.", "pressure"),
-                ("bar − continuum: time", "displ.", "pressure"),
-                "Pull of the contact [MPa]",
-            ),
-            rows,
-            "What each step cost at p = 1E, as run: first peak of the pressure, and relative L2 over 0.2 s.",
-        ),
-        Paragraph(
-            "Read both halves together: the left falls as the step grows because both motions are damped out, and only "
-            "the right shows what the step has cost. No window changes the peak; a relative L2 difference of motions "
-            "that are little damped is mostly one of phase and grows with the time over which it is taken."
-        ),
-    ]
+    by_length = replace(group, cases=tuple(by_step(group)))
+    table = PAGE.case_table("as-run", [by_length], {"peak": _peak, "tension": _tension})
+    return [table, Paragraph(PAGE.text("as-run"))] if table.rows else []
+
+
+def _peak(case: CaseResults) -> str | None:
+    """Return how far the first peak of the pressure is off, with its sign."""
+    excess = peak_excess(case)
+    return None if excess is None else signed_percent(excess)
+
+
+def _tension(case: CaseResults) -> Value:
+    """Return the least pressure where the contact pulls [Pa]."""
+    minimum = case.number("dda", "pressure.minimum")
+    is_closed = minimum is not None and minimum >= -closed.NOISE * case.scene.load.pressure
+    return "none" if is_closed else minimum
 
 
 # ---- which springs ------------------------------------------------------------------------------------------------
@@ -191,10 +160,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
         _rule(spring_rule(groups, base), "damping my-block.toml --set contact.stiffness=1e10"),
         histories.saved(chart_figure([deflection, ringing], 34.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
-        Paragraph(
-            "The ringing is almost invisible in the displacement and fully present in the contact force: forces that "
-            "are read, or that open the contact, show the scheme and not the block."
-        ),
+        Paragraph(PAGE.text("ringing")),
     ]
 
 
@@ -259,11 +225,6 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
         {"2 ms": 2.0, "1 ms": 1.0, "0.1 ms": 0.1},
         {"critical": 100.0},
     )
-    caption = (
-        "The shorter the step, the more a discount per step damps, without bound; held as a rate (dashed), it damps "
-        f"the block alike while ω₁ dt is small: asked for 5 %, it is {damping_at_steps(at_rate, RATE_STEPS)} "
-        f"(ω₁ dt = {turns})."
-    )
     per_step = closed.timed(base, gg=0.98)
     overdamped_below = closed.overdamped_below(per_step)
     creep = ""
@@ -278,13 +239,9 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
             "step never converges.",
             "advise my-block.toml --damping 0.05 --solve-for gg",
         ),
-        histories.saved(chart_figure([chart], 34.0), directory, "decision-discount.svg", caption),
+        PAGE.figure("discount", [chart], directory, ratios=damping_at_steps(at_rate, RATE_STEPS), turns=turns),
         discount_table(base),
-        Paragraph(
-            "The discount does not damp a stiff contact: with average acceleration its roots tend to −1 and −gg. It "
-            "acts on the velocity at the start of a step, so that the first step from rest does not feel it; with "
-            "constant acceleration it comes on top of what the step damps."
-        ),
+        Paragraph(PAGE.text("discount")),
         *_measured(groups),
     ]
 
@@ -300,16 +257,8 @@ def discount_table(base: Scene) -> Table:
         step = DASH if overdamped_below is None else f"{1e3 * overdamped_below:.3g}"
         rate = -np.log(gg) / 1e-3 + 0.0  # without a negative zero
         rows.append((f"{gg:.2f}", *damping_cells, step, f"{rate:.3g}"))
-    return table(
-        (
-            "gg",
-            ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:])),
-            "overdamped below dt [ms]",
-            "c at dt = 1 ms [1/s]",
-        ),
-        rows,
-        "What a discount per step damps at p = 1E, in closed form.",
-    )
+    by_step_heads = ("ξ₁, average acceleration", *(f"dt = {milliseconds(step)}" for step in STEPS[1:]))
+    return PAGE.table("discounts", rows, ("gg", by_step_heads, "overdamped below dt [ms]", "c at dt = 1 ms [1/s]"))
 
 
 def _measured(groups: Groups) -> Blocks:
