@@ -2,7 +2,6 @@
 
 import itertools
 import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,15 +36,6 @@ def same_histories(one: Path, other: Path) -> bool:
         for key in keys
         for name, values in Results(one).history(key).columns.items()
     )
-
-
-def test_any_executor_gives_the_same_rows(tmp_path):
-    run_study(STUDY, Results(tmp_path / "serial"))
-    with ProcessPoolExecutor(2) as pool:
-        run_study(STUDY, Results(tmp_path / "pool"), executor=pool)
-    assert rows(tmp_path / "serial") == rows(tmp_path / "pool")
-    assert len(rows(tmp_path / "serial")) == len(STUDY.cases())
-    assert same_histories(tmp_path / "serial", tmp_path / "pool")
 
 
 def test_without_a_scheduler_there_is_no_executor():

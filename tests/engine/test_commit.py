@@ -58,17 +58,16 @@ def test_an_own_checkout_tells_its_commit(tmp_path: Path) -> None:
     assert said(tmp_path / "suite") == f"{commit}+"
 
 
-@pytest.mark.parametrize("name", ["another-project", "dda-validation"])
-def test_a_package_inside_another_project_has_no_commit(name: str, tmp_path: Path) -> None:
-    """As an environment in a project's directory has it, even in a checkout of this very project."""
-    inside = sources(tmp_path / "other" / ".venv" / "site-packages")
+INSIDE = ".venv/site-packages"  # as an environment in a project's directory has it
+
+
+@pytest.mark.parametrize(
+    ("place", "name"), [(INSIDE, "another-project"), (INSIDE, "dda-validation"), ("", "another-project")]
+)
+def test_another_project_or_another_checkout_of_this_one_has_no_commit(place: str, name: str, tmp_path: Path) -> None:
+    inside = sources(tmp_path / "other" / place)
     project(tmp_path / "other", name)
     assert said(inside) == "unknown (not a git checkout)"
-
-
-def test_another_project_at_the_same_level_is_not_taken(tmp_path: Path) -> None:
-    project(sources(tmp_path / "other"), "another-project")
-    assert said(tmp_path / "other") == "unknown (not a git checkout)"
 
 
 def test_what_git_s_own_variables_name_is_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

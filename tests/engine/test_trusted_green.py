@@ -5,9 +5,11 @@ import json
 import shutil
 import threading
 import zipfile
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,14 +69,6 @@ def test_every_row_says_what_made_it(scene: Scene, tmp_path: Path) -> None:
         assert not {"matplotlib", "typst"} & row.provenance["packages"].keys(), "they make no row"
 
 
-def rewritten(results: Results, solver: str, change: object) -> None:
-    """Write the history of a solver's row as a program would that does not know whose it is, or as the suite does."""
-    row = next(row for row in results.rows().values() if row.solver == solver)
-    history = results.history(row.key)
-    assert history is not None and callable(change)
-    results.append(row, change(history))
-
-
 def shorter(history: History) -> History:
     return History(history.time[:-1], {name: values[:-1] for name, values in history.columns.items()})
 
@@ -87,13 +81,34 @@ def infinite(history: History) -> History:
     return History(history.time, {**history.columns, "displacement": np.full(len(history.time), np.inf)})
 
 
-@pytest.mark.parametrize("change", [shorter, without_pressure, infinite], ids=lambda change: change.__name__)
-def test_a_kept_history_that_is_not_that_of_its_scene_is_run_again(
-    change: object, scene: Scene, tmp_path: Path
+HISTORIES = [shorter, without_pressure, infinite, lambda history: None]  # the last one takes the file away
+LINES = [
+    lambda line: line.replace('"displacement.static": -0.01', '"displacement.static": -0.012'),
+    lambda line: line.replace('"outcome": "completed"', '"outcome": "unstable as predicted"'),
+    lambda line: json.dumps({k: v for k, v in json.loads(line).items() if k != "digest"}),
+    lambda line: replace(Row.parse(line), provenance={}).line(),
+    lambda line: "[" * 100_000,
+    lambda line: line[:-40],  # as a kill leaves it
+]
+
+
+@pytest.mark.parametrize(
+    ("of_history", "change"), [*((True, one) for one in HISTORIES), *((False, one) for one in LINES)]
+)
+def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(
+    of_history: bool, change: Callable[[Any], Any], scene: Scene, tmp_path: Path
 ) -> None:
     results = Results(tmp_path)
     run_study(study(scene), results)
-    rewritten(results, "dda", change)
+    (row,) = (row for row in results.rows().values() if row.solver == "dda")
+    history = results.history(row.key)
+    if of_history:
+        (tmp_path / "histories" / f"{row.key}.npz").unlink()
+        results.append(row, change(history))
+    else:
+        path = tmp_path / "rows.jsonl"
+        lines = [line for line in path.read_text().splitlines() if line]
+        path.write_text("\n".join(change(line) if '"dda"' in line else line for line in lines))
     assert ran(scene, results) == ["dda"]
     assert ran(scene, results) == []
 
@@ -127,38 +142,11 @@ def test_a_history_without_time_is_one_line(scene: Scene, tmp_path: Path) -> Non
         results.history(path.stem)
 
 
-@pytest.mark.parametrize(
-    "edit",
-    [
-        lambda line: line.replace('"displacement.static": -0.01', '"displacement.static": -0.012'),
-        lambda line: line.replace('"outcome": "completed"', '"outcome": "unstable as predicted"'),
-        lambda line: json.dumps({k: v for k, v in json.loads(line).items() if k != "digest"}),
-        lambda line: "[" * 100_000,
-    ],
-)
-def test_a_row_that_was_edited_is_run_again(edit: object, scene: Scene, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    run_study(study(scene), results)
-    path = tmp_path / "rows.jsonl"
-    lines = [line for line in path.read_text().splitlines() if line]
-    path.write_text("\n".join(edit(line) if '"dda"' in line else line for line in lines))  # type: ignore[operator]
-    assert path.read_text().splitlines() != lines
-    assert ran(scene, results) == ["dda"]
-
-
 def test_the_latest_row_of_a_key_counts(scene: Scene, tmp_path: Path) -> None:
     results = Results(tmp_path)
     for seconds in (1.0, 2.0, 3.0):
         results.append(Row("k", "s", "x", "dda", Outcome.REFUSED, {}, seconds={"setup": seconds}), None)
     assert results.rows()["k"].seconds == {"setup": 3.0}
-
-
-def test_a_row_that_does_not_say_what_made_it_is_run_again(scene: Scene, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    run_study(study(scene), results)
-    row = next(row for row in results.rows().values() if row.solver == "dda")
-    results.append(replace(row, provenance={}), results.history(row.key))
-    assert ran(scene, results) == ["dda"]
 
 
 @pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])

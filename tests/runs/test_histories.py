@@ -11,13 +11,6 @@ from validation.runs.history import History
 from validation.runs.modes import Mode, contact_index
 
 
-def test_a_history_until_an_instant_has_its_step_however_it_is_rounded() -> None:
-    history = History(0.1 * np.arange(1, 11), {"displacement": np.arange(10.0)})  # 0.1 * 3 is above 0.3
-    for end, count in ((0.3, 3), (0.6, 6), (0.65, 6), (0.05, 0), (2.0, 10)):
-        until = history.until(end)
-        assert len(until.time) == len(until.displacement) == count
-
-
 def test_a_history_is_written_to_the_last_bit(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     history = History(
