@@ -94,37 +94,35 @@ def _lowest(column: ColumnSection) -> float | None:
     return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
 
 
+ADVICE = {
+    "slips": "Cut no step: the joints have one solution at any step; where all states change at once no known column "
+    "took more than {most} solves.",
+    "solves": "Allow {bound.solves} solves of the open-close iteration in a step, one more than there are contacts, "
+    "and cut no step: more are never needed, and a shorter step does not spare them where blocks touch.",
+    "unproven": "Cut no step: the contacts have one solution at any step. How many solves it takes is proven only "
+    "above dt = {bound.far_face_step:.3g} s; no known column took more than {most}.",
+    "far face": "At dt = {step:g} s a block of one strain answers a push with its far face moving the wrong way; "
+    "{blocks} blocks in the layers, or dt >= {bound.far_face_step:.3g} s, do not.",
+    "rests": "The stack comes to rest to a thousandth in about {bound.settling:.3g} s: the scheme takes "
+    "w1^2 (delta - 1/2) dt / 2 and the discount (1 - gg) / (2 dt) of the amplitude a second, w1 = "
+    "{bound.lowest:.4g} rad/s.",
+    "never rests": "The stack never comes to rest: delta = 1/2 and gg = 1 take no energy.",
+}
+
+
 def advised(scene: Scene, bound: ColumnLimits) -> Iterator[str]:
     """Yield in words what to allow and to choose for a column whose contacts open or slip."""
-    t = scene.time
+    step = scene.time.step
     if scene.column is not None and scene.column.law == "frictional":
-        yield (
-            "Cut no step: the joints have one solution at any step; where all states change at once no known column "
-            f"took more than {2 * bound.contacts + 1} solves."
-        )
-    elif bound.solves is not None:
-        yield (
-            f"Allow {bound.solves} solves of the open-close iteration in a step, one more than there are contacts, and "
-            "cut no step: more are never needed, and a shorter step does not spare them where blocks touch."
-        )
+        yield ADVICE["slips"].format(most=2 * bound.contacts + 1)
     else:
-        yield (
-            "Cut no step: the contacts have one solution at any step. How many solves it takes is proven only above "
-            f"dt = {bound.far_face_step:.3g} s; no known column took more than {bound.contacts + 1}."
-        )
-    if bound.far_face_step > t.step and all(bound.blocks):
-        yield (
-            f"At dt = {t.step:g} s a block of one strain answers a push with its far face moving the wrong way; "
-            f"{', '.join(map(str, bound.blocks))} blocks in the layers, or dt >= {bound.far_face_step:.3g} s, do not."
-        )
-    if bound.settling is not None and math.isfinite(bound.settling):
-        yield (
-            f"The stack comes to rest to a thousandth in about {bound.settling:.3g} s: the scheme takes "
-            f"w1^2 (delta - 1/2) dt / 2 and the discount (1 - gg) / (2 dt) of the amplitude a second, w1 = "
-            f"{bound.lowest or 0:.4g} rad/s."
-        )
-    elif bound.settling is not None:
-        yield "The stack never comes to rest: delta = 1/2 and gg = 1 take no energy."
+        kind = "unproven" if bound.solves is None else "solves"
+        yield ADVICE[kind].format(bound=bound, most=bound.contacts + 1)
+    if bound.far_face_step > step and all(bound.blocks):
+        yield ADVICE["far face"].format(bound=bound, step=step, blocks=", ".join(map(str, bound.blocks)))
+    if bound.settling is not None:
+        kind = "rests" if math.isfinite(bound.settling) else "never rests"
+        yield ADVICE[kind].format(bound=bound)
 
 
 def column_alarms(scene: Scene) -> Iterator[Alarm]:

@@ -240,17 +240,18 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     limits = data["asked"]
     error = limits["restitution_error"]
     depth = limits["penetration"]
+    load = abs(opened.resultant_load(scene))
     why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
         f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
-        f"landing at {data['landing_speed']:.4g} m/s under {abs(opened.resultant_load(scene)):.4g} N."
+        f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     ratio = need["stiffness"] / scene.block.young
     if ratio > MODERATE:
         yield (
             f"              that is {ratio:.4g} E, for the penetration of a landing, p ~ (V / x)^2; at rest springs of "
-            f"{MODERATE:g} E give way by {_at_rest(scene, MODERATE * scene.block.young):.2g} m"
+            f"{MODERATE:g} E give way by {load / (2 * MODERATE * scene.block.young):.2g} m"
         )
     if data["landing_speed"] > 0:
         yield from _step_lines(scene, data)
@@ -260,11 +261,6 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
             f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
             f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
         )
-
-
-def _at_rest(scene: Scene, stiffness: float) -> float:
-    """Return how far springs deflect under the load at rest [m]."""
-    return abs(opened.resultant_load(scene)) / (2 * stiffness)
 
 
 def _step_lines(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
