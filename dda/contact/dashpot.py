@@ -20,8 +20,6 @@ from dda.contact.dense import copy, dot
 from dda.contact.kernel import FOUND, NONE, Contacts, Flexible, Free, Law, Work, set_states, trial
 from dda.contact.unilateral import OPEN, STICK
 
-TRIED = 8  # contacts up to which all states are tried
-
 
 def damped(
     law: Law,
@@ -50,8 +48,6 @@ def damped(
         solves += 1
         if set_closed(free, flexible, after, work) == 0:
             return FOUND, solves
-    if n > TRIED:
-        return NONE, solves
     for number in range(2**n):
         set_states(work.tried, number, 2, n)
         trial(law, None, before, retarded, retarded_flexible, after, work)

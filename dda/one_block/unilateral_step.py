@@ -608,11 +608,11 @@ def account(
     if gg != 1 and not late_start:
         squares = quadratic(block.inverse_mass, state.P, len(block.K))
         sums[DAMPING] += (1 - gg * gg) * squares / 2 / (block.step * block.step)
+    before = state
     if block.stages == 2:
-        account_stage(block, shear_law, block.first, state, block.between, part, sums)
-        account_stage(block, shear_law, block.last, block.between, after, part, sums)
-    else:
-        account_stage(block, shear_law, block.last, state, after, part, sums)
+        before = block.between
+        account_stage(block, shear_law, block.first, state, before, part, sums)
+    account_stage(block, shear_law, block.last, before, after, part, sums)
     if block.newmark:
         add_algorithmic_loss(block, length, state, after, part, sums)
 

@@ -315,11 +315,8 @@ def advance(
     if outcome != FOUND:
         return outcome, solves
     outcome, further_solves = make_stage(body, shear_law, body.last, body.between, after, base, part)
-    if outcome == FOUND:
-        for i in range(len(body.xi)):
-            body.first.slipped[i] = body.between.contacts.slipped[i]
-            body.last.slipped[i] = after.contacts.slipped[i]
-            after.contacts.slipped[i] += body.first.slipped[i]
+    for i in range(len(body.xi)):
+        after.contacts.slipped[i] += body.first.slipped[i]
     return outcome, solves + further_solves
 
 
@@ -652,6 +649,7 @@ def accept(
         stage.slide[i] = room.after[i][0] - room.before[i][0]
     for k in range(near):
         copy_contact(pair.after, k, contacts, room.at[k])
+    copy(contacts.slipped, stage.slipped)
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -665,13 +663,11 @@ def account(
     h = body.step * part.ratio
     if gg != 1 and not (body.lag != 0 and part.begun == 0):
         sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
+    before = state.contacts
     if body.stages == 2:
-        between = body.between.contacts
-        add_stage_losses(body, shear_law, body.first, state.contacts, between, body.first.slipped, h, sums)
-        add_stage_losses(body, shear_law, body.last, between, after.contacts, body.last.slipped, h, sums)
-    else:
-        slipped = after.contacts.slipped
-        add_stage_losses(body, shear_law, body.last, state.contacts, after.contacts, slipped, h, sums)
+        before = body.between.contacts
+        add_stage_losses(body, shear_law, body.first, state.contacts, before, h, sums)
+    add_stage_losses(body, shear_law, body.last, before, after.contacts, h, sums)
 
 
 def add_stage_losses(
@@ -680,14 +676,13 @@ def add_stage_losses(
     stage: RollingStage,
     before: Contacts,
     after: Contacts,
-    slipped: Vector,
     h: float,
     sums: Vector,
 ) -> None:
     """Add what the contacts lose in a stage of a step of length h."""
     length = h * (stage.numbers.end - stage.numbers.begin)
     add_contact_losses(
-        body.law, shear_law, before, after, slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
+        body.law, shear_law, before, after, stage.slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
     )
 
 

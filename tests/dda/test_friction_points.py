@@ -5,14 +5,28 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.frictional import KNOWN, rubbing_model
-from oracles.unilateral_checks import DT
+from oracles.frictional import KNOWN, rubbing_model, shaken
+from oracles.unilateral_checks import DT, apart
 
-from dda import Scheme, UnilateralOptions, opening_subdivided, solve_opening_system
+from dda import Scheme, UnilateralOptions, opening_subdivided, solve_opening_system, solve_unilateral
 
 ENERGIES = UnilateralOptions(energies=True)
 SCHEMES = [(0.5, 1.0, 1.0, "zero"), (0.25, 0.5, 0.99, "consistent")]
 FIELDS = ("normal", "shear", "gap", "slide", "slip")
+
+
+def test_one_sub_block_on_a_base_that_shakes_is_the_block():
+    scheme = Scheme(0.5, 1.0, 1.0, 2e-4)
+    model = replace(KNOWN["rubbing"].model, motion=shaken(np.random.default_rng(0), 1e-4))
+    block = solve_unilateral(model, scheme, 150, options=ENERGIES)
+    one = solve_opening_system(opening_subdivided(model, 1, 1, 1e15), scheme, 150, options=ENERGIES)
+    assert np.array_equal(one.states, block.states) and np.any(np.abs(one.states) == 2)
+    for field in FIELDS:
+        assert apart(getattr(one, field), getattr(block, field)) < 1e-10, field
+    for name in ("friction", "load", "springs"):
+        assert one.energies[name] == pytest.approx(block.energies[name], rel=1e-9, abs=1e-9 * np.max(block.normal))
+    assert np.ptp(sum(one.energies.values())) < 1e-9 * np.max(np.abs(one.energies["load"]))
+    assert one.columns["displacement"] == pytest.approx(block.columns["displacement"], rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", thinned(range(24), 12))

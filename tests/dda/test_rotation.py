@@ -196,6 +196,7 @@ def test_the_parts_of_a_cut_step_are_a_whole_step():
     assert cut.step_cuts.sum() == 1 and len(bases) == 41
     ends, moved = np.transpose(bases)
     assert np.allclose(moved, 0.4 * scheme.step * ends, rtol=1e-12)
+    assert np.count_nonzero(np.isclose(ends, np.round(ends))) == 40  # the parts of the cut step follow each other
     total, lost = losses(cut)
     assert np.max(np.abs(np.diff(total) + lost.sum(axis=0))) < 1e-13
     assert np.max(np.abs(cut.gap - whole.gap)) < 1e-5
