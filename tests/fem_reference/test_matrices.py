@@ -159,14 +159,6 @@ def test_pressure_of_an_inclined_base_balances_the_load_normal_to_it():
     assert static(problem)["contact_pressure"] == pytest.approx(expected, rel=1e-10)
 
 
-def test_mesh_file_of_the_square_gives_the_structured_result(tmp_path):
-    problem = make(poisson=0.3)
-    grid = np.linspace(0.0, 2.0, 5)
-    file = write_mesh(tmp_path / "grid.msh", problem, MeshQuad.init_tensor(grid, grid))
-    read = static(make(poisson=0.3, mesh=file))
-    assert read["displacement"] == pytest.approx(static(make(poisson=0.3, elements=4))["displacement"], rel=1e-12)
-
-
 def corner_block(tmp_path, vertices, top, holes):
     """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
     grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
