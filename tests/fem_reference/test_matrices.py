@@ -102,6 +102,7 @@ def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poiss
     for matrix, expected in zip((assembled.M, assembled.K, assembled.springs), block_matrices(problem), strict=True):
         # The sums run over some hundred entries that cancel: rounding times their number.
         assert np.abs(T.T @ (matrix @ T) - expected).max() <= 1e-13 * np.abs(expected).max()
+    assert assembled.observers["rotation"] @ T == pytest.approx([0, 0, 1, 0, 0, 0], abs=1e-12)
     side = problem.outline[3] - problem.outline[2]
     middle = (problem.outline[3] + problem.outline[2]) / 2 - problem.centroid
     load = -problem.pressure * np.hypot(*side) * affine(*middle)[1]
