@@ -81,7 +81,6 @@ class BarsMotion:
     joints: tuple[Joint | None, ...]
     up: tuple[Wave, ...]  # p of each bar, from its foot
     down: tuple[Wave, ...]  # d of each bar, from its top
-    advances: int  # times that a joint or an end went on
 
     def at(self, times: ArrayLike) -> BarsHistory:
         """The motion at instants in any order.
@@ -305,7 +304,6 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int, most_adva
             joints=tuple(by_number.get(i) for i in numbers),
             up=tuple(up),
             down=tuple(down),
-            advances=advances,
         )
 
 

@@ -98,14 +98,6 @@ class BlockMotion(ProvenMotion):
     impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
 
-    @property
-    def simultaneous(self) -> tuple[float, ...]:
-        """Instants at which both corners switch within one ball [s]."""
-        corners: dict[str, set[str]] = {}
-        for switch in self.switches:
-            corners.setdefault(switch.midpoint, set()).add(switch.corner)
-        return tuple(float(time) for time, both in corners.items() if len(both) == 2)
-
     def at(self, times: ArrayLike) -> BlockHistory:
         """The motion at instants in any order.
 

@@ -57,7 +57,6 @@ class ColumnHistory:
     top_velocity: Array  # [m/s]
     force: Array  # N, or T on the block above, of each joint, 0 where there is none [Pa], shape (blocks, times)
     stretch: Array  # y of each joint, positive where it is open [m]; 0 where there is none
-    stretch_velocity: Array  # rate of y [m/s]
     slip: Array  # r of each joint [m]
     states: Array  # of each joint: 0 open, 1 closed or sticks, 2 and -2 slips towards + and -
     face_force: Array  # force of what is below each block on it, then that on the top [Pa], shape (blocks + 1, times)
@@ -107,14 +106,6 @@ class ColumnMotion(ProvenMotion):
     resting: tuple[int, ...]  # joints that were at zero gap without force for a while
     nodes: tuple[Node, ...] = field(repr=False)  # beginnings of the steps in the order of time
     model: ColumnModel = field(repr=False, compare=False)
-
-    @property
-    def simultaneous(self) -> tuple[float, ...]:
-        """Instants at which several joints switch within one ball [s]."""
-        joints: dict[str, set[int]] = {}
-        for switch in self.switches:
-            joints.setdefault(switch.midpoint, set()).add(switch.joint)
-        return tuple(float(time) for time, together in joints.items() if len(together) > 1)
 
     def at(self, times: ArrayLike) -> ColumnHistory:
         """The motion at instants in any order.
@@ -195,14 +186,13 @@ class ColumnMotion(ProvenMotion):
         top = u[tops]
         foot_velocity = v[feet]
         top_velocity = v[tops]
-        force, y, y_rate, slip, joint_states = (np.zeros(shape) for _ in range(5))
+        force, y, slip, joint_states = (np.zeros(shape) for _ in range(4))
         springs = np.zeros(len(t))
         friction = np.zeros(len(t))
         for c, contact in enumerate(model.contacts):
             k = float(contact.stiffness)
             j = contact.joint
             y[j] = stretch[c]
-            y_rate[j] = v[contact.above] - v[contact.below]
             slip[j] = reference[c]
             joint_states[j] = states[c]
             force[j] = np.where(states[c] == OPEN, 0.0, -k * (stretch[c] - reference[c]))
@@ -216,7 +206,7 @@ class ColumnMotion(ProvenMotion):
         mass = np.array([block.density * block.height for block in problem.blocks])[:, None]
         moduli = np.array([block.modulus / block.height for block in problem.blocks])[:, None]
         stretched = top - foot
-        strain = np.where(np.isinf(moduli), 0.0, np.where(np.isinf(moduli), 0.0, moduli) * stretched**2 / 2)
+        strain = np.where(np.isinf(moduli), 0.0, moduli) * stretched**2 / 2
         kinetic = mass / 6 * (foot_velocity**2 + foot_velocity * top_velocity + top_velocity**2)
         potential = mass * problem.gravity * (foot + top) / 2
         return ColumnHistory(
@@ -227,7 +217,6 @@ class ColumnMotion(ProvenMotion):
             top_velocity=top_velocity,
             force=force,
             stretch=y,
-            stretch_velocity=y_rate,
             slip=slip,
             states=joint_states,
             face_force=self._face_force(force, (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0]),

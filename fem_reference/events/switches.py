@@ -57,6 +57,14 @@ class ProvenMotion:
         """Greatest proven radius of the instant of a switch, 0 without one [s]."""
         return max((switch.radius for switch in self.switches), default=0.0)
 
+    @property
+    def simultaneous(self) -> tuple[float, ...]:
+        """Instants at which several contacts switch within one ball [s]."""
+        contacts: dict[str, set[str]] = {}
+        for switch in self.switches:
+            contacts.setdefault(switch.midpoint, set()).add(switch.corner)
+        return tuple(float(time) for time, together in contacts.items() if len(together) > 1)
+
 
 Motion = TypeVar("Motion", bound=ProvenMotion)
 

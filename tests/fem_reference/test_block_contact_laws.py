@@ -95,7 +95,7 @@ def test_a_rigid_block_rebounds_with_the_closed_form(zeta: float) -> None:
 # -- an independent program
 
 
-@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (34, 2.5)], 2))
+@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (34, 2.5)], 3))
 def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
     problem = dashpot(centred(seed), zeta)
     end = 12 * transit(problem)
@@ -125,7 +125,7 @@ def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
     assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
 
 
-@pytest.mark.parametrize(("seed", "e"), thinned([(40, 0.4), (42, 0.15), (43, 0.8)], 3))
+@pytest.mark.parametrize(("seed", "e"), thinned([(42, 0.15), (40, 0.4), (43, 0.8)], 3))
 def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
     """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
     problem = falling(seed, e)

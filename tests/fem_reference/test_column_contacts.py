@@ -58,13 +58,6 @@ DROPPED = ContactColumn(
 )
 SIX = ground(*[(1.0, 2500.0, 1e9)] * 6)
 SPALL = ContactColumn(SIX, "unilateral", tuple(ColumnContact(float(j), 1e10) for j in range(6)), (0.0,) * 6)
-SETTLED = replace(SPALL, gravity=9.81, settled=True)
-SHEARED = ContactColumn(
-    ground(*[(2.0, 2000.0, 4e8)] * 6, motion="shear", impedance=2000 * math.sqrt(1e5)),
-    "frictional",
-    tuple(ColumnContact(2.0 * j, *((1e9, 0.0, 1e5) if j == 3 else (1e10,))) for j in range(1, 6)),
-    (0.0,) * 6,
-)
 CRADLE = ContactColumn(
     ground(*[(1.0, 1.0, 1.0)] * 4),
     "unilateral",
@@ -79,47 +72,6 @@ TWO_BARS = ContactColumn(
     (-1.0, -1.0),
     gravity=0.05,
 )
-
-
-def errors_of_blocks(column: ContactColumn, numbers: tuple[float, float], count: int) -> float:
-    """Error of the blocks' means, or of the slip, at an instant at which the motion of one strain a block is known."""
-    if column is DROPPED:
-        until, exact = 0.04, [0.008074626541482, 0.01092205296678]
-        names, heights = ["displacement_1", "displacement_2"], [0.5, 1.5]
-    elif column is SETTLED:
-        until = 0.01
-        exact = [-0.0009942924468433, -0.002645196854866, -0.003649613067974, -0.00387598727646, -0.003721306803229]
-        names, heights = [f"displacement_{k}" for k in range(1, 6)], [0.5, 1.5, 2.5, 3.5, 4.5]
-    else:
-        until, exact, names, heights = 0.2, [-0.0150593288608], ["slip_1"], [6.0]
-    dt = until / count
-    t = dt * np.arange(count + 1)
-    drive = still(count)
-    if column is SETTLED:
-        drive = still(count, pressure=half_sine(2e6, 0.004, t))
-    elif column is SHEARED:
-        drive = still(count, velocity=half_sine(0.5, 0.05, t))
-    strata = len(column.ground.strata)
-    result = solve_contacts(column, [1] * strata, 1, scheme(numbers, dt), drive, names, heights)
-    assert result.outcome == "completed" and len(result.time) == count and result.step_solves.max() <= 3
-    final = np.array([result.columns[name][-1] for name in names])
-    return float(np.abs(final - exact).max() / np.abs(exact).max())
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "column",
-    [
-        pytest.param(DROPPED, id="dropped"),
-        pytest.param(SETTLED, id="settled", marks=pytest.mark.long),
-        pytest.param(SHEARED, id="sheared", marks=pytest.mark.long),
-    ],
-)
-def test_one_element_a_block_tends_to_the_blocks_of_one_strain(column: ContactColumn) -> None:
-    coarse, fine = (errors_of_blocks(column, AVERAGE, count) for count in (1000, 4000))
-    assert fine < 3e-4 and math.log(coarse / fine, 4) > 1.7  # of the second order
-    coarse, fine = (errors_of_blocks(column, CONSTANT, count) for count in (2000, 8000))
-    assert fine < 4e-2 and 0.7 < math.log(coarse / fine, 4) < 1.2
 
 
 def run_means(stepper: ContactStepper, state: ColumnState) -> np.ndarray:

@@ -102,6 +102,7 @@ def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poiss
     for matrix, expected in zip((assembled.M, assembled.K, assembled.springs), block_matrices(problem), strict=True):
         # The sums run over some hundred entries that cancel: rounding times their number.
         assert np.abs(T.T @ (matrix @ T) - expected).max() <= 1e-13 * np.abs(expected).max()
+    assert assembled.observers["rotation"] @ T == pytest.approx([0, 0, 1, 0, 0, 0], abs=1e-12)
     side = problem.outline[3] - problem.outline[2]
     middle = (problem.outline[3] + problem.outline[2]) / 2 - problem.centroid
     load = -problem.pressure * np.hypot(*side) * affine(*middle)[1]
@@ -157,14 +158,6 @@ def test_pressure_of_an_inclined_base_balances_the_load_normal_to_it():
     # Statics: the normal springs carry q times the loaded length times the normal's y component.
     expected = 5e6 * np.hypot(*side) * problem.normal[1] / problem.base_length
     assert static(problem)["contact_pressure"] == pytest.approx(expected, rel=1e-10)
-
-
-def test_mesh_file_of_the_square_gives_the_structured_result(tmp_path):
-    problem = make(poisson=0.3)
-    grid = np.linspace(0.0, 2.0, 5)
-    file = write_mesh(tmp_path / "grid.msh", problem, MeshQuad.init_tensor(grid, grid))
-    read = static(make(poisson=0.3, mesh=file))
-    assert read["displacement"] == pytest.approx(static(make(poisson=0.3, elements=4))["displacement"], rel=1e-12)
 
 
 def corner_block(tmp_path, vertices, top, holes):

@@ -35,7 +35,7 @@ def rest(scheme, steps, **parts):
 
 
 @pytest.mark.parametrize("base", ["half-space", "prescribed"])
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 5))
 def test_steps_settle_in_the_frequency_response(name, options, base):
     """A wave below and a pressure on top that vibrate; what begins dies in the half-space, or by gg."""
     explicit = name == "leapfrog"
@@ -66,7 +66,7 @@ def test_steps_settle_in_the_frequency_response(name, options, base):
             assert np.abs(change - np.diff(expected)).max() < 1e-8 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_a_column_on_a_contact_is_the_block_on_its_point(name, options):
     """One stratum as wide as the block, dropped on its base."""
     scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 5e-4, gg=0.99, **options)
@@ -112,7 +112,7 @@ def finest_history(law):
     return switching_history(law, scheme, FINEST).columns["displacement"]
 
 
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 9))
 @pytest.mark.parametrize("law", ["unilateral", "frictional"])
 def test_orders_with_contacts_that_open_or_slip(law, name, options):
     """Second order through the switches, against average acceleration in steps 8 times shorter."""

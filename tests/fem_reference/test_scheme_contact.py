@@ -13,7 +13,6 @@ from fem_reference import (
     UNILATERAL_COLUMNS,
     Friction,
     Problem,
-    Scheme,
     Unilateral,
     named_scheme,
     solve,
@@ -24,7 +23,6 @@ from fem_reference.contact.stepper import ContactStepper
 from fem_reference.events.block_events import solve as exact_motion
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.exact.opening_bar import OpeningBar
-from fem_reference.problem.stages import StageTable
 
 HHT_TENTH = 0.9 / 1.1
 IMPLICIT = [
@@ -83,7 +81,7 @@ def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, erro
     assert solves.min() == (2 if name == "composite" else 1)
 
 
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 5))
 def test_orders_through_switching(name, options):
     """Second order from lift-off to after landing."""
     v = exact().at(np.linspace(0.001, 0.03, 30)).displacement[1]
@@ -108,9 +106,8 @@ def rebounds(scheme, contact_omega, phases):
     return np.array(velocities)
 
 
-@pytest.mark.parametrize("gg", [1.0, 0.97])
-@pytest.mark.parametrize(("name", "options"), [case for case in IMPLICIT if case[0] != "composite"])
-def test_the_opening_bar_is_the_limit_of_the_mesh(name, options, gg):
+@pytest.mark.parametrize(("name", "options"), thinned([case for case in IMPLICIT if case[0] != "composite"], 2))
+def test_the_opening_bar_is_the_limit_of_the_mesh(name, options, gg=0.97):
     """Convolution quadrature of the bar that is exact in space, against the elements."""
     scheme = named_scheme(name, step=2.5e-4, gg=gg, **options)
     bar = OpeningBar.of(make(), 1e-4, -0.1).solve(scheme, 120)
@@ -125,7 +122,7 @@ def test_the_opening_bar_takes_one_stage():
         OpeningBar.of(make()).solve(named_scheme("composite", step=1e-3), 3)
 
 
-@pytest.mark.parametrize(("name", "options"), EVERY)
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
 def test_a_block_that_stays_closed_moves_as_on_locked_springs(name, options):
     """Under a weight that keeps the base closed, with the springs in the contact and in the stiffness."""
     scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 1e-3, gg=0.9, **options)
@@ -186,22 +183,3 @@ def test_a_cut_step_keeps_the_acceleration():
         same = short.advance(same)[0]
     np.testing.assert_allclose(state.A, same.A, rtol=1e-12)
     np.testing.assert_allclose(state.D, same.D, rtol=1e-12)
-
-
-def test_implicit_contact_goes_with_average_acceleration_only():
-    scheme = named_scheme("chung-hulbert", step=1e-3, rho_inf=1.0)
-    with pytest.raises(ValueError, match=r"^alpha, delta: "):
-        solve_unilateral(make(), scheme, 3, Unilateral(rule="implicit"))
-
-
-def test_another_scheme_costs_its_numbers():
-    """A table of one's own goes through contact as it stands: here average acceleration in two equal stages."""
-    first = named_scheme("composite", step=2e-3, split=0.5).stages[0]
-    # x1 = xg + h vg + h^2 (ag + a1) / 4 and vg = u + h (a + ag) / 2, with h half of the step
-    second = replace(first, d_u=0.5, d_g=0.5, e_0=1 / 16, e_g=1 / 8, g_0=0.25, g_g=0.5, end=1.0)
-    twice = Scheme(math.nan, math.nan, 1.0, 2e-3, "consistent", table=StageTable("twice", (first, second)))
-    halved = Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")
-    problem = make(elements=1, degree=1)
-    columns = solve_unilateral(problem, twice, 25).columns["displacement"]
-    expected = solve_unilateral(problem, halved, 50).columns["displacement"][1::2]
-    np.testing.assert_allclose(columns, expected, rtol=1e-9)

@@ -33,7 +33,7 @@ def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
 CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [1e-6, 0.0, 1.0, 300.0])
 
 
-@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 11))
+@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 17))
 def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19, 59]

@@ -1,7 +1,7 @@
 """Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
 
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from conftest import thinned
 from oracles.elements import make
 from oracles.random_contact import at_every_point
 
-from fem_reference import Friction, Scheme, Unilateral, assemble, solve, solve_unilateral
+from fem_reference import Friction, Scheme, Unilateral, solve, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
 from fem_reference.problem.bar import BarProblem
 
@@ -114,58 +114,6 @@ def check_locked(problem, scheme, contact, full):
         assert np.abs(run.columns[name] - locked[name]).max() <= 1e-11 * scale, name
 
 
-def rows_of_the_base(basis, a):
-    """Nodes of a base on y = 0 and their tributary lengths, by hand: end, middle and shared nodes."""
-    along = basis.doflocs[:, basis.nodal_dofs[1]]
-    corners = np.unique(along[0][along[1] == 0])
-    places = [(basis.nodal_dofs, x) for x in corners]
-    h = np.diff(corners)[0]
-    lengths = [h / 2 if x in (0.0, a) else h for x in corners]
-    if len(basis.facet_dofs):
-        lengths = [length / 3 for length in lengths] + [2 * h / 3] * (len(corners) - 1)
-        places += [(basis.facet_dofs, (x + y) / 2) for x, y in pairwise(corners)]
-    found = [pick(basis, dofs[1::2], x) for dofs, x in places]
-    return np.array([np.eye(1, basis.N, i)[0] for i in found]), np.array(lengths)
-
-
-def pick(basis, dofs, x):
-    """The vertical unknown at a place of the base."""
-    near = dofs[:, np.all(np.abs(basis.doflocs[:, dofs[0]] - [[x], [0.0]]) < 1e-12, axis=0)]
-    assert near.shape == (1, 1)
-    return int(near[0, 0])
-
-
-def brute_force(problem, scheme, steps):
-    """Contact pressure at each step from dense matrices: every set of closed points is tried at each step."""
-    assembled = assemble(problem)
-    M, K, F = assembled.M.toarray(), assembled.K.toarray(), assembled.F
-    B, lengths = rows_of_the_base(assembled.basis, problem.base_length)
-    k = 2 * problem.stiffness / problem.base_length * lengths
-    dt, D, V, A = scheme.step, 0 * F, 0 * F, np.linalg.solve(M, F)
-    pressures = []
-    for _ in range(steps):
-        ahead, sets = D + dt * V + dt**2 * (0.5 - scheme.alpha) * A, []
-        for closed in product((0.0, 1.0), repeat=len(k)):
-            stiff = K + B.T @ np.diag(k * closed) @ B
-            new = np.linalg.solve(M + scheme.alpha * dt**2 * stiff, M @ ahead + scheme.alpha * dt**2 * F)
-            if np.array_equal(B @ new < 0, np.array(closed) > 0):
-                sets.append((new, np.linalg.solve(M, F - stiff @ new)))
-        ((D, A1),) = sets
-        V, A = V + dt * ((1 - scheme.delta) * A + scheme.delta * A1), A1
-        pressures.append(-(k @ np.minimum(B @ D, 0)) / problem.base_length)
-    return np.array(pressures)
-
-
-@pytest.mark.parametrize(("degree", "elements"), [(1, 3), (2, 2)])
-@pytest.mark.parametrize("scheme", [replace(CONSTANT, step=3e-4), replace(AVERAGE, step=3e-4)])
-def test_a_partly_open_base_is_that_of_brute_force(degree, elements, scheme):
-    problem = make(elements=elements, degree=degree, eccentricity=0.3, poisson=0.2, shear=0.0)
-    run = solve_unilateral(problem, scheme, 50)
-    assert np.count_nonzero((run.columns["open_share"] > 0) & (run.columns["open_share"] < 0.99)) > 5
-    expected = brute_force(problem, scheme, 50)
-    assert np.abs(run.columns["contact_pressure"] - expected).max() <= 1e-9 * expected.max()
-
-
 def test_one_column_is_the_whole_block():
     problem, contact = replace(make(elements=4), gravity=20.0), Unilateral(gap=2e-4, velocity=-0.1)
     column = solve_unilateral(problem, CONSTANT, 200, contact)
@@ -196,7 +144,7 @@ def test_a_base_in_one_piece_takes_two_solutions_at_most(scheme):
         assert run.columns["solves"].max() == 2
 
 
-@pytest.mark.parametrize(("degree", "n"), thinned(product([1, 2], [4, 8, 12, 16]), 3))
+@pytest.mark.parametrize(("degree", "n"), thinned(product([1, 2], [4, 8, 12, 16]), 5))
 def test_a_frictionless_base_in_pieces_does_not_cycle(n, degree):
     for p, scheme in product((1e9, 1e11), (CONSTANT, AVERAGE)):
         problem = make(elements=n, degree=degree, eccentricity=0.3, p=p)
