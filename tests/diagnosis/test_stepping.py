@@ -98,6 +98,21 @@ def test_generalised_alpha_is_its_recursion_mode_by_mode(family: Any, number: fl
     assert math.isclose(stage.beta, beta) and math.isclose(stage.gamma, gamma)
 
 
+def test_steps_of_other_lengths_are_newmark_s_recursion_in_seconds() -> None:
+    """One mode, a block so stiff that it only moves on its springs; velocity and acceleration are not per step."""
+    rigid = replace(BLOCK, young=1e17, gravity=0.0)
+    mass = rigid.density * rigid.width * rigid.height
+    steps = DT * (1 + 0.5 * np.sin(np.arange(STEPS)))
+    x, v, a, rows = 0.0, 0.0, 0.0, []
+    for dt in steps:
+        known = x + dt * v + dt * dt * 0.2 * a
+        new = (-rigid.pressure * rigid.width - rigid.normal * known) / (mass + 0.3 * dt * dt * rigid.normal)
+        x, v, a = known + 0.3 * dt * dt * new, v + dt * (0.4 * a + 0.6 * new), new
+        rows.append(x)
+    run = histories(rigid, [replace(OWN, alpha=0.3, delta=0.6)], steps)
+    close([run.displacement[:, 0]], [np.array(rows)], 1e-6)
+
+
 def test_implicit_euler_is_newmark_s_1_and_three_halves_from_rest() -> None:
     euler = stepped(replace(OWN, family="theta", spectral=1.0, start="consistent"))
     close(stepped(replace(OWN, alpha=1.0, delta=1.5)), euler)

@@ -260,8 +260,12 @@ def candidates(scene: Scene) -> list[CandidateChange[Values]]:
     )
     if c.rules != "lagged":  # the printed digits may show it in the motion and not in its forces
         changes.append(fixed("lagged-friction", "friction lags", {"contact.rules": "lagged"}))
-    schemes = [scheme for scheme in of_schemes(scene) if scheme.changed(0.0)["time.alpha"]]
-    return [*changes, *schemes]
+    for scheme in of_schemes(scene):
+        values = scheme.changed(0.0)
+        if values["time.alpha"]:  # else no acceleration follows from a displacement
+            words = "the scheme is " if scheme.id == "scheme" else ""
+            changes.append(fixed(scheme.id, f"{words}{scheme.words(0.0)}", values))
+    return changes
 
 
 def one_number(scene: Scene, place: Array, rounding: Array) -> tuple[OneChange | None, list[OneChange]]:
