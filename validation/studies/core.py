@@ -5,11 +5,8 @@ from __future__ import annotations
 from validation.scenes.scene import Scene
 from validation.studies import core_damping, tables
 from validation.studies.bands import Band, about, near
-from validation.studies.declaration import Study
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
-
-FULL_MODEL = "figures-3-4[time.step=0.002]"
 
 
 def static_displacement(case: Scene) -> Band:
@@ -101,13 +98,9 @@ def rounding(scene: Scene) -> float:
     return 10 * spectra.EPS * scene.time.steps * soft * max(1.0, 1 / omega2)
 
 
-CORE = Study(
-    name="core",
-    title="The two-block model by DDA, finite elements and exact solutions",
-    purpose="The paper's scenes, each by DDA, by a fine mesh on the same springs and by the exact bar, "
-    "with the same Newmark parameters.",
+CORE = tables.study(
+    __name__,
     scenes=core_damping.SCENES,
-    extra=((FULL_MODEL, "fem:full"),),
     gates=lambda: (*tables.gates(__name__), *tables.gates(core_damping.__name__)),
     derived=core_damping.derived,
 )

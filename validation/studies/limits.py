@@ -5,7 +5,6 @@ from __future__ import annotations
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import Band, cases
-from validation.studies.declaration import Study
 from validation.theory.spectra import EPS
 
 COARSE = (0.3, 0.4999)  # Poisson's ratios at which quadratic elements are compared with a fine mesh
@@ -28,12 +27,4 @@ def a_rounding_a_step(case: Scene) -> Band:
     return 0.0, case.time.steps * EPS
 
 
-STUDY = Study(
-    name="limits",
-    title="Locking, and a million steps",
-    purpose="What nearly incompressible material does to linear elements and not to quadratic ones, and whether the "
-    "energy drifts over a million steps where the spectral radius is one.",
-    scenes=("locking", *fine(), "long-run"),
-    measures=("history", "modes", "energy"),
-    gates=lambda: tables.gates(__name__),
-)
+STUDY = tables.study(__name__, scenes=("locking", *fine(), "long-run"))

@@ -10,10 +10,8 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import order_row
-from validation.studies.declaration import Study
 
 SCENE = "unlocked"
-KINDS = ("block", "bar")
 INSTANTS = (3, 6, 9)  # wave transits a / c
 BLOCK = ("dda", "block-events")
 REFINED = {  # scene -> what converges to what, the step or mesh width that is refined
@@ -22,8 +20,6 @@ REFINED = {  # scene -> what converges to what, the step or mesh width that is r
     "unlocked-average-zero": (BLOCK, "time.step"),
     "unlocked-mesh": (("fem", "bar"), "fem.elements"),
 }
-LEDGER = "unlocked-ledger"
-SECOND_CODE = ((f"{LEDGER}[contact.stiffness=1e+09]", "fenicsx"),)
 
 
 def samples(case: Scene, history: History) -> Mapping[str, Value]:
@@ -45,12 +41,7 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-OPENING = Study(
-    "opening",
-    "Contact that opens: exact motions of the block and of the bar",
-    "The same block on springs that carry no tension: when it leaves the ground, when it lands, and what it carries.",
-    [SCENE, *REFINED, LEDGER],
-    extra=SECOND_CODE,
-    gates=lambda: tables.gates(__name__),
+OPENING = tables.study(
+    __name__,
     derived=lambda: (*tables.rows(__name__), *(order_row(name, *refined) for name, refined in REFINED.items())),
 )

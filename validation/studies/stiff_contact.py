@@ -9,7 +9,6 @@ from __future__ import annotations
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import Band, about
-from validation.studies.declaration import Study
 from validation.theory import spectra
 
 
@@ -19,12 +18,4 @@ def contact_root(case: Scene) -> Band:
     return about(radius, 1e-11)
 
 
-STUDY = Study(
-    name="stiff-contact",
-    title="A stiff contact rings under constant acceleration",
-    purpose="How many steps do displacement and contact pressure take to settle as the contact springs get stiffer, "
-    "under constant acceleration (1/2, 1) and under (9/16, 1)?",
-    scenes=("stiff-contact",),
-    gates=lambda: tables.gates(__name__),
-    pairs=(("dda", "dda-60"), ("dda", "bar")),
-)
+STUDY = tables.study(__name__)

@@ -8,19 +8,7 @@ from scipy.linalg import eigh
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import Band, near
-from validation.studies.declaration import Study
 from validation.theory import spectra, statics
-
-SCENES = (
-    "subblocks-column",
-    "subblocks-glue",
-    "subblocks-triangles",
-    "subblocks-axial",
-    "subblocks-rocking",
-    "subblocks-locking",
-    "subblocks-best-glue",
-    "rocking",
-)
 
 
 def linear_elements(case: Scene) -> Band:
@@ -57,12 +45,4 @@ def rocking_frequency(case: Scene) -> Band:
     return near(float(np.sqrt(squares[0])), 1e-12)
 
 
-SUBBLOCKS = Study(
-    name="subblocks",
-    title="The block cut into sub-blocks, and loads that turn it",
-    purpose="A single block has one strain. Cut into sub-blocks that are glued by stiff springs it converges, or it "
-    "locks: columns and triangles are linear finite elements in the limit, squares are not. Sideways loads set the "
-    "block rocking, which corner springs and a foundation resist differently.",
-    scenes=SCENES,
-    gates=lambda: tables.gates(__name__),
-)
+SUBBLOCKS = tables.study(__name__)

@@ -1,4 +1,6 @@
-"""Gates and derived rows of a study as a table: ``NAME.toml`` beside the module ``NAME.py``, which has the formulas.
+"""A study as a table: ``NAME.toml`` beside the module ``NAME.py``, which has the formulas.
+
+``[study]`` holds fields of a `Study`, such as its name, title, purpose and scenes.
 
 An entry ``[[gate]]`` says what is judged, by which band, and why::
 
@@ -36,12 +38,25 @@ from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.scenes.scene import Scene
 from validation.studies.bands import OTHER, about, cases, half_unit
+from validation.studies.declaration import Study
 
 
 def read(module: str) -> dict[str, Any]:
     """Return the table beside a module."""
     path = Path(sys.modules[module].__file__ or "").with_suffix(".toml")
     return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def study(module: str, **fields: Any) -> Study:
+    """Return the study of the table beside a module, with its gates and rows, and with further fields."""
+    declared: dict[str, Any] = {"gates": lambda: gates(module), "derived": lambda: rows(module)}
+    for name, value in read(module)["study"].items():
+        declared[name] = value
+        if name in ("measures", "scenes"):
+            declared[name] = tuple(value)
+        elif name in ("pairs", "extra"):
+            declared[name] = tuple(tuple(pair) for pair in value)
+    return Study(**(declared | fields))
 
 
 def gates(module: str) -> tuple[Gate, ...]:
@@ -120,7 +135,7 @@ def named_cases(names: Iterable[str]) -> list[Scene]:
 def rows(module: str) -> tuple[Derived, ...]:
     """Return the rows of the table beside a module."""
     declared = []
-    for entry in read(module)["row"]:
+    for entry in read(module).get("row", ()):
         compute = vars(sys.modules[module])[entry["compute"]]
         for case in declared_cases(entry, module):
             declared.append(from_history(case, entry["solver"], entry["name"], compute))

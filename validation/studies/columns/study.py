@@ -181,12 +181,8 @@ def proven_solves(case: Scene) -> Band:
 
 def study() -> Study:
     """Return the study."""
-    return Study(
-        name="columns",
-        title="Columns whose contacts open and slip",
-        purpose="Stacks that are dropped, shaken and put under their weight, pieces that a pulse tears off, joints "
-        "that slip under a wave: the exact motions against an independent program, the blocks against the exact "
-        "motions, and the open-close iteration against what is proven of it.",
+    return tables.study(
+        __name__,
         scenes=(
             *DROPS,
             "columns-domino",
@@ -205,6 +201,5 @@ def study() -> Study:
             "columns-solves-rest",
             "columns-solves-shaken",
         ),
-        gates=lambda: tables.gates(__name__),
         derived=derived,
     )

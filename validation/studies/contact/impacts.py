@@ -17,11 +17,9 @@ from validation.scenes.scene import Scene
 from validation.solvers.events import rectangle
 from validation.studies import tables
 from validation.studies.bands import Band, about, cases, near
-from validation.studies.declaration import Study
 
 BLOCK = "block-events"
 BAR = "bar-events"
-SCENES = ("unlocked-other", "impact", "drop", "bouncing-bar", "ansys-vm265", "siconos-bar", "bouncing-mass")
 SWITCHES = {  # of the bouncing bar on a rigid wall
     "release": "switches.first_opening",
     "impact": "switches.second_closing",
@@ -141,13 +139,4 @@ def rigid(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     return times
 
 
-STUDY = Study(
-    name="impacts",
-    title="Impacts that others publish",
-    purpose="Bars on rigid walls, a bar that bounces, a mass on a spring: what the exact motions give, against closed "
-    "forms and published numbers, and what DDA and elements make of the same data.",
-    scenes=SCENES,
-    gates=lambda: tables.gates(__name__),
-    derived=derived,
-    pairs=(),
-)
+STUDY = tables.study(__name__, derived=derived)

@@ -23,7 +23,6 @@ from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.studies import tables
 from validation.studies.bands import Band, about, cases, gate, short
-from validation.studies.declaration import Study
 
 KINDS = ("constant", "average", "implicit", "conserving")
 IMPACTS = tuple(f"rebound-{kind}" for kind in KINDS)
@@ -155,15 +154,6 @@ def data() -> Mapping[str, Any]:
     return {"omega": short(grid), "schemes": curves}
 
 
-STUDY = Study(
-    name="rebound",
-    title="What time step and springs make of a contact that opens",
-    purpose="A block that lands leaves its springs with another speed than it came with, by the scheme, by w_c dt and "
-    "by where in the step it has landed. How far is that from the motion, in energy, switches and solves?",
-    scenes=(*IMPACTS, *MAPS),
-    extra=tuple((case.name, "block-events") for case in finest()),
-    gates=gates,
-    derived=derived,
-    data=data,
-    pairs=(),
+STUDY = tables.study(
+    __name__, extra=tuple((case.name, "block-events") for case in finest()), gates=gates, derived=derived, data=data
 )

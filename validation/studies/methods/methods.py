@@ -10,8 +10,6 @@ from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
 from validation.theory.stepping import Stepping
 
-AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
-
 
 @dataclass(frozen=True, eq=False)
 class Method:

@@ -431,14 +431,4 @@ def slid_by_implicit_euler(case: Scene) -> Band | None:
 
 def study() -> Study:
     """Return the study, whose many scenes are made when it is asked for."""
-    return Study(
-        name="methods",
-        title="Methods that are proposed as cures",
-        purpose="Generalised-alpha, composite and explicit time schemes and other contact methods on the same scenes: "
-        "which scheme where contact is locked, which where it opens, and what never to use?",
-        scenes=scenes(),
-        gates=lambda: tables.gates(__name__),
-        derived=derived,
-        data=data,
-        pairs=(),
-    )
+    return tables.study(__name__, scenes=scenes(), derived=derived, data=data)

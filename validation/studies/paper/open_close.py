@@ -19,7 +19,6 @@ DISCOUNTED = [name for name, s in CASES.items() if s.time.discount < 1]
 COARSE = 0
 FINE = -1
 REST, SHAKEN = (named(f"columns-solves-{stack}") for stack in ("rest", "shaken"))
-BLOCKS = 20
 
 
 def stacks(cases: dict[str, Scene], delta: float) -> list[str]:

@@ -12,7 +12,6 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import Band
-from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, landing, rectangle, settlement
 
 LET_GO = ("rocking-release", "rocking-swing")
@@ -80,13 +79,4 @@ def pulsed(case: Scene) -> dict[str, Band]:
     return {"time" if overturns(case) else "peak": (low, high)}
 
 
-STUDY = Study(
-    name="rocking",
-    title="A block that rocks and overturns",
-    purpose="A block swings from one corner to the other by any angle, and a pulse of its base overturns it: when, "
-    "against a rigid block, and what is left of the rate after an impact?",
-    scenes=(*LET_GO, PULSE),
-    gates=lambda: tables.gates(__name__),
-    derived=lambda: tables.rows(__name__),
-    pairs=(),
-)
+STUDY = tables.study(__name__)

@@ -16,7 +16,6 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import Band, about
-from validation.studies.declaration import Study
 from validation.studies.rocking.read import crossing, increments, rectangle, settlement
 from validation.theory.friction import coefficient, sliding_acceleration
 
@@ -128,21 +127,4 @@ def growth(scene: Scene) -> float:
     return scene.time.step * rectangle(scene).squared_rate(beyond(scene), scene.time.duration)
 
 
-STUDY = Study(
-    name="toppling",
-    title="Blocks on slopes that stand, slide and topple",
-    purpose="The cases by which manuals of block codes show that a block stands, slides or topples, as numbers: "
-    "does DDA do so at the right slope, along the right trajectory, and with the outline that it began with?",
-    scenes=(
-        "toppling-static",
-        "toppling-slide",
-        "toppling-tower",
-        "toppling-threshold",
-        "toppling-fall",
-        "toppling-growth",
-    ),
-    gates=lambda: tables.gates(__name__),
-    derived=lambda: tables.rows(__name__),
-    measures=(),  # all gates are on the rows above
-    pairs=(),
-)
+STUDY = tables.study(__name__)

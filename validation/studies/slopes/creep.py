@@ -19,7 +19,6 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.studies import tables
 from validation.studies.bands import APART, Band, cases, near, order_row
-from validation.studies.declaration import Study
 from validation.theory import friction
 
 EXACT = "creep-exact"
@@ -96,14 +95,4 @@ def lag(case: Scene) -> Band:
     return APART, friction.lag(case)
 
 
-STUDY = Study(
-    name="creep",
-    title="Stable blocks that creep",
-    purpose="A block below its angle of friction should stand. The exact block on undamped springs creeps; does a code "
-    "let it stand, creep as it does, or slide the faster the finer its step?",
-    scenes=(EXACT, STEPS, STIFFNESS, DAMPED, LAGGED, *REFINED),
-    gates=lambda: tables.gates(__name__),
-    derived=derived,
-    pairs=((DDA, EVENTS),),
-    long=True,
-)
+STUDY = tables.study(__name__, derived=derived)

@@ -20,7 +20,6 @@ from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies import tables
 from validation.studies.bands import APART, Band, about, cases, near
-from validation.studies.declaration import Study
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 
@@ -31,7 +30,6 @@ THRESHOLD = "slope-threshold"
 MANUAL = "slope-manual"
 SHAKEN = "slope-base"
 QUAKE = "slope-quake"
-QUAKE_EXACT = "slope-quake-exact"
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
 RIGID = "sliding block"
 # The shaking
@@ -148,13 +146,4 @@ def _beside(slide: float, allowed: float) -> dict[str, Band]:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
 
 
-STUDY = Study(
-    name="slopes",
-    title="Blocks that slide down inclines",
-    purpose="A block on an incline slides by g (sin b - tan(phi) cos b), whatever its springs and steps, and stands up "
-    "to the angle of friction. How far does each code, and each discount, let it run?",
-    scenes=(SLIDING, AVERAGE, DRAG, THRESHOLD, MANUAL, SHAKEN, QUAKE, QUAKE_EXACT),
-    gates=lambda: tables.gates(__name__),
-    derived=derived,
-    pairs=(("dda", "fem"), ("dda", "block-events")),
-)
+STUDY = tables.study(__name__, derived=derived)

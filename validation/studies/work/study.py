@@ -19,7 +19,6 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies import tables
 from validation.studies.bands import fitted_order
-from validation.studies.declaration import Study
 from validation.studies.work import record as work_record
 
 SCHEMES = {"constant": (0.5, 1.0), "average": (0.25, 0.5)}
@@ -184,14 +183,6 @@ def study_cases() -> tuple[tuple[str, str], ...]:
     return tuple(pairs)
 
 
-WORK_PRECISION = Study(
-    name="work-precision",
-    title="Error against run time",
-    purpose="Which method gives which error at which cost, where the model form of DDA stops it, and the orders "
-    "behind the lines.",
-    scenes=scenes(),
-    gates=lambda: (*tables.gates(__name__), *work_record.gates()),
-    derived=derived,
-    timed=True,
-    pairs=(("dda", "bar"), ("dda", "continuum"), ("fem", "bar"), ("fem", "continuum"), ("bar", "continuum")),
+WORK_PRECISION = tables.study(
+    __name__, scenes=scenes(), gates=lambda: (*tables.gates(__name__), *work_record.gates()), derived=derived
 )
