@@ -29,7 +29,8 @@ from validation.studies.own_solver.session import Session, plain
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make one test of each gate; with ``--dda-solver`` of those on `dda` only."""
     selected_gates = gates() if metafunc.config.getoption("--dda-solver", None) is None else applying()
-    metafunc.parametrize("name", list(selected_gates))
+    # By themselves pytest's ids are no longer the names where these are long.
+    metafunc.parametrize("name", list(selected_gates), ids=list(selected_gates))
 
 
 @pytest.fixture(scope="session")
