@@ -74,7 +74,6 @@ TOGETHER = (  # modules whose tests share what takes long to make
     "test_other_versions",
     "test_own_solver",
     "test_pack",
-    "test_paper_chapter",
     "test_readable",
     "test_report",
     "test_rotation_orders",
