@@ -16,8 +16,9 @@ from oracles.made_cases import line_in, lines_of, made_case, made_group, names_a
 from validation.report.chapters import waves
 from validation.report.chapters.opened import rebound
 from validation.report.figures import response
-from validation.report.figures.charts import BESIDE, ChartLine, ChartPanel, Names, chart_figure
+from validation.report.figures.charts import ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import style_of
+from validation.report.figures.histories import Margins
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import load_scene
 
@@ -139,7 +140,7 @@ def test_runs_are_lines_and_another_program_is_circles_each_named_in_its_colour(
     run = ChartLine("dda", x, 2 * x, "#d55e00")
     other = ChartLine("program", x, 3 * x, "#000000", width=0, dots=3.2, hollow=True)
     panel = ChartPanel("Slip", "t [s]", "slip [mm]", (run, other), names="upper left")
-    (axes,) = chart_figure([panel], margins=BESIDE).axes
+    (axes,) = chart_figure([panel], margins=Margins(15.0, 3.0, 6.0, 10.0, 16.0)).axes
     assert (axes.get_title(loc="left"), axes.get_xlabel(), axes.get_ylabel()) == ("Slip", "t [s]", "slip [mm]")
     assert of_legend(axes) == {"dda": "#d55e00", "program": "#000000"}
     assert [(line.get_linestyle(), line.get_marker()) for line in axes.lines] == [("-", "None"), ("None", "o")]

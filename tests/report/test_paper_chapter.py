@@ -1,4 +1,4 @@
-"""The chapter of the paper: every figure drawn, from a results directory alone."""
+"""The register of the paper's claims, and the page of a scene with its alarms."""
 
 import json
 from pathlib import Path
@@ -13,37 +13,10 @@ from validation.report.blocks import FigureBlock, Table
 from validation.report.chapters.paper import claims_table, conclusion
 from validation.report.chapters.registry import chapter_of
 from validation.report.front.groups import groups_of_studies
-from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.studies import Study
 from validation.studies.catalogue import scene_study
 from validation.studies.paper.study import PAPER
-
-pytestmark = pytest.mark.xdist_group("paper-chapter")
-
-
-UNDRAWN = ("poisson-statics", "open-close")  # scenes of claims alone
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    """The study with shorter histories and without the slow solvers."""
-    kept = Results(tmp_path_factory.mktemp("results"))
-    scenes = [load_scene(s) if isinstance(s, str) else s for s in PAPER.scenes if s not in UNDRAWN]
-    short = [s.with_values({"time.steps": min(s.time.steps, 120)}) for s in scenes]
-    study = Study("paper", PAPER.title, PAPER.purpose, short, ("dda", "bar"), data=PAPER.data)
-    run_study(study, kept)
-    return kept
-
-
-@pytest.mark.long
-def test_a_part_of_the_scenes_gives_its_figures(results: Results, tmp_path: Path) -> None:
-    manifest = results.manifest("paper")
-    manifest["cases"] = [case for case in manifest["cases"] if case["scene"].startswith("figure-9")]
-    blocks = chapter_of("paper")(results, manifest, tmp_path)
-    files = [block.file for block in blocks if isinstance(block, FigureBlock)]
-    assert files == ["figure-1.svg", "figure-9.svg"]
-    assert all((tmp_path / file).stat().st_size > 2000 for file in files)
 
 
 def test_the_register_lists_every_claim() -> None:

@@ -13,10 +13,10 @@ from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
-from validation.errors import InputError
 from validation.gallery.chapters import placed
 from validation.gallery.judged import COLORS, badge_of
 from validation.gallery.pages import environment
+from validation.gallery.places import check_place, write
 from validation.gallery.svg import Sheet
 from validation.problems.answers import AnswerSet
 from validation.problems.data import PACK, AnswersData, united
@@ -207,7 +207,7 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
     InputError
         The directory is not one to write to.
     """
-    _check(out)
+    check_place(out, VERDICTS, "site")
     programs = {
         name: list(group)
         for name, group in itertools.groupby(sorted(sets, key=_by_address), key=lambda one: one.answers.address[0])
@@ -218,35 +218,21 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
         site = Site(programs)
         for number, judged in enumerate(ordered):
             progress(number, total, f"page of {judged.answers.program} {judged.answers.settings_name}")
-            _write(place / f"answers_{judged.stem}.html", site.curves(judged))
-            _write(place / f"badge_{judged.stem}.svg", set_badge(judged))
+            write(place / f"answers_{judged.stem}.html", site.curves(judged))
+            write(place / f"badge_{judged.stem}.svg", set_badge(judged))
         for number, name in enumerate(programs, start=len(ordered)):
             progress(number, total, f"page of {name}")
-            _write(place / f"program_{name}.html", site.program(name))
+            write(place / f"program_{name}.html", site.program(name))
         progress(total - 1, total, "first page")
-        _write(place / "index.html", site.index())
-        _write(place / VERDICTS, json.dumps(verdicts(ordered), indent=1, allow_nan=False) + "\n")
+        write(place / "index.html", site.index())
+        write(place / VERDICTS, json.dumps(verdicts(ordered), indent=1, allow_nan=False) + "\n")
         css = resources.files("validation.gallery").joinpath("static", "gallery.css").read_text("utf-8")
-        _write(place / "gallery.css", css)
+        write(place / "gallery.css", css)
     return out / "index.html"
 
 
 def _by_address(judged: JudgedSet) -> tuple[str, ...]:
     return judged.answers.address
-
-
-def _check(out: Path) -> None:
-    """Refuse a place that cannot be written, or whose files are not those of such a site."""
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a directory", field="--out", value=f"the file {out}")
-    if out.is_dir() and any(out.iterdir()) and not (out / VERDICTS).is_file():
-        raise InputError(
-            "must be a new or empty directory or an earlier site", field="--out", value=f"{out} with other files"
-        )
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_bytes(text.encode())
 
 
 class Site:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
-from validation.errors import InputError
 from validation.gallery.calculators import CALCULATORS
 from validation.gallery.cases import studies_and_scenes
 from validation.gallery.pages import Pages
+from validation.gallery.places import check_place, write
 from validation.report.book import ordered_studies, unread_studies
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -48,7 +48,7 @@ def build(
     InputError
         There are no results, or they are damaged, or the directory is not one to write to.
     """
-    _check(out)
+    check_place(out, NOTICE, "gallery")
     names = ordered_studies(results)
     unread = unread_studies(results, names)
     studies, scenes = studies_and_scenes(results, [name for name in names if name not in unread])
@@ -56,34 +56,20 @@ def build(
     with atomic_directory(out) as place:
         pages = Pages(results, studies, scenes, docs)
         for name in (*STATIC, NOTICE):
-            _write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
+            write(place / name, resources.files("validation.gallery").joinpath("static", name).read_text("utf-8"))
         for calculator in CALCULATORS:
-            _write(place / f"{calculator.id}.html", pages.calculator(calculator))
-        _write(place / "index.html", pages.index())
-        _write(place / "references.html", pages.references())
+            write(place / f"{calculator.id}.html", pages.calculator(calculator))
+        write(place / "index.html", pages.index())
+        write(place / "references.html", pages.references())
         for number, study in enumerate(studies):
             progress(number, total, study.name)
-            _write(place / study.page, pages.study(study))
+            write(place / study.page, pages.study(study))
         for number, scene in enumerate(scenes, start=len(studies)):
             progress(number, total, scene.name)
-            _write(place / scene.page, pages.scene(scene))
+            write(place / scene.page, pages.scene(scene))
     return out / "index.html"
 
 
 def size(place: Path) -> int:
     """Return the size of a gallery [bytes]."""
     return sum(path.stat().st_size for path in place.iterdir())
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_bytes(text.encode())
-
-
-def _check(out: Path) -> None:
-    """Refuse a place that cannot be written, or whose files are not those of a gallery."""
-    if out.exists() and not out.is_dir():
-        raise InputError("must be a directory", field="--out", value=f"the file {out}")
-    if out.is_dir() and any(out.iterdir()) and not (out / NOTICE).is_file():
-        raise InputError(
-            "must be a new or empty directory or an earlier gallery", field="--out", value=f"{out} with other files"
-        )

@@ -36,7 +36,6 @@ DOTS = 3.2  # pt, size of dots
 LETTER = 1.42  # mm, width of a letter of a name
 Names = Literal["ends", "beside", "none", "upper left", "upper center", "lower left"]  # or where the legend stands
 DECADES = 1.5  # a shorter logarithmic axis has ticks at 1, 2 and 5
-BESIDE = Margins(15.0, 3.0, 6.0, 10.0, 16.0)  # of panels side by side, each with its own axes and a legend within
 MARKED = 9.0  # mm above the panels: room for the words of marks below the title
 
 
