@@ -90,7 +90,7 @@ def test_limits_of_the_process_count(limit: str, field: str) -> None:
 
     number, rest = getattr(resource, limit), 2**28
     before = resource.getrlimit(number)
-    resource.setrlimit(number, (int(memory._fields(Path("/proc/self/status"))[field]) + rest, before[1]))
+    resource.setrlimit(number, (int(memory.sizes(Path("/proc/self/status"))[field]) + rest, before[1]))
     try:
         assert 0 < memory.available() <= 1.1 * rest  # this process may have given some back meanwhile
     finally:

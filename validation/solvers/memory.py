@@ -94,7 +94,7 @@ def available() -> float:
 
 
 def _of_machine() -> float:
-    available_bytes = _fields(Path("/proc/meminfo")).get("MemAvailable")
+    available_bytes = sizes(Path("/proc/meminfo")).get("MemAvailable")
     if available_bytes is not None:
         return available_bytes
     try:
@@ -103,14 +103,17 @@ def _of_machine() -> float:
         return math.inf
 
 
-def _fields(path: Path) -> dict[str, float]:
-    """Return the sizes of a file of ``Name: 123 kB`` lines [bytes]; none where it cannot be read."""
+def sizes(path: Path) -> dict[str, float]:
+    """Return the sizes of a file of lines ``Name: 123 kB``, or ``name 123`` in bytes; none where it cannot be read."""
     try:
-        words = [line.split() for line in path.read_text(encoding="utf-8", errors="replace").splitlines()]
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return {}
-    sizes = (w for w in words if len(w) == 3 and w[2] == "kB" and w[1].isdecimal())
-    return {name.rstrip(":"): 1024.0 * int(size) for name, size, _ in sizes}
+    by_name = {}
+    for name, number, *unit in (line.split() for line in lines if len(line.split()) in (2, 3)):
+        if number.isdecimal():
+            by_name[name.rstrip(":")] = int(number) * (1024.0 if unit == ["kB"] else 1.0)
+    return by_name
 
 
 # ---- control groups -------------------------------------------------------------------------------------------------
@@ -148,13 +151,8 @@ def _groups(root: Path) -> list[tuple[str, str]]:
 def _unreclaimable(directory: Path, used: str) -> float:
     """Return the bytes that a group holds and cannot give back: its files' pages can be dropped."""
     current = _number(directory / used)
-    statistics = directory / "memory.stat"
-    try:
-        words = [line.split() for line in statistics.read_text(encoding="ascii").splitlines()]
-        of = {w[0]: float(w[1]) for w in words if len(w) == 2}
-    except (OSError, ValueError):
-        of = {}
-    files = of.get("total_inactive_file", of.get("inactive_file", 0.0))
+    statistics = sizes(directory / "memory.stat")
+    files = statistics.get("total_inactive_file", statistics.get("inactive_file", 0.0))
     return max(0.0, current - files) if math.isfinite(current) else 0.0
 
 
@@ -176,7 +174,7 @@ def _of_process() -> Iterator[float]:
         import resource
     except ImportError:
         return
-    sizes_in_use = _fields(Path("/proc/self/status"))
+    sizes_in_use = sizes(Path("/proc/self/status"))
     for limit, field in ((resource.RLIMIT_AS, "VmSize"), (resource.RLIMIT_DATA, "VmData")):
         soft = resource.getrlimit(limit)[0]
         if soft != resource.RLIM_INFINITY:
