@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import io
 import re
 from collections.abc import Iterator, Sequence
@@ -20,6 +19,7 @@ from validation.problems.pack import TIME
 from validation.problems.questions import BoxQuestion, Question
 from validation.problems.stated import read_text
 from validation.runs.history import DISPLACEMENT, Array, History
+from validation.scenes.unknown import did_you_mean
 from validation.solvers.user import UNITS, factor
 
 LARGEST_FILE = 100_000_000  # bytes
@@ -148,8 +148,7 @@ def _is_header(path: Path, rows: Sequence[Row], problem: Question, columns: Sequ
         place = Place(path, cell.line, cell.column)
         if cell.text not in unit_by_name:
             rule = _rule(cell.text, unit_by_name, problem)
-            near = difflib.get_close_matches(cell.text.lower(), unit_by_name, n=1) if "among" in rule else ()
-            advice = f"did you mean {near[0]}?" if near else None
+            advice = did_you_mean(cell.text.lower(), unit_by_name) if "among" in rule else None
             defects.add(place, rule, field="header", value=repr(cell.text), advice=advice)
         elif names.count(cell.text) > 1:
             defects.add(place, f"{cell.text} must appear once", field="header")

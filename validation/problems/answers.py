@@ -5,7 +5,6 @@ The layout: `submissions/PROGRAM/VERSION/SETTINGS/submission.json` and, beside i
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import shutil
@@ -27,6 +26,7 @@ from validation.problems.stated import Document, checked, read_document
 from validation.problems.submission import EXPORT, FILE, check_pack, read_submission, reported
 from validation.runs.files import atomic_directory
 from validation.runs.history import History
+from validation.scenes.unknown import did_you_mean
 
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
@@ -180,8 +180,7 @@ def _answers(
         name = path.name.removesuffix(TABLE)
         is_later = name not in digests and name in packs()[PACK]
         if name not in digests and not is_later:
-            near = difflib.get_close_matches(name.lower(), digests, n=1)
-            advice = f"did you mean {near[0]}{TABLE}?" if near else f"problems are {', '.join(digests)}"
+            advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
             defects.add(Place(path), f"must be named after a problem of pack {pack}", value=path.name, advice=advice)
             continue
         reason = None if is_later else stale(pack, name)
@@ -214,9 +213,8 @@ def _check_problems(document: Document, field: str, digests: Any, tables: Sequen
     for name in stated if isinstance(stated, dict) else ():
         place = document.place((field, name), of_key=True)
         if name not in digests and name not in packs()[PACK]:
-            near = difflib.get_close_matches(name, digests, n=1)
-            advice = f"did you mean {near[0]}?" if near else None
-            defects.add(place, f"{name}: must be among {', '.join(digests)}", field=field, advice=advice)
+            rule = f"{name}: must be among {', '.join(digests)}"
+            defects.add(place, rule, field=field, advice=did_you_mean(name, digests))
         elif name + TABLE not in tables:
             defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +14,7 @@ from validation.problems.data import Data
 from validation.problems.defects import Defects, Place
 from validation.runs.regular import regular
 from validation.scenes.scene import rule_and_value
-from validation.scenes.unknown import clip
+from validation.scenes.unknown import clip, did_you_mean
 
 LARGEST_FILE = 1_000_000  # bytes
 DECODER = json.JSONDecoder()
@@ -171,8 +170,8 @@ def _add(document: Document, model: type[Data], error: dict[str, Any], defects: 
     rule, value = rule_and_value(error)
     advice = None
     if error["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(str(error["loc"][-1]), model.model_fields, n=1)
-        advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(model.model_fields)}"
+        known = model.model_fields
+        advice = did_you_mean(str(error["loc"][-1]), known) or f"known are {', '.join(known)}"
     elif error["type"] == "missing":
         address = tuple(error["loc"])
     elif address and address[0] in RULES:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from validation.problems.problem import Problem, problem
 from validation.problems.questions import Question, box_questions
 from validation.problems.stated import Document, checked, read_document
 from validation.runs.history import History
+from validation.scenes.unknown import did_you_mean
 
 FILE = "submission.json"
 EXPORT = "dda-validate export-pack DIR writes the problems, and files to fill in"
@@ -91,8 +91,7 @@ def _problem_of_pack(document: Document, name: str, defects: Defects) -> Problem
         defects.add(place, rule, field="problem", value=repr(name), advice=EXPORT)
         return None
     if name not in names:
-        near = difflib.get_close_matches(name, names, n=1)
-        advice = f"did you mean {near[0]}?" if near else None
+        advice = did_you_mean(name, names)
         defects.add(place, f"must be among {', '.join(names)}", field="problem", value=repr(name), advice=advice)
         return None
     reason = stale(pack, name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +137,12 @@ def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> d
 def _plain(name: str) -> str:
     """Return a name in lower case without separators."""
     return "".join(character for character in name.casefold() if character.isalnum())
+
+
+def did_you_mean(name: str, known: Iterable[str], ending: str = "") -> str | None:
+    """Return the question whether a known name was meant, with what is written behind it; None where none is near."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"did you mean {near[0]}{ending}?" if near else None
 
 
 def clip(value: object, width: int = 60) -> str:

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -251,10 +252,9 @@ class RemoteMesh(Prepared):
 
 def request(scene: Scene) -> dict[str, Any]:
     """Return a scene as the worker takes it; a mesh file becomes points and cells."""
-    b = scene.block
+    problem = problem_of(scene)
     c = scene.contact
     t = scene.time
-    f = scene.fem
     record = base_record(scene)
     displacement_of_steps = None
     table = None
@@ -264,25 +264,12 @@ def request(scene: Scene) -> dict[str, Any]:
             [np.interp(instants, record.time, part) for part in (record.x, record.y)]
         ).tolist()
         table = [part.tolist() for part in (record.time, record.x, record.y)]
+    names = [field.name for field in fields(problem) if field.name not in ("motion", "mesh")]
     return {
-        "vertices": b.outline,
-        "base": b.base,
-        "top": b.top,
-        "density": b.density,
-        "young": b.young,
-        "poisson": b.poisson,
-        "hypothesis": b.hypothesis,
-        "stiffness": c.stiffness,
-        "shear_stiffness": c.shear,
-        **scene.load.numbers,
+        **{name: getattr(problem, name) for name in names},
         "moved": displacement_of_steps,
         "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
-        "degree": f.degree,
-        "foundation": f.foundation,
-        "patch_width": f.patch_width,
-        "elements": f.per_side,
-        "cells": f.cells,
         "alpha": t.alpha,
         "delta": t.delta,
         "gg": t.discount,
@@ -294,10 +281,10 @@ def request(scene: Scene) -> dict[str, Any]:
         "gap": c.gap,
         "friction": c.friction,
         "cohesion": c.cohesion,
-        "velocity": b.velocity,
+        "velocity": scene.block.velocity,
         "solve_limit": c.solve_limit,
         "cut": c.cut,
-        **(_mesh_of(scene) if f.mesh else {}),
+        **(_mesh_of(scene) if problem.mesh else {}),
     }
 
 
