@@ -14,7 +14,7 @@ from oracles.made_cases import made_case, made_group, made_history, made_row
 from validation.advice import budget
 from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
 from validation.report.appendix import alarms as appendix_alarms
-from validation.report.chapters import damping as chapters_damping
+from validation.report.chapters import budget as chapters_budget
 from validation.report.chapters.text import case_label
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
@@ -232,17 +232,17 @@ def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
     def told(**changes: Any) -> dict[str, Any]:
         return {"limits": {"wave transit": 1.0}, "floor": 1.0516, "gg": 1.0, "gg_rate": None} | changes
 
-    plain = chapters_damping._caption([told()])
+    plain = chapters_budget._caption([told()])
     assert "DDA's first natural frequency is 1.052 times the bar's;" in plain
     assert not any(word in plain for word in ("held as a rate", "gg acts per step"))
-    assert "is 1.052 to 1.102 times the bar's" in chapters_damping._caption([told(floor=1.102), told()])
-    assert "The discount is held as a rate." in chapters_damping._caption([told(gg=0.9, gg_rate=30.0)])
-    per_step = chapters_damping._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
+    assert "is 1.052 to 1.102 times the bar's" in chapters_budget._caption([told(floor=1.102), told()])
+    assert "The discount is held as a rate." in chapters_budget._caption([told(gg=0.9, gg_rate=30.0)])
+    per_step = chapters_budget._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
     assert "gg acts per step" in per_step
     values = {"time.step": 0.01, "contact.stiffness": 1e10, "fem.elements": 8}
     scene = load_scene("figures-3-4").with_values(values, label=True)
     assert case_label(scene.name, scene) == "dt = 0.01 s, p = 10E, n = 8"
-    assert case_label(scene.name, scene, chapters_damping.OVER) == "p = 10E"
+    assert case_label(scene.name, scene, chapters_budget.OVER) == "p = 10E"
 
 
 def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:

@@ -146,7 +146,7 @@ def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeyp
     monkeypatch.setattr(Case, "make_solver", lambda self: Beside("x"))
     monkeypatch.setattr(Beside, "applicable", Broken.applicable)
     row, history = execute(Case(scene, "dda"), "key", "test")
-    assert row.outcome is Outcome.COMPLETED and history is not None
+    assert row.outcome is Outcome.COMPLETED and history is not None, row.notes
     assert row.estimate is None and row.line(), "a row is JSON, which knows no NaN"
     assert row.metrics["displacement.static"] == "not reported"
     assert row.notes[-1] == "static not reported: RuntimeError: exactly singular"

@@ -166,8 +166,12 @@ def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> Non
         for file in (path.relative_to(ROOT) for path in (ROOT / name).rglob("*") if path.is_file()):
             if file.suffix == ".py" or "__pycache__" in file.parts:
                 continue
-            package = next(folder for folder in file.parents if (ROOT / folder / "__init__.py").is_file())
-            patterns = declared.get(".".join(package.parts), [])
-            assert any(fnmatch(str(file.relative_to(package)), pattern) for pattern in patterns), file
+            packages = [folder for folder in file.parents if (ROOT / folder / "__init__.py").is_file()]
+            patterns = [
+                (package / pattern).as_posix()
+                for package in packages
+                for pattern in declared.get(".".join(package.parts), [])
+            ]
+            assert any(fnmatch(file.as_posix(), pattern) for pattern in patterns), file
             count += 1
     assert count > 100

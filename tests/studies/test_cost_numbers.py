@@ -201,10 +201,12 @@ def cut(across: int, upwards: int, own: dict[str, float], fem: dict[str, float],
 def test_sub_blocks_are_told_by_rows_with_signed_errors_and_milliseconds() -> None:
     case = cut(2, 3, {"mode1.frequency": 291.0}, {"mode1.frequency": 300.0})
     pair = between(case.name, "dda", "fem", displacement_l2=0.0123, horizontal_l2=0.9)
-    shown = chapters_subblocks._patterns(made_group(case, comparisons=(pair,)))
+    shown = chapters_subblocks.patterns(made_group(case, comparisons=(pair,)))
     assert [c.title for c in shown.columns] == ["Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms"]
     assert shown.rows == (("squares", "3", "−3\u00a0%", "1.23\u00a0%", "36", "5"),)
-    line = chapters_subblocks._line("squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2")
+    (line,) = chapters_subblocks._line(
+        "squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2"
+    )
     assert (list(line.x), list(line.y), line.notes) == ([0.005], [0.0123], ("3",))
 
 
@@ -212,7 +214,7 @@ def test_glue_is_told_for_the_axial_and_for_the_rocking_motion() -> None:
     axial = cut(2, 2, {"mode1.frequency": 306.0}, {"mode1.frequency": 300.0}, block__glue_ratio=3.0)
     turned = cut(2, 2, {"mode1.frequency": 110.0}, {"mode1.frequency": 100.0}, block__glue_ratio=3.0,
                  load__pressure=0.0, load__traction=1e6)  # fmt: skip
-    shown = chapters_subblocks._glue(made_group(axial, turned))
+    shown = chapters_subblocks.glue(made_group(axial, turned))
     assert [c.title for c in shown.columns] == ["glue_ratio", "Axial ω₁", "Rocking ω₁"]
     assert shown.rows == (("3", "2\u00a0%", "10\u00a0%"),)
 
@@ -220,7 +222,7 @@ def test_glue_is_told_for_the_axial_and_for_the_rocking_motion() -> None:
 def test_rocking_is_told_for_the_block_and_for_the_elements() -> None:
     own, fem = ({"mode1.frequency": w, "mode1.damping": xi} for w, xi in ((220.0, 0.11), (200.0, 0.1)))
     scene = BASE.with_values({"fem.foundation": "patch", "fem.patch_width": 0.5})
-    shown = chapters_subblocks._rocking(made_group(made_case(scene, {"dda": own, "fem": fem})))
+    shown = chapters_subblocks.rocking(made_group(made_case(scene, {"dda": own, "fem": fem})))
     heads = [(c.group, c.title) for c in shown.columns]
     assert dict(zip(heads, shown.rows[0], strict=True)) == {
         ("", "Patch width [m]"): "0.5",

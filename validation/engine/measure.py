@@ -178,14 +178,16 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     needs = frozenset[str]().union(*(metric.needs for metric in measured_by(parts, case.only)))
     if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
         needs -= {STATIC, MODES, DIAGNOSTICS}
-    static = _reported(prepared.static, None, failed) if STATIC in needs else None
+    static = _reported("static", prepared.static, None, failed) if STATIC in needs else None
     assumed_static: Mapping[str, float] = static or {}
     if static is None and STATIC in needs:
         assumed_static = prepared.assumed_static()
-    modes: tuple[Mode, ...] = _reported(prepared.modes, (), failed) if MODES in needs else ()
-    diagnostics: Mapping[str, float] = _reported(prepared.diagnostics, {}, failed) if DIAGNOSTICS in needs else {}
-    switches = _reported(prepared.switches, None, failed) if SWITCHES in needs else None
-    contact_record = _reported(prepared.contact_record, None, failed) if CONTACT in needs else None
+    modes: tuple[Mode, ...] = _reported("modes", prepared.modes, (), failed) if MODES in needs else ()
+    diagnostics: Mapping[str, float] = {}
+    if DIAGNOSTICS in needs:
+        diagnostics = _reported("diagnostics", prepared.diagnostics, {}, failed)
+    switches = _reported("switches", prepared.switches, None, failed) if SWITCHES in needs else None
+    contact_record = _reported("contact_record", prepared.contact_record, None, failed) if CONTACT in needs else None
     measurable = Measurable(
         run.history or History(np.zeros(0), {}),
         case.scene.time.step,
@@ -228,12 +230,12 @@ def _reads_contact_record(case: Case) -> bool:
     return any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only))
 
 
-def _reported(part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:
+def _reported(name: str, part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:
     """Return what a solver reports beside its history, or what stands for its absence."""
     try:
         return part()
     except NotReported:
         return absent
     except Exception as error:  # anybody's code, as in `attempt`; the history is sound and is kept
-        failed.append(f"{part.__name__} not reported: {error_text(error)}")
+        failed.append(f"{name} not reported: {error_text(error)}")
         return absent

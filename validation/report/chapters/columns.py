@@ -1,8 +1,9 @@
-"""The chapter of the study `columns`: solves of the open-close iteration, spalls, joints, slips."""
+"""The chapter of the study `columns`: stacks over time, solves of the open-close iteration, spalls, joints, slips."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,12 @@ from validation.report.chapters.described import CaseValue, Description
 from validation.report.chapters.scene import opening
 from validation.report.chapters.text import DASH, cell
 from validation.report.figures.charts import DOTS, ChartLine
+from validation.report.figures.histories import saved
+from validation.report.figures.space_time import SpaceTime, space_time_figure
+from validation.runs.history import History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
+from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
 from validation.studies.columns import study
 from validation.theory import columns
@@ -33,6 +38,11 @@ DELTA_COLORS = {0.5: "#0072b2", 0.55: "#56b4e9", 0.6: "#009e73", 0.75: "#e69f00"
 PIECE_COLORS = {1: "#d55e00", 4: "#e69f00", 16: "#009e73", 64: "#0072b2"}  # by blocks in a piece
 PAGE = Description(__file__)
 REST = ("columns-solves-rest", "comes to rest")
+DROPPED = (("columns-drop-average", study.EVENTS, "exact in time"), ("columns-drop-constant", DDA, "dda, (1/2, 1)"))
+OTHERS = (
+    ("columns-spall", study.BARS, "a pulse on elastic bars"),
+    ("columns-weight", study.EVENTS, "weight put on at once"),
+)
 SHAKEN = ("columns-solves-shaken", "shaken on")
 
 
@@ -41,15 +51,52 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     groups = groups_by_name(results, manifest)
     rows = derived_rows(manifest)
     blocks = opening(manifest, verdicts_of(groups.values()), PAGE.text("lead"))
+    blocks += over_time(groups, directory, "columns-drop.svg", DROPPED, "dropped")
     if groups.get("columns-solves-rest"):
         blocks += [Heading("What the open-close iteration takes", 2), Paragraph(PAGE.text("solves"))]
         blocks += [solves_figure(groups, directory), solves_table(groups)]
     if groups.get(study.SPALL_BLOCKS):
         blocks += [Heading("Pieces of a spall", 2), Paragraph(PAGE.text("spall"))]
         blocks.append(spall_figure(groups, rows, directory))
+        blocks += over_time(groups, directory, "columns-time.svg", OTHERS, "over_time", 36.0)
     blocks += [Heading("Joints that slip, and stacks that rest", 2), Paragraph(PAGE.text("slip"))]
     tables = (joint_table(rows), slip_table(groups, rows), rest_table(groups, rows))
     return [*blocks, *(table for table in tables if table.rows)]
+
+
+# ---- stacks over time -----------------------------------------------------------------------------------------------
+
+
+def over_time(
+    groups: Groups,
+    directory: Path,
+    file: str,
+    drawn_cases: Sequence[tuple[str, str, str]],
+    text: str,
+    height: float = 46.0,
+) -> Blocks:
+    """Return the picture of columns over time, of the finest case of a solver that is exact, else of the coarsest."""
+    drawn = []
+    for name, solver, title in drawn_cases:
+        stepped = sorted(cases_of(groups, name), key=lambda case: case.scene.time.step)
+        case = next(iter(stepped[-1:] if solver == DDA else stepped[:1]), None)
+        history = None if case is None else case.histories.get(solver)
+        if case is not None and history is not None:
+            drawn.append(space_time(case.scene, history, title))
+    return [saved(space_time_figure(drawn, height), directory, file, PAGE.text(text))] if drawn else []
+
+
+def space_time(scene: Scene, history: History, title: str) -> SpaceTime:
+    """Return the blocks of a column whose middles are observed first, and all of whose contacts follow."""
+    column = column_of(scene)
+    faces = np.array(column.faces)
+    blocks = len(faces) - 1
+    start = -np.cumsum([contact.gap for contact in column.contacts])  # drawn with open gaps: the lowest one is largest
+    moved = np.array([history.columns[f"displacement_{number + 1}"] for number in range(blocks)])
+    forces = [history.columns[f"force_{blocks + number + 1}"] for number in range(len(column.contacts))]
+    forces.append(np.zeros_like(history.time))
+    carried = np.array([(below + above) / 2 for below, above in itertools.pairwise(forces)])
+    return SpaceTime(title, history.time, faces, moved - start[:, None], carried)
 
 
 # ---- solves ---------------------------------------------------------------------------------------------------------

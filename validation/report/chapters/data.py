@@ -11,7 +11,7 @@ from typing import Any
 from validation.report.chapters.text import case_labels
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.history import History
-from validation.runs.records import AlarmRecord, CaseRecord, ComparisonRecord, Manifest, VerdictRecord
+from validation.runs.records import AlarmRecord, BudgetRecord, CaseRecord, ComparisonRecord, Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.scenes.scene import Scene, parse_scene
@@ -56,6 +56,7 @@ class CaseGroup:
     comparisons: tuple[ComparisonRecord, ...]
     verdicts: tuple[VerdictRecord, ...]
     alarms: tuple[AlarmRecord, ...] = ()
+    budgets: tuple[BudgetRecord, ...] = ()
 
     @property
     def solvers(self) -> list[str]:
@@ -111,6 +112,7 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
                 tuple(c for c in manifest.get("comparisons", []) if scene_of(c["scene"]) == base),
                 tuple(v for v in verdicts if scene_of(v["scene"]) == base),
                 tuple(a for a in manifest.get("alarms", []) if scene_of(a["scene"]) == base),
+                tuple(b for b in manifest.get("budgets", []) if scene_of(b["scene"]) == base),
             )
         )
     return groups

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
+from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
@@ -52,7 +53,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
         columns = _columns(group)[:1] if len(groups) > FEW else None
         blocks += scene_section(group, directory, columns, apart=len(groups) == 1)
     if len(groups) == 1:
-        return blocks
+        return [*blocks, *budget_blocks(groups[0], directory)]
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
