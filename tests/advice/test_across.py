@@ -59,6 +59,7 @@ def step_polynomial(offer: Offer, W: float) -> list[complex]:
     return list(np.polyadd(inertia, W**2 * np.polymul([1 - af, af], kinematics)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("target", "frequency"), thinned([(0.05, 5.0), (0.02, 31.0), (0.2, 90.0)], 3))
 def test_every_offer_has_the_damping_it_says(target: float, frequency: float) -> None:
     advice = advise_across(LOCKED, target, frequency)
@@ -73,6 +74,7 @@ def test_every_offer_has_the_damping_it_says(target: float, frequency: float) ->
                 assert ratio(step_polynomial(offer, W)) == pytest.approx(xi, rel=1e-4), (offer.name, hertz)
 
 
+@pytest.mark.long
 def test_an_offer_is_what_the_solver_then_has() -> None:
     other = LOCKED.with_values({"time.scheme": "wbz", "time.rho_inf": 0.3})
     for scene in (LOCKED, other):

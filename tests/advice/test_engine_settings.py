@@ -142,6 +142,7 @@ def test_what_cannot_be_had(program: str, targets: Targets, options: dict[str, A
     assert error.value.field == field
 
 
+@pytest.mark.long
 def test_what_a_refusal_offers_can_be_had() -> None:
     for program, targets, options in (
         ("box2d", Targets(1e-7), {"step": 1 / 240}),

@@ -264,6 +264,7 @@ def test_rigid_boxes_are_judged_by_numbers(undrawn: None) -> None:
     )
 
 
+@pytest.mark.long
 def test_a_column_on_contacts_is_judged(tmp_path: Path, undrawn: None) -> None:
     """The step of the habit damps; the badge and the page carry names of columns with their units."""
     done = typed("judge", "mass-ratio", "--solver", "dda", "--out", tmp_path)

@@ -321,6 +321,7 @@ def true_velocity_of_rocking():
     return velocity_of_rocking(Scheme(0.25, 0.5, 1.0, 0.02 / 1600, "consistent"), 1600)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "values"), [("hht", {"rho_inf": 0.65}), ("composite", {"rho_inf": 0.45})])
 def test_a_block_that_rocks_converges_at_second_order(name, values):
     truth = true_velocity_of_rocking()

@@ -107,6 +107,7 @@ ORDERS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("problem", "scheme", "order", "scatter"), thinned(ORDERS, 6))
 def test_the_order_in_dt_through_switches(problem, scheme, order, scatter):
     fitted, errors = orders(problem, scheme, COUNTS, 0.03)

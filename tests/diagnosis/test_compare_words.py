@@ -68,6 +68,7 @@ def answer() -> Answer:
     return softened("dda", 0.5)
 
 
+@pytest.mark.long
 def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> None:
     assert answer.causes == ["springs-factor"]
     assert answer.departure is not None and answer.departure.kind == "offset"
@@ -76,6 +77,7 @@ def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> N
     assert "the contact stiffness is 0.5 times the scene's" in answer.sentence and "allowing" not in answer.sentence
 
 
+@pytest.mark.long
 def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
     answer = softened("dda", 1 / 1.04)
     assert (answer.causes, answer.departure) == (["base-compliance"], None)

@@ -149,6 +149,7 @@ NAMED: list[tuple[str, dict[str, Any], dict[str, Any], list[str]]] = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("method", "numbers", "of_run", "causes"), thinned(NAMED, 4))
 def test_a_method_is_named_by_six_digits(
     method: str, numbers: dict[str, Any], of_run: dict[str, Any], causes: list[str]
@@ -158,6 +159,7 @@ def test_a_method_is_named_by_six_digits(
     assert verdict(case, answer) == "right"
 
 
+@pytest.mark.long
 def test_leapfrog_is_no_hht_and_is_told_by_both_names() -> None:
     """Hilber, Hughes and Taylor's formulas at alpha_f = 1, far beyond 1/3, have its rows."""
     _, answer = judged("leapfrog", {}, dt=5e-4)
@@ -166,6 +168,7 @@ def test_leapfrog_is_no_hht_and_is_told_by_both_names() -> None:
     assert "central differences" in answer.sentence
 
 
+@pytest.mark.long
 def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha() -> None:
     _, answer = judged("midpoint", {}, **LOCKED)
     assert answer.causes == ["scheme", "start"]
@@ -206,6 +209,7 @@ def test_a_discount_beside_another_scheme_is_named_with_it() -> None:
     assert answer.values == pytest.approx({"gg": 0.97, "generalised-alpha": 0.8}, rel=1e-4)
 
 
+@pytest.mark.long
 def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
     run = Run("hht", {"e": 0.07}, steps=40)
     foreign = Case(run, scene_of(run), 7).foreign
@@ -223,6 +227,7 @@ def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
 # ---- faults, and the table ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without it average acceleration, printed with six digits, is several schemes at once."""
     seams.DECISION_CANONICAL.put(monkeypatch, lambda target, best, close: (best, {best.ids: best}))

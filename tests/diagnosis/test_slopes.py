@@ -49,6 +49,7 @@ def judged(found: Motion, **changes: object) -> Answer:
     return compare(scene(**changes), foreign(found))
 
 
+@pytest.mark.long
 def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight() -> None:
     answer = compare(scene(), read(FILE))
     assert answer.causes == ["lagged-friction", "base-compliance", "own-weight"]
@@ -175,6 +176,7 @@ def test_a_bias_within_the_tolerance_of_every_force_adds_up_and_is_named(
     assert (stages["normal forces"].agrees is False) == (cause in ("springs-factor", "normal-springs-factor"))
 
 
+@pytest.mark.long
 def test_springs_that_give_the_rows_of_a_base_are_told_beside_it() -> None:
     answer = judged(program())  # its springs are softer by a factor that nobody types
     assert answer.causes == ["base-compliance", "own-weight"]

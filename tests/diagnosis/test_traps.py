@@ -68,6 +68,7 @@ def test_a_slip_is_named_with_its_number(slip: dict[str, Any], causes: list[str]
     named(judged(**slip), causes, values)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("consistent", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_ramp_is_named_whichever_acceleration_it_starts_from(consistent: bool) -> None:
     """The scene starts consistently; the program from the acceleration of the full load, or of none."""
@@ -90,6 +91,7 @@ def named(answer: Answer, causes: list[str], values: dict[str, float]) -> None:
     assert answer.unexplained == 0 and answer.misfit < 1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("opening", [pytest.param({}, marks=pytest.mark.long), {"band": 1e-3}])
 def test_opening_and_its_dead_band_are_told(opening: dict[str, float]) -> None:
     """At 0.2 ms the block leaves its base and comes down again, 50 steps long."""
@@ -118,6 +120,7 @@ UNKNOWN = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slip", [SHAKEN, *(pytest.param(slip, marks=pytest.mark.long) for slip in UNKNOWN)])
 def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
     answer = judged(**slip)
@@ -143,6 +146,7 @@ def test_the_evidence_says_which_column_is_right_by_itself() -> None:
     assert all(stages[name].agrees for name in ("reading", "bounded", "statics", "frequency", "damping"))
 
 
+@pytest.mark.long
 def test_a_tolerance_decides_what_counts_as_the_same(tmp_path: Any) -> None:
     theirs = replace(PLAIN, rho=2725.0, steps=20)
     displacement, _ = run(theirs)

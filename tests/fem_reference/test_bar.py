@@ -171,6 +171,7 @@ def test_where_the_bar_is_exact():
         Bar(2.0, 2.0, 2700.0, -1e9, 2e9, 5e6)
 
 
+@pytest.mark.long
 def test_bar_does_not_load_the_finite_elements():
     code = "import sys, fem_reference.exact.bar; sys.exit('skfem' in sys.modules or 'meshio' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -190,6 +190,7 @@ def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, n
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", thinned(RANDOM[:3], 3))
 def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     problem, end = random_problem(seed)
@@ -209,6 +210,7 @@ def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
     assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", thinned(RANDOM[:4], 4))
 def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
     problem, end = random_problem(seed)

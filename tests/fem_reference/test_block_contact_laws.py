@@ -109,6 +109,7 @@ def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
     assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (33, 1.0), (32, 0.0), (31, 1.0)], 4))
 def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
     problem = falling(seed, e)
@@ -125,6 +126,7 @@ def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
     assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "e"), thinned([(42, 0.15), (40, 0.4), (43, 0.8)], 3))
 def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
     """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
@@ -170,6 +172,7 @@ def weighted(motion: BlockMotion) -> tuple[BlockHistory, np.ndarray]:
     return motion.at(t), (half[:, None] * w).ravel()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("e", "shear"), thinned([(0.3, 4e8), (0.0, 0.0), (0.6, 0.0), (1.0, 4e8)], 4))
 def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
     """With springs aside too, which the strain of a block with Poisson's ratio stretches while it rests."""
@@ -190,6 +193,7 @@ def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
         assert history.released[-1] > 0
 
 
+@pytest.mark.long
 def test_more_digits_lie_within_the_balls() -> None:
     cases = [dashpot(replace(PAPER, stiffness=1e10), 0.02), *(replace(RIGID, restitution=e) for e in (0.0, 0.4, 1.0))]
     for problem in cases:

@@ -63,6 +63,7 @@ def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
     assert motion.touches == ()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", thinned(range(8), 8))
 def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_events(seed: int) -> None:
     problem, end = random_column(seed)

@@ -75,6 +75,7 @@ class Brute:
         return N.sum(), T.sum()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scheme", "elements"),
     [

@@ -61,6 +61,7 @@ def duration(problem: BlockProblem, travels: float) -> float:
     return travels * problem.height * math.sqrt(problem.density / problem.young)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "moved"), thinned([(i, moved) for i in (*range(1, 6), 8, 0) for moved in (False, True)], 13)
 )

@@ -112,6 +112,7 @@ def finest_history(law):
     return switching_history(law, scheme, FINEST).columns["displacement"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "options"), thinned(EVERY, 9))
 @pytest.mark.parametrize("law", ["unilateral", "frictional"])
 def test_orders_with_contacts_that_open_or_slip(law, name, options):

@@ -63,6 +63,7 @@ def test_ddas_habit_and_another_integrator() -> None:
     assert "another integrator, average acceleration" in average.sentence
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("key", "factor"),
     [
@@ -217,6 +218,7 @@ def test_other_units_beside_the_usual_scheme_are_named() -> None:
     assert found.values["density-factor"] == pytest.approx(1e-3, rel=1e-6)
 
 
+@pytest.mark.long
 def test_answers_to_one_problem_share_their_runs(monkeypatch) -> None:
     """What is tried first does not depend on the answer: another one needs no more than the runs of its own fits."""
     runs: list[object] = []

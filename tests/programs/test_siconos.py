@@ -57,6 +57,7 @@ def differences(given, solver):
     }
 
 
+@pytest.mark.long
 def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half(program):
     """With theta = 1/2: average acceleration, from an acceleration that balances the loads at t = 0."""
     given = scene("locked", block__poisson=0.2, load__eccentricity=0.3, load__traction=1e6, run__columns=MOVED)

@@ -104,6 +104,7 @@ def test_a_budget_holds_curves_and_limits() -> None:
     assert first["total"][-1] is None and first["kinetic"][0] == 0
 
 
+@pytest.mark.long
 def test_a_budget_s_viscous_part_is_what_the_tables_add() -> None:
     scene = load_scene("figures-3-4").expand()[1].with_values({"damping.mass": 20.0})
     (record,) = budgets([scene])

@@ -113,6 +113,7 @@ def threads_of_worker() -> set[int]:
     return threads()
 
 
+@pytest.mark.long
 def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
     for log in solver_logs():
         monkeypatch.setattr(log, "level", logging.ERROR)

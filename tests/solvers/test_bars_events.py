@@ -59,6 +59,7 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
 ON_BASES = [(column, base) for base in ("rigid", "transmitting", "free", "springs") for column in (SLIPS, OPENS)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("column", "base"), thinned(ON_BASES, 8))
 def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
     below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}

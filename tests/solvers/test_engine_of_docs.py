@@ -35,6 +35,7 @@ def scene(box: dict[str, Any], steps: int = 50, boxes: int = 1, **rigid: Any) ->
     return parse_scene(data, "boxes")
 
 
+@pytest.mark.long
 def test_a_box_slides_as_far_as_it_should_or_stands(engine: Callable[..., Any]) -> None:
     slope = math.radians(20)
     for friction in (10.0, 30.0):
@@ -60,6 +61,7 @@ def test_it_bounces_as_asked(engine: Callable[..., Any], restitution: float) -> 
     assert math.sqrt(max(0.0, height) / 0.1) == pytest.approx(restitution, abs=0.015)
 
 
+@pytest.mark.long
 def test_ground_that_shakes_takes_it_along_as_far_as_friction_can(engine: Callable[..., Any]) -> None:
     history = engine(scene({}, friction=45.0, base_amplitude=0.01, base_frequency=1.0, steps=100))
     time = 0.01 * np.arange(1, 101)

@@ -146,6 +146,7 @@ def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:
         worker.ask(blind, os.environ, {"much": "x" * 1_000_000}, 0.2)
 
 
+@pytest.mark.long
 def test_an_answer_without_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(worker, "LONGEST_ANSWER", 100_000)
     endless = [sys.executable, "-c", "import sys\nwhile True: sys.stdout.write('x' * 1000)"]

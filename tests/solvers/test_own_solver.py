@@ -59,6 +59,7 @@ def few() -> list[str]:
 SHORT = ("sound", "late_pressure", "double_density")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "slip", [*SHORT, *(pytest.param(slip, marks=pytest.mark.long) for slip in SLIPS if slip not in SHORT)]
 )
@@ -505,6 +506,7 @@ def test_a_datum_that_a_solver_misreads_is_named(solver: str, tmp_path: Path, mo
 SLIPS_OF_THE_SCHEME = ("gg_twice", "delta_missing", "zero_start", "consistent_start", "late_pressure")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("slip", thinned(SLIPS_OF_THE_SCHEME, 5))
 def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(
     slip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -528,6 +530,7 @@ def test_a_slip_of_the_scheme_and_a_misread_datum_are_both_named(
     assert "load.eccentricity is not read" in wrong[1]
 
 
+@pytest.mark.long
 def test_a_moment_of_inertia_that_only_a_rectangle_shows_is_looked_for_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -49,6 +49,7 @@ ENDS = [
 ]
 
 
+@pytest.mark.long
 def test_what_a_solver_does_is_named(scene: Scene) -> None:
     """By one process, since each of them leaves it as it was."""
     for attribute, outcome, words in ANSWERS:

@@ -51,6 +51,7 @@ def kept(request: pytest.FixtureRequest, finished_cases: Path) -> tuple[Register
     return register, study, finished(finished_cases)
 
 
+@pytest.mark.long
 def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(kept: tuple[Register, Study, Finished]) -> None:
     register, study, finished = kept
     found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in register.claims}

@@ -90,6 +90,7 @@ def run(
     return {f"{one.gate.scene} {one.gate.pair[0]}": one.status for one in verdicts}, table
 
 
+@pytest.mark.long
 def test_the_table_of_two_problems(brought: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gates, table = run(("restitution", "impact"), tmp_path, monkeypatch)
     assert gates["rigid-restitution judged rigid-exact"] is gates["rigid-impact judged rigid-exact"] is Status.PASS
@@ -170,6 +171,7 @@ def test_a_curve_that_is_short_or_whose_steps_were_not_halved_shows_nothing() ->
     assert finding(same_steps) == ""
 
 
+@pytest.mark.long
 def test_a_program_that_falls_otherwise_than_its_integrator_is_seen(
     brought: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -177,6 +177,7 @@ def test_a_shaken_block_with_a_rate_of_drag_is_that_of_an_integrator() -> None:
 # ---- page and command -----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_the_command_lists_and_gives_data(sound: Finished, tmp_path: Path) -> None:
     rows = [_derived_record(sound, REGISTER, claim.id) for claim in CLAIMS]
     Results(tmp_path).write_json("studies/literature.json", {"study": "literature", "derived": rows})

@@ -89,6 +89,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
     check(FAULTS, (), tmp_path, finished_cases)
 
 
+@pytest.mark.long
 def test_gates_of_four_scenes_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
     check(FAULTS[:5], SHORT, tmp_path, finished_cases)
 

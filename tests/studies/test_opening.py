@@ -127,6 +127,7 @@ def test_average_acceleration_takes_a_quarter_of_the_front(degree: int, expected
     assert orders[0] < 0.8 * full < 0.97 * full < orders[2]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("stiffness", "orders"),
     [

@@ -238,6 +238,7 @@ def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
     assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
 
 
+@pytest.mark.long
 def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
     for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
         stepping = Stepping(1.0, alpha, delta, 1.0)
