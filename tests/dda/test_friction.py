@@ -1,16 +1,20 @@
 """One block with friction: histories known by their events, invariants at random data, sliding as an identity."""
 
+from copy import deepcopy
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from conftest import thinned
+from faults.steps import stepping_by
 from oracles import frictional_mp
 from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
 from oracles.unilateral_checks import DT, apart, mirrored, size, sums
 from oracles.unilateral_mp import lost
 
+import dda.one_block.unilateral as unilateral
+import dda.one_block.unilateral_step as step
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact import kernel
 from dda.contact.kernel import FOUND, NONE
@@ -30,6 +34,31 @@ def error(name, steps, time, scheme=AVERAGE):
     result = solve_unilateral(known.model, Scheme(alpha, delta, 1.0, time / steps, start), steps, PLACE)
     assert result.outcome == "completed" and not np.any(result.step_cuts)
     return np.linalg.norm([result.columns[name][-1] for name in PLACE] - np.array(known.at[time]))
+
+
+def order(name, steps, time, scheme=AVERAGE):
+    """Return the order that is fitted to five numbers of steps, each twice the one before."""
+    errors = [error(name, steps * 2**k, time, scheme) for k in range(5)]
+    return -np.polyfit(range(5), np.log2(errors), 1)[0]
+
+
+# Where a switch falls within its step changes an error by a few times; over 2^4 the fitted order moves by a third.
+SECOND, FIRST = (1.7, 2.3), (0.7, 1.3)
+ORDERS = [
+    pytest.param("rubbing", 250, 0.01, AVERAGE, SECOND, marks=pytest.mark.long),
+    pytest.param("rubbing", 750, 0.03, AVERAGE, SECOND, marks=pytest.mark.long),
+    pytest.param("pulled", 750, 0.03, AVERAGE, SECOND, marks=pytest.mark.long),
+    pytest.param("incline", 750, 0.05, AVERAGE, SECOND, marks=pytest.mark.long),
+    pytest.param("glued", 3000, 0.03, AVERAGE, FIRST, marks=pytest.mark.long),
+    pytest.param("rubbing", 750, 0.03, CONSTANT, FIRST, marks=pytest.mark.long),
+    pytest.param("incline", 1500, 0.05, CONSTANT, FIRST, marks=pytest.mark.long),
+    pytest.param("rubbing", 750, 0.03, (0.25, 0.5, "zero"), FIRST, marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize(("name", "steps", "time", "scheme", "band"), ORDERS)
+def test_a_history_tends_to_that_of_its_events(name, steps, time, scheme, band):
+    assert band[0] < order(name, steps, time, scheme) < band[1]
 
 
 @pytest.mark.parametrize(("name", "time"), thinned([("rubbing", 0.01), ("pulled", 0.03), ("incline", 0.05)], 2))
@@ -204,6 +233,31 @@ def test_cohesion_holds_what_friction_does_not():
         law = replace(model.contact, friction=0.1, cohesion=share * driving)
         ways.append(solve_unilateral(replace(model, contact=law), Scheme(0.5, 1.0, 1.0, 1e-3), 500).slip[-1])
     assert ways[0] > 0.2 and ways[1] == 0
+
+
+def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
+    saved, ratios = [], []
+
+    def stubborn(block, shear_law, state, after, base, part):
+        ratios.append(part.ratio)
+        outcome, solves = step.advance(block, shear_law, state, after, base, part)
+        if len(ratios) in (40, 41, 42):
+            saved.append(deepcopy(state))
+        if len(ratios) == 42:
+            first = deepcopy(after)
+            step.advance(block, shear_law, state, after, base, part)
+            assert first == after
+        return (NONE if len(ratios) in (40, 41) else outcome), solves
+
+    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 0.98, 2e-4)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unilateral, "make_steps", stepping_by(stubborn))
+        cut = solve_unilateral(model, scheme, 60, options=SINGLY)
+    assert ratios[39:42] == [1.0, 0.3, 0.09] and cut.step_cuts[39] == 2 and saved[0] == saved[1] == saved[2]
+    total, lost = sums(cut)
+    assert np.max(np.abs(total + lost)) < 1e-12 * size(cut)
+    whole = solve_unilateral(model, scheme, 60, options=SINGLY)
+    assert np.array_equal(cut.normal[:, :39], whole.normal[:, :39])
 
 
 def test_a_step_without_one_state_is_named(monkeypatch):

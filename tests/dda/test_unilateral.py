@@ -121,6 +121,30 @@ def test_the_first_step_opens_below_the_closed_formula(alpha, delta, p):
         assert above.closed_m[0] and above.normal_force_m[0] > 0
 
 
+@pytest.mark.parametrize(("scheme", "p"), thinned(product(SCHEMES, [1e9, 1e11, 1e15, np.inf]), 5))
+def test_frictionless_contacts_take_two_and_three_solves_at_most(scheme, p):
+    alpha, delta, gg, start = scheme
+    for dt in (1e-4, 1e-2):
+        for e, most in ((0.0, 2), (0.4, 3)):
+            model = replace(PAPER, contact=Unilateral(p), eccentricity=e)
+            result = solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), 300)
+            assert result.outcome == "completed"
+            assert np.max(result.step_solves) <= most and not np.any(result.step_cuts)
+
+
+@pytest.mark.parametrize(("alpha", "delta", "restitution"), [(0.5, 1.0, 1 / 3), (0.25, 0.5, 1.0)])
+@pytest.mark.parametrize("share", [0.05, 0.37, 0.8])
+def test_a_step_of_two_over_the_contact_frequency_returns_a_known_share(alpha, delta, restitution, share):
+    """A rigid block: contact lasts two steps and returns |det| whatever the phase."""
+    block = Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0))
+    mass, p, V = 1.3 * 0.9 * 2350.0, 3e8, 0.7
+    dt = 2 / np.sqrt(2 * p / mass)
+    model = UnilateralModel(block, Unilateral(p, gap=(3 - share) * V * dt), velocity=-V)
+    result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt), 8)
+    assert result.velocity[-1] == pytest.approx(restitution * V, rel=1e-9)  # E is finite: 1e-12 of p/E
+    assert np.count_nonzero(result.closed_m) == 2
+
+
 def test_a_stiff_stop_returns_what_the_phase_says():
     """(1/2, 1), p -> inf: e = |2 theta - 1|, theta the overshoot of the free step over V dt."""
     block, V, dt = Block.rectangle(1.3, 0.9, Material(2350.0, 1e25, 0.0)), 0.7, 1e-3
@@ -129,6 +153,17 @@ def test_a_stiff_stop_returns_what_the_phase_says():
             model = UnilateralModel(block, Unilateral(p, gap=(3 - theta) * V * dt), velocity=-V)
             result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, dt), 8)
             assert result.velocity[-1] == pytest.approx(abs(2 * theta - 1) * V, rel=1e-6)
+
+
+@pytest.mark.parametrize("p", [2e9, np.inf])
+def test_a_dropped_block_falls_freely_until_the_gap_closes(p):
+    model = replace(PAPER, contact=Unilateral(p, gap=0.05), pressure=0.0, gravity=9.81)
+    result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 150)
+    t = result.time
+    before = t < np.sqrt(2 * 0.05 / 9.81)
+    assert np.allclose(result.columns["displacement"][before], -9.81 * t[before] ** 2 / 2, rtol=1e-12)
+    assert np.flatnonzero(result.closed_m)[0] == np.count_nonzero(before)
+    assert result.gap_m[-1] > -1e-3
 
 
 @pytest.mark.parametrize(("gg", "delta"), [(1.0, 0.5), (0.97, 1.0)])
@@ -166,6 +201,16 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     assert given[0][1] == given[1][1] == given[2][1] != given[3][1]
     assert result.step_cuts.tolist() == [2, 0, 0] and result.factorisations == 4
     assert len(result.time) == 3 and result.time[-1] == pytest.approx(3 * DT)
+
+
+@pytest.mark.parametrize("cut", [0.3, 1 / 3, 0.5])
+def test_cut_steps_keep_the_share_gg_of_the_velocity(monkeypatch, cut):
+    stubborn, _ = failing(3)
+    monkeypatch.setattr(unilateral, "make_steps", stubborn)
+    model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
+    result = run(model, steps=4, gg=0.9, cut=cut)
+    assert result.step_cuts[0] == 3
+    assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 5), rel=1e-14)
 
 
 def test_cutting_ends_at_a_hundredth_with_the_named_outcome(monkeypatch):
