@@ -139,6 +139,8 @@ def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> M
 
 def _phase_error(kappa: float, exact: float, scheme: Scheme, steps: int) -> float:
     """Phase that a mode loses before it is damped because its stiffness has lost digits, as plain steps lose them."""
+    if exact >= 1:  # to rounding: the slowest mode is infinitely fast for the step, and has no phase to lose
+        return 0.0
     digits = max(abs(kappa - exact) / exact, np.finfo(float).eps / exact)
     omega = np.sqrt(exact / scheme.stages[0].stiffness_weight / (1 - exact))
     modulus = float(abs(roots(float(omega), scheme)[0]))

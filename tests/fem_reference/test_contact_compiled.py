@@ -59,7 +59,7 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
         assert off(compiled, plain) <= 1e-14
         fallen_back += np.count_nonzero(plain.columns["solves"] > contact.limit)
         switched += np.count_nonzero(np.diff(plain.columns["open_share"]))
-    assert switched > 100 and fallen_back > 0
+    assert switched > 50 and fallen_back > 0  # steps with a switch; each may be of several points
 
 
 @pytest.mark.long

@@ -46,6 +46,11 @@ def test_nine_digits_are_kept(solver: str, values: dict[str, Any], step: float, 
     assert lost(extreme(values, step, scheme), solver) <= LIMIT
 
 
+def test_a_block_whose_modes_are_all_infinitely_fast_for_the_step_is_stepped() -> None:
+    """Its stiffness is 1 to rounding, or a little more, in the reduced elements' own measure."""
+    assert lost(extreme({"block.density": 1e-6}, 1e3), "fem") <= LIMIT
+
+
 class AccelerationFirst(Stepper):
     """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
 
