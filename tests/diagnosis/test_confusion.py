@@ -70,7 +70,6 @@ FAULTS = {
     "no shift is tried": (seams.SEARCH_MOVES, without("time-shift"), "time-shift"),
     "gg is in both formulas": (seams.SEARCH_MOVES, without("gg-in-one-formula"), "gg-in-one-formula"),
     "anything is left too much": (seams.DECISION_ACCEPTED, lambda sound: lambda *a, **k: False, "start"),
-    "anything may be left": (seams.BAR_HOLDS, lambda sound: lambda *a: True, "scheme"),
     "no sign is turned": (seams.READINGS_FACTORS, lambda sound: lambda *a: [(1.0, 1.0)], "sign"),
 }
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import typed
+from faults import seams
 from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
 
@@ -120,13 +121,19 @@ UNKNOWN = [
 ]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("slip", [SHAKEN, *(pytest.param(slip, marks=pytest.mark.long) for slip in UNKNOWN)])
 def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
     answer = judged(**slip)
     assert answer.causes == ["unexplained"] and answer.departs
     assert answer.nearest is not None and answer.values == {}
     assert "not explained" in answer.sentence
+
+
+@pytest.mark.long
+def test_the_bar_of_what_may_be_left_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where anything may be left, a history that nothing explains is given a cause."""
+    seams.BAR_HOLDS.put(monkeypatch, lambda *bar: True)
+    assert judged(**SHAKEN).causes != ["unexplained"]
 
 
 @pytest.mark.long
