@@ -16,8 +16,6 @@ from validation.cli import (
     compare,
     contact,
     damping,
-    field,
-    gallery,
     judge,
     merge,
     report,
@@ -39,13 +37,11 @@ COMMANDS = (
     merge,
     show,
     report,
-    gallery,
     claims,
     damping,
     contact,
     compare,
     judge,
-    field,
     translate,
     verdicts,
     waves,
@@ -53,8 +49,8 @@ COMMANDS = (
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "merge", "solve"),
-    "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
-    "Your own code or program": ("judge", "field", "compare", "export-pack"),
+    "Results": ("report", "rows", "claims", "diff", "record"),
+    "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise", "damping", "contact", "translate", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))

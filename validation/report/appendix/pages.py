@@ -8,12 +8,12 @@ from validation.report.appendix.alarms import alarm_table
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
-from validation.report.blocks import Heading, Part, References
+from validation.report.blocks import Blocks, Heading, References
 from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
-def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> list[Part]:
+def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> Blocks:
     """Return words, alarms, parameters, provenance, gates and references."""
     return [
         Heading("Appendix"),

@@ -31,8 +31,11 @@ from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
 from validation.report.references import SOURCES
+from validation.report.scene.differences import difference_table
+from validation.report.scene.page import SceneDescription
+from validation.runs.case_name import CaseName
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
-from validation.runs.records import Manifest
+from validation.runs.records import AlarmRecord, Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -46,15 +49,54 @@ _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
 def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
-    """Return the chapter of a study: its question, then a section for each scene."""
+    """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
-    blocks = opening(manifest)
-    for group in groups:
-        columns = _columns(group)[:1] if len(groups) > FEW else None
-        blocks += scene_section(group, directory, columns, apart=len(groups) == 1)
     if len(groups) == 1:
-        return [*blocks, *budget_blocks(groups[0], directory)]
+        return scene_page(groups[0], directory)
+    columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
+    blocks = opening(manifest)
+    for group, drawn in zip(groups, columns, strict=True):
+        blocks += scene_section(group, directory, drawn)
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
+
+
+def scene_page(group: CaseGroup, directory: Path) -> Blocks:
+    """Return the page of a scene: its model, what its solvers differ by, its alarms, its histories and numbers."""
+    alarms = [Callout(f"{alarm['kind']}: {alarm['sentence']}.", "warn") for alarm in first_alarms(group.alarms)]
+    _, conclusion, *section = scene_section(group, directory, apart=True)
+    return [
+        Heading(group.title),
+        conclusion,
+        *description(group).model(),
+        *alarms,
+        *difference_blocks(group),
+        *section,
+        *budget_blocks(group, directory),
+    ]
+
+
+def description(group: CaseGroup) -> SceneDescription:
+    """Return what is known of a scene without its runs."""
+    varied: dict[str, dict[str, None]] = {}
+    for case in group.cases:
+        for key, value in CaseName.parse(case.name).values.items():
+            varied.setdefault(key, {})[value] = None
+    scenes = [case.scene for case in group.cases]
+    return SceneDescription(scenes, len(scenes), {key: [*values] for key, values in varied.items()}, group.solvers)
+
+
+def first_alarms(alarms: Sequence[AlarmRecord]) -> list[AlarmRecord]:
+    """Return the first alarm of each kind."""
+    return list({alarm["kind"]: alarm for alarm in reversed(alarms)}.values())[::-1]
+
+
+def difference_blocks(group: CaseGroup) -> Blocks:
+    """Return what the solvers of a scene differ by; nothing where no pair was compared."""
+    labels = {case.name: case.label for case in group.cases}
+    compared = difference_table(
+        group.comparisons, lambda case: labels.get(case, case), lambda share: bounded(share, short(share, 3))
+    )
+    return [compared] if compared.rows else []
 
 
 def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from validation.report.blocks import PageBreak, Paragraph, Part
+from validation.report.blocks import Blocks, PageBreak, Paragraph
 from validation.report.chapters.data import Groups, Verdicts
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
@@ -21,18 +21,22 @@ def front_pages(
     studies: Sequence[str],
     directory: Path,
     provenances: Sequence[Mapping[str, Any]] = (),
-) -> list[Part]:
+) -> Blocks:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
     imprint = Paragraph(f"The model is that of {PAPER}. {identity(provenances)}.", "small")
     paper = paper_scene(groups)
     failures = not_passed(verdicts)
     if paper is None:
+        judged = [verdict_line(verdicts)] if verdicts else []
+        if len(studies) == 1:  # whose page begins here
+            return [imprint, *judged, *failures]
         what = f"{len(groups)} scene{'s' * (len(groups) != 1)} of {', '.join(studies)}: one chapter a study."
-        return [imprint, Paragraph(what, "lead"), verdict_line(verdicts), *failures]
+        return [imprint, Paragraph(what, "lead"), *judged, *failures, PageBreak()]
     return [
         imprint,
         *first_page(groups, paper, verdicts, directory),
         *([PageBreak(), *failures] if failures else []),
         PageBreak(),
         *decisions(groups, paper, directory),
+        PageBreak(),
     ]

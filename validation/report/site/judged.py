@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import tempfile
 from contextlib import ExitStack
-from importlib import metadata, resources
+from importlib import metadata
 from pathlib import Path
 
+import jinja2
+
 from validation.errors import InputError
-from validation.gallery.chapters import placed
-from validation.gallery.pages import environment
-from validation.gallery.svg import Sheet
 from validation.problems.data import PACK
 from validation.problems.judge import Word
-from validation.report.chapters.judged import JudgedAnswer, page, per_cent
+from validation.report.blocks import Heading
+from validation.report.chapters.judged import JudgedAnswer, per_cent
+from validation.report.chapters.judged import page as page_of_answer
+from validation.report.render import html
 from validation.runs.files import atomic_path
+from validation.runs.text import visible
 
 PAGE = "judged.html"
 BADGE = "badge.svg"
@@ -41,27 +44,24 @@ def write_judged(judged: JudgedAnswer, program: str, place: Path) -> list[Path]:
                 advice="choose another place with --out",
             )
     with ExitStack() as both:  # leaves both files or neither
-        for path, text in zip(paths, (html(judged, program), badge(judged)), strict=True):
+        for path, text in zip(paths, (page(judged, program), badge(judged)), strict=True):
             both.enter_context(atomic_path(path)).write_bytes(text.encode())
     return paths
 
 
-def html(judged: JudgedAnswer, program: str) -> str:
+def page(judged: JudgedAnswer, program: str) -> str:
     """Return the page: verdict, cause, columns, curves."""
-    sheet = Sheet()
+    title = f"{program} on the problem {judged.problem.name}"
     with tempfile.TemporaryDirectory() as name:
-        blocks = [placed(block, Path(name), sheet) for block in page(judged, Path(name))]
-    return (
-        environment()
-        .get_template("judged.html.j2")
-        .render(
-            title=f"{program} on the problem {judged.problem.name}",
-            blocks=blocks,
-            css=resources.files("validation.gallery").joinpath("static", "gallery.css").read_text("utf-8"),
-            version=metadata.version("dda-validation"),
-            pack=PACK,
+        blocks = [Heading(title), *page_of_answer(judged, Path(name))]
+        return html.page(
+            title, blocks, imprint=imprint(), figure=html.embedded(Path(name)), css=html.static(html.STYLE)
         )
-    )
+
+
+def imprint() -> str:
+    """Return who judged, and what."""
+    return f"Judged by dda-validation {metadata.version('dda-validation')}, pack {PACK}."
 
 
 def badge(judged: JudgedAnswer) -> str:
@@ -79,4 +79,6 @@ def badge(judged: JudgedAnswer) -> str:
 def badge_of(label: str, verdict: str, color: str) -> str:
     """Return a badge: a label, and a verdict on a coloured ground."""
     widths = {name: LETTER * len(text) + MARGIN for name, text in (("left", label), ("right", verdict))}
-    return environment().get_template("badge.svg.j2").render(label=label, verdict=verdict, color=color, **widths)
+    template = Path(__file__).with_name("badge.svg.j2").read_text("utf-8")
+    texts = {"label": visible(label), "verdict": visible(verdict), "color": color}
+    return str(jinja2.Template(template, autoescape=True).render(**texts, **widths))

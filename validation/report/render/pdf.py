@@ -6,23 +6,21 @@ import json
 import shutil
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import typst
 
 from validation.errors import InputError
-from validation.report.blocks import Beside, Part, References
-from validation.report.names import unescaped, with_texts
-from validation.report.references import BIBLIOGRAPHY, references
+from validation.report.blocks import Block, References, as_data
+from validation.report.names import unescaped
+from validation.report.references import BIBLIOGRAPHY, CITED, marked, references
 from validation.runs.files import write_atomically
 
 TEMPLATE = Path(__file__).with_name("report.typ")
 PIXELS_PER_INCH = 200.0
 
 
-def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Path:
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
     """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
 
     Raises
@@ -41,7 +39,7 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Part]]) -> Pa
     return out
 
 
-def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
+def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     shutil.copyfile(TEMPLATE, root / "report.typ")
     shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
@@ -49,7 +47,8 @@ def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation on the two-block model",
         "keys": list(references()) if References() in blocks else [],
-        "blocks": [_record(block) for block in blocks],
+        "cited": CITED,
+        "blocks": [as_data(block, lambda text: unescaped(text, marked)) for block in blocks],
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
     try:
@@ -57,15 +56,6 @@ def typeset(root: Path, blocks: Sequence[Part]) -> bytes:
     except typst.TypstError as error:
         raise InputError(f"the report cannot be set: {' '.join(str(error).split())}") from error
     return bytes(pdf)
-
-
-def _record(block: Part) -> dict[str, Any]:
-    """Return a block as plain data with the name of its kind, those within it as well."""
-    data: dict[str, Any] = {"block": type(block).__name__} | with_texts(asdict(block), unescaped)
-    if isinstance(block, Beside):
-        data["left"] = [_record(part) for part in block.left]
-        data["right"] = [_record(part) for part in block.right]
-    return data
 
 
 def png_of(svg: Path) -> Path:

@@ -1,149 +1,24 @@
-"""The page of a scene: its model drawn in text, its steps, and the numbers that follow, before anything runs."""
+"""The model of a scene, drawn in text with its parameters beside it."""
 
 from __future__ import annotations
 
 import itertools
 import math
 import textwrap
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from operator import itemgetter
-from typing import Any
 
 import numpy as np
 
-from validation.advice.plain import Line, in_columns
-from validation.cli.printing import numbers
-from validation.scenes import features
 from validation.scenes.keys import described, stated
-from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
-from validation.theory.stepping import Stepping
 
 INSIDE = 15  # characters of a block's width in the drawing
 NARROWEST = 5  # the same of a tall block
 BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
-SCHEMES = {
-    (0.5, 1.0): "constant acceleration",
-    (0.25, 0.5): "average acceleration",
-    (1 / 6, 0.5): "linear acceleration",
-    (0.0, 0.5): "central differences",
-}
-WRITTEN = {  # keys of `contact`, `damping` and `run` that have words of their own
-    *("law", "stiffness", "shear_stiffness", "friction", "cohesion", "rule", "gap"),
-    *("mass", "solvers", "columns"),
-}
 # keys of a column whose contacts open or slip
 OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
-SWEPT_VALUES = 6  # of a key that are shown
-
-
-def page(scene: Scene, source: str, width: int | None) -> Iterator[str]:
-    """Yield the lines of the page; a scene with a sweep shows the range of each number over its cases."""
-    cases = scene.expand()
-    sampled_cases = numbers.cases(scene)
-    derived = [numbers.numbers(case) for case in sampled_cases]
-    yield from textwrap.wrap(f"{scene.name}: {scene.title or 'a scene'}", width or 1000, break_long_words=False)
-    yield ""
-    yield from drawing(cases[0], width)
-    yield ""
-    yield in_columns(list(_facts(cases[0], scene, len(cases))), width)
-    yield ""
-    if len(cases) > 1:
-        of_all = f"{len(sampled_cases)} of {len(cases)}" if len(sampled_cases) < len(cases) else f"all {len(cases)}"
-        yield f"over {of_all} cases of the sweep (the first one is above):"
-    yield in_columns(_table(numbers.ranges(derived)), width)
-    for text, count in _remarks(sampled_cases, derived).items():
-        remark = f"{text} (in {count} of {len(sampled_cases)} cases)" if len(sampled_cases) > 1 else text
-        yield from textwrap.wrap(remark, width or 1000, initial_indent="! ", subsequent_indent="  ")
-    yield ""
-    yield f"next: dda-validate run {source}"
-
-
-def as_data(scene: Scene) -> dict[str, Any]:
-    """Return the scene as a file states it, and each number's range, as plain data."""
-    sampled_cases = numbers.cases(scene)
-    derived = [numbers.numbers(case) for case in sampled_cases]
-    return {
-        "scene": scene.definition(),
-        "cases": len(scene.expand()),
-        "numbers": {
-            name: {"low": low, "high": high, "unit": number.unit}
-            for name, (low, high, number) in numbers.ranges(derived).items()
-        },
-        "remarks": dict(_remarks(sampled_cases, derived)),
-        "warnings": plausibility_warnings(scene),
-    }
-
-
-def _remarks(cases: Sequence[Scene], derived: Sequence[Sequence[numbers.Number]]) -> Counter[str]:
-    """Return how many cases lie beyond each limit."""
-    remarks: Counter[str] = Counter()
-    for case, case_numbers in zip(cases, derived, strict=True):
-        remarks.update(numbers.remarks(case, case_numbers))
-    return remarks
-
-
-def _facts(first: Scene, scene: Scene, count: int) -> Iterator[Line]:
-    """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
-    if first.rigid is None:
-        yield from _stepping(first)
-    else:
-        t = first.time
-        halved = f", halved {first.rigid.refine} times" if first.rigid.refine else ""
-        yield "rows", f"{t.steps}, one each {t.step:g} s; between them a program takes its own steps{halved}"
-    if others := list(_other_keys(first)):
-        yield "keys", ", ".join(others)
-    if scene_features := features.of(first):
-        yield "features", ", ".join(scene_features)
-    for field, values in scene.sweep.items():
-        if field != "mode":
-            more = f", ... ({len(values)})" if len(values) > SWEPT_VALUES else ""
-            yield "varied", f"{field} = {', '.join(map(_short, values[:SWEPT_VALUES]))}{more}"
-    case_count = f"; {count} cases" if count > 1 else ""
-    yield "solvers", f"{', '.join(scene.run.solvers)}{case_count}"
-    if scene.gate:
-        yield "gates", f"{len(scene.gate)} in the scene"
-
-
-def _stepping(first: Scene) -> Iterator[Line]:
-    """Yield the steps, the scheme and the damping of a scene that is stepped by it."""
-    t = first.time
-    scheme = Stepping.of(first).name
-    if t.scheme == "newmark":
-        scheme = f"{SCHEMES.get((t.alpha, t.delta), 'Newmark')}, alpha = {t.alpha:.4g}, delta = {t.delta:g}"
-    start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
-    yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
-    discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
-    yield "scheme", f"{scheme}, {discount}"
-    if first.damping.present:
-        yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
-
-
-def _other_keys(scene: Scene) -> Iterator[str]:
-    """Yield the keys of a scene that are neither in the drawing nor in the lines above."""
-    for place, table in scene.tables().items():
-        if place in ("contact", "damping", "run"):
-            for name, value, key in stated(table):
-                if name not in WRITTEN:
-                    yield described(name, value, key)
-
-
-def _short(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _table(ranges: numbers.Ranges) -> list[Line]:
-    rows: list[Line] = [("", "value", "", "what it is")]
-    for name, (low, high, number) in ranges.items():
-        least = f"{low:.4g}"
-        most = f"{high:.4g}"
-        rows.append((name, least if least == most else f"{least} .. {most}", number.unit, number.says))
-    return rows
-
-
-# ---- drawings -----------------------------------------------------------------------------------------------------
 
 
 def drawing(scene: Scene, width: int | None) -> Iterator[str]:

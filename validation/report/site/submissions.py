@@ -5,26 +5,35 @@ from __future__ import annotations
 import itertools
 import json
 import math
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from importlib import metadata, resources
+from dataclasses import dataclass, replace
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from validation.gallery.chapters import placed
-from validation.gallery.judged import COLORS, badge_of
-from validation.gallery.pages import environment
-from validation.gallery.places import check_place, write
-from validation.gallery.svg import Sheet
 from validation.problems.answers import AnswerSet
 from validation.problems.data import PACK, AnswersData, united
 from validation.problems.judge import Word
 from validation.problems.questions import names, question
+from validation.report.blocks import (
+    Blocks,
+    Callout,
+    FigureBlock,
+    Heading,
+    Link,
+    Links,
+    Paragraph,
+    Table,
+    TableColumn,
+    table,
+)
 from validation.report.chapters.judged import JudgedAnswer, as_data, page, per_cent
 from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, page_of_boxes
 from validation.report.chapters.text import DASH, short
+from validation.report.render import html
+from validation.report.site.judged import COLORS, badge_of, imprint
+from validation.report.site.places import check_place, write
 from validation.runs.files import atomic_directory
 
 VERDICTS = "verdicts.json"  # marks a directory as such a site
@@ -33,7 +42,6 @@ STALE = "stale"
 NOT_ANSWERED = "not answered"
 DIGITS = 3  # of an error in plain data
 LEAST_ERROR = 1e-11  # what is less is rounding, and stands as this
-TONES = {Word.PASS: "pass", Word.PARTIAL: "partial", Word.FAIL: "fail"}
 STATED = {  # fields of the metadata and what a page calls them
     "settings": "Settings",
     "scheme": "Scheme",
@@ -72,10 +80,6 @@ class AnswerCell:
     column: str = ""
     reason: str = ""  # the cause of a failure, or why it is not judged
 
-    @property
-    def tone(self) -> str:
-        """Class of the cell on a page."""
-        return TONES.get(Word(self.word), "notrun") if self.word in set(Word) else "notrun"
 
 
 def cells(judged: JudgedSet) -> list[AnswerCell]:
@@ -215,19 +219,19 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
     ordered = [judged for group in programs.values() for judged in group]
     total = len(ordered) + len(programs) + 1
     with atomic_directory(out) as place:
-        site = Site(programs)
+        site = Site(programs, place)
         for number, judged in enumerate(ordered):
             progress(number, total, f"page of {judged.answers.program} {judged.answers.settings_name}")
-            write(place / f"answers_{judged.stem}.html", site.curves(judged))
+            site.curves(judged)
             write(place / f"badge_{judged.stem}.svg", set_badge(judged))
         for number, name in enumerate(programs, start=len(ordered)):
             progress(number, total, f"page of {name}")
-            write(place / f"program_{name}.html", site.program(name))
+            site.program(name)
         progress(total - 1, total, "first page")
-        write(place / "index.html", site.index())
+        site.index()
         write(place / VERDICTS, json.dumps(verdicts(ordered), indent=1, allow_nan=False) + "\n")
-        css = resources.files("validation.gallery").joinpath("static", "gallery.css").read_text("utf-8")
-        write(place / "gallery.css", css)
+        for name in (html.STYLE, html.SCRIPT):
+            write(place / name, html.static(name))
     return out / "index.html"
 
 
@@ -238,84 +242,126 @@ def _by_address(judged: JudgedSet) -> tuple[str, ...]:
 class Site:
     """The pages of a site: folders of answers by the folder names of their programs."""
 
-    def __init__(self, programs: Mapping[str, Sequence[JudgedSet]]) -> None:
+    def __init__(self, programs: Mapping[str, Sequence[JudgedSet]], place: Path) -> None:
         self._programs = programs
-        self._templates = environment()
+        self._place = place
         self._menu = [
             ("index.html", "All programs"),
             *((f"program_{name}.html", group[-1].answers.data.program) for name, group in programs.items()),
         ]
 
-    def _page(self, template: str, file: str, **values: object) -> str:
-        version = metadata.version("dda-validation")
-        return self._templates.get_template(template).render(
-            menu=self._menu, file=file, version=version, pack=PACK, headline=headline, **values
-        )
+    def _write(self, file: str, title: str, blocks: Blocks) -> None:
+        text = html.page(
+            title, [Heading(title), *blocks], file=file, name="Answers to the problems", menu=self._menu,
+            imprint=imprint(), figure=lambda figure: f"{file.removesuffix('.html')}/{figure}",
+        )  # fmt: skip
+        write(self._place / file, text)
 
-    def index(self) -> str:
-        """Return the first page: problems against programs with versions and settings."""
-        ordered = [judged for group in self._programs.values() for judged in group]
-        rows = _table(ordered)
-        return self._page(
-            "answers_index.html.j2",
-            "index.html",
-            programs=self._programs,
-            sets=ordered,
-            rows=rows,
-            unanswered=[name for name in names() if name not in {row["name"] for row in rows}],
-            verdicts_file=VERDICTS,
+    def index(self) -> None:
+        """Write the first page: problems against programs with versions and settings."""
+        sets = [judged for group in self._programs.values() for judged in group]
+        asks = _asks(sets)
+        missing = [name for name in names() if name not in asks]
+        unanswered = [Paragraph(f"Not answered by any of them: {', '.join(missing)}.", "small")] if missing else []
+        lead = (
+            "Every problem has an exact motion, or exact numbers of it. An answer passes where each of its errors is "
+            "below what one per cent of the problem's data changes; the first number is the error, the second what is "
+            f"allowed, of what decides. All verdicts as plain data: {VERDICTS}."
         )
+        blocks: Blocks = [
+            Paragraph(lead, "lead"),
+            answer_table(sets),
+            *unanswered,
+            *reason_blocks(sets),
+            Heading("Programs", 2),
+            _links(sets),
+            Heading("The problems", 2),
+            table(("Problem", TableColumn("What it asks", "fill")), list(asks.items())),
+        ]
+        self._write("index.html", f"Answers to the problems of pack {PACK}", blocks)
 
-    def program(self, name: str) -> str:
-        """Return the page of a program: all its versions and settings."""
+    def program(self, name: str) -> None:
+        """Write the page of a program: all its versions and settings."""
         group = self._programs[name]
-        return self._page(
-            "answers_program.html.j2",
-            f"program_{name}.html",
-            title=group[-1].answers.data.program,
-            sets=group,
-            rows=_table(group),
-            stated=[(title, [_stated(judged, field) for judged in group]) for field, title in STATED.items()],
-        )
+        blocks = [_links(group), answer_table(group), *reason_blocks(group), stated_table(group)]
+        self._write(f"program_{name}.html", group[-1].answers.data.program, blocks)
 
-    def curves(self, judged: JudgedSet) -> str:
-        """Return the page of a folder of answers: each problem as `judge` shows it."""
-        sheet = Sheet()
-        sections = []
+    def curves(self, judged: JudgedSet) -> None:
+        """Write the page of a folder of answers: each problem as `judge` shows it."""
+        file = f"answers_{judged.stem}.html"
+        directory = self._place / file.removesuffix(".html")
+        blocks: Blocks = [Callout(f"{headline(judged)}.", "rule"), stated_table([judged])]
         by_name = {cell.problem: cell for cell in cells(judged)}
         for answer in judged.answers.answers:
-            blocks = []
-            if answer.stale is None:
-                with tempfile.TemporaryDirectory() as directory:
-                    of_answer = judged.judged[answer.name]
-                    if isinstance(of_answer, JudgedBoxes):
-                        drawn = page_of_boxes(of_answer, Path(directory))
-                    else:
-                        drawn = page(of_answer, Path(directory))
-                    blocks = [placed(block, Path(directory), sheet) for block in drawn]
-            sections.append({"cell": by_name[answer.name], "blocks": blocks})
-        data = judged.answers.data
-        return self._page(
-            "answers_set.html.j2",
-            f"answers_{judged.stem}.html",
-            title=f"{data.program} {data.version} {judged.answers.settings_name}".rstrip(),
-            judged=judged,
-            sections=sections,
-            stated=[(title, _stated(judged, field)) for field, title in STATED.items()],
-        )
+            cell = by_name[answer.name]
+            blocks.append(Heading(cell.problem, 2))
+            of_answer = judged.judged.get(answer.name)
+            if of_answer is None:
+                blocks.append(Callout(f"{cell.word}: {cell.reason}.", "warn"))
+                continue
+            figures = directory / answer.name
+            draw = page_of_boxes if isinstance(of_answer, JudgedBoxes) else page
+            for block in draw(of_answer, figures):  # type: ignore[arg-type]
+                if isinstance(block, FigureBlock):
+                    block = replace(block, file=f"{answer.name}/{block.file}")
+                blocks.append(block)
+        self._write(file, _title(judged), blocks)
 
 
-def _table(sets: Sequence[JudgedSet]) -> list[dict[str, Any]]:
-    """Return the rows of a table: a problem, and its cell in each folder of answers; no row that none answers."""
-    columns = [{cell.problem: cell for cell in cells(judged)} for judged in sets]
+def _title(judged: JudgedSet) -> str:
+    data = judged.answers.data
+    return f"{data.program} {data.version} {judged.answers.settings_name}".rstrip()
+
+
+def _links(sets: Sequence[JudgedSet]) -> Links:
+    links = [
+        Link(f"answers_{judged.stem}.html", _title(judged), headline(judged), f"badge_{judged.stem}.svg")
+        for judged in sets
+    ]
+    return Links(tuple(links))
+
+
+def answer_table(sets: Sequence[JudgedSet]) -> Table:
+    """Return problems against folders of answers: the verdict, the error that decides and what is allowed."""
+    by_set = [{cell.problem: cell for cell in cells(judged)} for judged in sets]
     rows = []
-    for name in dict.fromkeys(itertools.chain.from_iterable(columns)):
-        row = [column.get(name, AnswerCell(name, NOT_ANSWERED)) for column in columns]
-        if all(cell.word == NOT_ANSWERED for cell in row):
-            continue
-        asks = question(name).asks if name in names() else f"no problem of pack {PACK} any more"
-        rows.append({"name": name, "asks": asks, "cells": list(zip(sets, row, strict=True))})
-    return rows
+    for name in _asks(sets):
+        of_problem = [answered.get(name, AnswerCell(name, NOT_ANSWERED)) for answered in by_set]
+        texts = [f"{cell.word} {cell.error} of {cell.allowed}" if cell.column else cell.word for cell in of_problem]
+        rows.append((name, *texts))
+    heads = [
+        TableColumn(f"{judged.answers.data.version} {judged.answers.settings_name}".rstrip(), "outcome",
+                    judged.answers.data.program)
+        for judged in sets
+    ]  # fmt: skip
+    return table(("Problem", *heads), rows, "Problems, and what programs answered.")
+
+
+def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
+    """Return why answers fail or are not judged; nothing where there is no reason to give."""
+    rows = []
+    for judged in sets:
+        rows += [
+            (cell.word, _title(judged), cell.problem, "; ".join(filter(None, (cell.column, cell.reason))))
+            for cell in cells(judged)
+            if cell.reason
+        ]
+    heads = (TableColumn("Verdict", "outcome"), "Of", "Problem", TableColumn("What decides, and the cause", "fill"))
+    return [Heading("Causes, and what is not judged", 2), table(heads, rows)] if rows else []
+
+
+def stated_table(sets: Sequence[JudgedSet]) -> Table:
+    """Return what folders of answers say of themselves, a column each."""
+    rows = [(title, *(_stated(judged, field) for judged in sets)) for field, title in STATED.items()]
+    return table(("", *(TableColumn(_title(judged), "fill") for judged in sets)), rows)
+
+
+def _asks(sets: Sequence[JudgedSet]) -> dict[str, str]:
+    """Return the problems that some folder answers, and what they ask."""
+    answered = {cell.problem for judged in sets for cell in cells(judged) if cell.word != NOT_ANSWERED}
+    ordered = dict.fromkeys([*names(), *(cell.problem for judged in sets for cell in cells(judged))])
+    gone = f"no problem of pack {PACK} any more"
+    return {name: question(name).asks if name in names() else gone for name in ordered if name in answered}
 
 
 def _stated(judged: JudgedSet, field: str) -> str:
