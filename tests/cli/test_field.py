@@ -1,4 +1,4 @@
-"""``judge`` of folders and of submissions: verdicts of all answers, their site, and defects that leave nothing behind."""
+"""``judge`` of folders and of submissions: verdicts, their site, and defects that leave nothing behind."""
 
 from __future__ import annotations
 

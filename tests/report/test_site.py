@@ -146,7 +146,7 @@ def test_no_two_pages_share_a_file_whatever_the_letters_case() -> None:
     ]
 
 
-# ---- names of users ---------------------------------------------------------------------------------------------------
+# ---- names of users -------------------------------------------------------------------------------------------------
 
 
 def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path: Path) -> None:
@@ -155,7 +155,8 @@ def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_pa
     columns = {"displacement": np.full(4, -0.01), "esc\x1b[31m": np.arange(4.0)}
     results = Results(tmp_path / "r")
     history = History(0.002 * np.arange(1, 5), columns)
-    kept_study(results, [(scene, made_row("my_solver:solve", {}, scene.name), history)], study="mine", title=scene.title)
+    cases = [(scene, made_row("my_solver:solve", {}, scene.name), history)]
+    kept_study(results, cases, study="mine", title=scene.title)
     first = PdfReader(build(results, tmp_path / "r.pdf")).pages[0].extract_text()
     assert "After @feng2017" in first
     assert pages.build(results, tmp_path / "site").exists()
@@ -167,7 +168,7 @@ def test_the_first_page_of_an_own_scene_is_about_it(results: Results, tmp_path: 
     assert "2 m wide, 2 m high" in words and "solvers dda, bar" in words and "dda | bar" in words
 
 
-# ---- renderers --------------------------------------------------------------------------------------------------------
+# ---- renderers ------------------------------------------------------------------------------------------------------
 
 
 def example(kind: type) -> Block:
@@ -180,9 +181,10 @@ def example(kind: type) -> Block:
         "Points": Points((("First word", "and more"),)),
         "Beside": kinds.Beside((Paragraph("left word"),), (Paragraph("right word"),), 0.5),
         "Listing": Listing("+--+\n|  | word"),
+        "FigureBlock": kinds.FigureBlock("f.svg", "word"),
         "Links": Links((Link("a.html", "Title word", "what is there"),)),
     }
-    return examples.get(kind.__name__) or (kind() if kind is not kinds.FigureBlock else kinds.FigureBlock("f.svg", "word"))
+    return examples.get(kind.__name__) or kind()
 
 
 @pytest.mark.parametrize("kind", get_args(Block))
@@ -199,7 +201,7 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kind: type, tmp_path
         assert "<caption>The caption</caption>" in page("t", [block]) and "what it means" in shown
 
 
-# ---- calculators ------------------------------------------------------------------------------------------------------
+# ---- calculators ----------------------------------------------------------------------------------------------------
 
 
 class Values(HTMLParser):

@@ -163,8 +163,8 @@ def _studies(answer: RunAnswer, room: int) -> Iterator[StyledLine]:
         (printable(name), *(str(tally[word]) for word in WORDS), f"{seconds:.1f}")
         for name, tally, seconds in _folded(rows, room)
     ]
-    counted = (TableColumn(title, "decimal") for title in ("passed", "failed", "not run", "seconds"))
-    yield from table_lines(table([TableColumn("study"), *counted], lines), None)
+    numbers = (TableColumn(title, "decimal") for title in ("passed", "failed", "not run", "seconds"))
+    yield from table_lines(table([TableColumn("study"), *numbers], lines), None)
     total = sum((tally for _, tally, _ in rows), Counter[str]())
     counted = ", ".join(f"{total[word]} {word}" for word in WORDS)
     yield f"{counted} in {sum(answer.seconds):.1f} s", _style(total)
