@@ -12,7 +12,8 @@ from conftest import refused, typed
 
 from validation import solve
 from validation.report.chapters.text import parameter_items
-from validation.report.figures.curves import HistoryPanel, axis_of, common_range
+from validation.report.figures.curves import HistoryPanel, common_range
+from validation.runs.columns import axis_of
 from validation.runs.history import History
 from validation.scenes.scene import Scene, parse_scene
 

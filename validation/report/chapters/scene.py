@@ -29,11 +29,12 @@ from validation.report.chapters.text import (
 )
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
-from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
+from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
 from validation.report.references import SOURCES
 from validation.report.scene.differences import difference_table
 from validation.report.scene.page import SceneDescription
 from validation.runs.case_name import CaseName
+from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import AlarmRecord, Manifest
 from validation.runs.results import Results
@@ -258,7 +259,7 @@ def _columns(group: CaseGroup) -> list[str]:
         names.update(*(history.columns for history in case.histories.values()))
     if (rigid := group.cases[0].scene.rigid) is not None:
         return [name for name in rigid.columns if name in names]
-    return sorted(names, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
+    return sorted(names, key=lambda name: (rank(name), name))
 
 
 def history_block(

@@ -10,6 +10,7 @@ from typing import Any
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.errors import InputError
+from validation.runs.columns import unit_of
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
@@ -21,7 +22,6 @@ from validation.studies.pack import Part, number
 
 SCENES = ("unlocked", "unlocked-other", "impact", "drop", "bouncing-bar")
 COLUMNS = ("displacement", "contact_pressure", "gap_m", "normal_force_m")
-UNITS = {"displacement": "m", "contact_pressure": "Pa"}
 SWITCHES = ("first_opening", "first_closing", "second_opening", "second_closing")
 ROUNDED = 1e-12  # of a value: the motions are found in 50 digits, the instants and data are those of doubles
 OMEGAS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 3.0, 10.0, 100.0, math.inf)
@@ -81,7 +81,7 @@ def _instants(scene: Scene, motion: str, history: History) -> Iterator[dict[str,
             front_uncertainty = jump if name == "contact_pressure" else 0.0
             quantity = f"{name} at {float(t)!r} s"
             uncertainty = ROUNDED * abs(float(value)) + front_uncertainty
-            yield number(scene, quantity, float(value), UNITS[name], uncertainty, motion=motion)
+            yield number(scene, quantity, float(value), unit_of(name), uncertainty, motion=motion)
 
 
 def restitutions() -> Iterator[dict[str, float]]:
