@@ -271,25 +271,27 @@ def history_block(
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
     settled = _settling_time(cases, columns, without)
+    panels = [_panel(case, columns, min(window, settled), without, _finer(case, group.cases)) for case in cases]
+    panels = [panel for panel in panels if panel.histories]  # the steps of the others are longer than that time
     sentences = []
-    if len(cases) < len(group.cases):
-        sentences.append(f"{len(cases)} of {len(group.cases)} cases.")
+    if len(panels) < len(group.cases):
+        sentences.append(f"{len(panels)} of {len(group.cases)} cases.")
     if settled < window:
         window = settled
         sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(ends, default=0.0) > window * 1.001:
         sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
     return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
 
 
 def _ends(cases: Sequence[CaseResults]) -> list[float]:
-    """Return the last instant of every history [s]."""
+    """Return the last instant [s] of each case that has one, of its solver that runs longest."""
     ends = []
     for case in cases:
-        ends += [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
+        last = [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
+        ends += [max(last)] if last else []
     return ends
 
 
@@ -363,8 +365,9 @@ def _panel(
 ) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
-        if solver not in without and set(columns) & set(history.columns):
-            drawn[solver] = history.until(window)
+        shown = history.until(window)
+        if solver not in without and set(columns) & set(history.columns) and len(shown.time):
+            drawn[solver] = shown
     reference = case.reference if case.reference in drawn else None
     static = {}
     for column in columns:
