@@ -13,15 +13,12 @@ from oracles.made_cases import kept_study, made_row
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report.blocks import (
-    Beside,
     Callout,
     FigureBlock,
     Heading,
     Listing,
     PageBreak,
     Paragraph,
-    Points,
-    References,
     Table,
     TableColumn,
 )
@@ -34,7 +31,6 @@ from validation.report.figures.charts import _tick_text
 from validation.report.front import pages as front
 from validation.report.front.groups import groups_of_studies
 from validation.report.render import pdf as typesetting
-from validation.report.render.pdf import typeset
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -205,20 +201,6 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
         Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
-
-
-def test_every_kind_of_block_is_set(tmp_path):
-    blocks = [
-        Heading("One"),
-        Paragraph("text", "lead"),
-        Callout("careful", "warn"),
-        PageBreak(),
-        Table((TableColumn("x", "decimal"), TableColumn("id", "id")), (("1.5", "a:b[c=d]"),)),
-        Points((("One.", "This *is* #not markup"),)),
-        Beside((Paragraph("left"),), (Callout("right", "rule"),), 0.4),
-        References(),
-    ]
-    assert typeset(tmp_path, blocks).startswith(b"%PDF-")
 
 
 def test_studies_stand_in_the_order_of_their_chapters(tmp_path):
