@@ -16,6 +16,7 @@ from conftest import SCENE, beside, script, typed
 from oracles.pages import BLOCK, FEW, ROOT
 from oracles.submissions import right_answer
 
+import validation.studies
 from validation import solve
 from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
@@ -74,10 +75,12 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
         right_answer(tmp_path / "my-answer")
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(validation.studies, "__path__", [*validation.studies.__path__])
     names: dict[str, object] = {}
     assert blocks(DOCS / page)
     for language, file, text in blocks(DOCS / page):
         if file:
+            (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / file).write_text(text)
         if language == "sh":
             for line in text.splitlines():
