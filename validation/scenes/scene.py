@@ -28,6 +28,7 @@ from validation.scenes.unknown import clip, refuse_unknown_keys
 
 SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
+LONGEST_VALUE = 4000  # characters that --set takes
 
 
 class Scene(SceneTables):
@@ -109,6 +110,8 @@ class Scene(SceneTables):
         for field in FILES:
             section, _, key = field.partition(".")
             name = getattr(self.tables().get(section), key, None)
+            if name is not None and "\0" in name:
+                raise ValueError(f"{section}: {key}: must not hold a NUL, got {name!r}")
             try:
                 if name is not None:
                     regular(Path(name))
@@ -388,9 +391,15 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     """
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
-        raise InputError("must be key=value", field="--set", value=repr(text))
+        raise InputError("must be key=value", field="--set", value=repr(text[:LONGEST_VALUE]))
+    if "\n" in text or "\r" in text:
+        raise InputError("must be one line", field="--set", value=repr(text), advice="one --set for each key")
+    if len(value) > LONGEST_VALUE:
+        raise InputError(
+            f"must have at most {LONGEST_VALUE} characters, got {len(value)}", field="--set", value=repr(key)
+        )
     try:
         parsed = tomllib.loads(f"value = {value}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # no TOML, or a number of more digits than Python reads
         parsed = value
     return key.strip(), parsed
