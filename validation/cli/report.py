@@ -10,24 +10,25 @@ import typer
 if TYPE_CHECKING:
     from validation.runs.results import Results
 
-from validation.cli.app import RESULTS, ResultsOption, _progress, app, writable_pdf
+from validation.cli.app import RESULTS, ResultsOption, _progress, app
 from validation.cli.printing.output import echo
 
 
 @app.command()
 def report(
-    out: Annotated[Path, typer.Option(help="PDF file to write.", metavar="FILE.pdf", callback=writable_pdf)] = Path(
-        "reports/report.pdf"
-    ),
+    out: Annotated[Path, typer.Option(help="PDF file to write.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
 
     Example: [bold]dda-validate report --out report.pdf[/bold]
     """
+    from validation.errors import InputError
     from validation.report.book import build
     from validation.runs.results import Results
 
+    if out.suffix.lower() != ".pdf":
+        raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
     store = Results(results)
     with _progress("report", between_calls=True):
         page = build(store, out)
