@@ -73,7 +73,7 @@ BAD = [
         ["solve", "corner-springs", "--set", "fem.elements=4", "--fields", "f.png"],
         "--fields: must end in .xdmf or .vtu",
     ),
-    (["solve", "corner-springs", "--set", "fem.elements=4", "--fields", "f.vtu"], "--fields: needs the solver fem"),
+    (["solve", "corner-springs", "--set", "fem.elements=4", "--fields", "f.vtu"], "--fields: takes the solver fem"),
     (
         ["solve", "corner-springs", "--set", "fem.elements=4", "--set", 'run.columns=["heat"]'],
         "run.columns: must be among",

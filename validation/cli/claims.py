@@ -7,14 +7,16 @@ from typing import Annotated
 
 import typer
 
-from validation.cli.app import RESULTS, JsonOption, ResultsOption, app
+from validation.cli.app import RESULTS, JsonOption, ResultsOption, app, writable
 from validation.cli.printing.output import echo, echo_json
 
 
 @app.command()
 def claims(
     of: Annotated[str, typer.Option("--of", help="Whose: paper or literature.", metavar="NAME")] = "paper",
-    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE", callback=writable)
+    ] = None,
     as_json: JsonOption = False,
     results: ResultsOption = RESULTS,
 ) -> None:

@@ -47,6 +47,7 @@ from validation.cli.app import (
     one_case,
     print_warnings,
     refuse_bad_input,
+    writable,
 )
 from validation.cli.printing.output import echo, echo_json
 from validation.cli.signals import promise_rows
@@ -193,10 +194,6 @@ class Judging:
                     field="--require",
                     value=repr(name),
                 )
-        if self.summary is not None and (self.summary.is_dir() or not self.summary.parent.is_dir()):
-            raise InputError(
-                "must be a file in an existing directory", field="--summary", value=repr(str(self.summary))
-            )
         return None if self.baseline is None else read_verdicts(self.baseline)
 
 
@@ -353,12 +350,15 @@ def _print_answer(answer: RunAnswer, verbose: bool) -> None:
 def solve(
     scene: SceneArgument,
     solver: Annotated[str, typer.Option(help="Solver, see `dda-validate list`.", metavar="NAME")] = "dda",
-    csv: Annotated[Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE")] = None,
+    csv: Annotated[
+        Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE", callback=writable)
+    ] = None,
     fields: Annotated[
         Path | None,
         typer.Option(
             help="Write displacement and stress fields for ParaView (.xdmf: all steps, .vtu: the last one).",
             metavar="FILE",
+            callback=writable,
         ),
     ] = None,
     assignments: SetOption = None,

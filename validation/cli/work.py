@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from validation.cli.app import RESULTS, ResultsOption, app
+from validation.cli.app import RESULTS, ResultsOption, app, writable
 from validation.cli.printing.output import echo
 
 StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
@@ -30,7 +30,9 @@ def _table(study: str, results: Path) -> list[dict[str, Any]]:
 @app.command()
 def rows(
     study: StudyArgument,
-    out: Annotated[Path, typer.Option("--csv", help="CSV file to write.", metavar="FILE.csv")] = Path("rows.csv"),
+    out: Annotated[
+        Path, typer.Option("--csv", help="CSV file to write.", metavar="FILE.csv", callback=writable)
+    ] = Path("rows.csv"),
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
