@@ -1,7 +1,8 @@
 """What commands print, kept word by word: the one place for wordings. Numbers may differ where no digit is meant.
 
 The numbers are computed apart beside the functions that they come from; here a page is only held to what it was. A page
-that is changed on purpose is written anew by ``python tests/cli/test_pages.py``; a command line behind it becomes another page.
+that is changed on purpose is written anew by ``python tests/cli/test_pages.py``; a command line
+behind it becomes another page.
 """
 
 import atexit
@@ -125,4 +126,5 @@ def test_a_command_prints_what_it_did(command: str) -> None:
 
 if __name__ == "__main__":
     sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
-    PAGES.write_text(json.dumps({line: page(line) for line in [*KEPT, *sys.argv[1:]]}, indent=1) + "\n", encoding="utf-8")
+    pages = {line: page(line) for line in [*KEPT, *sys.argv[1:]]}
+    PAGES.write_text(json.dumps(pages, indent=1) + "\n", encoding="utf-8")
