@@ -10,7 +10,7 @@ from validation.report.chapters.data import spoken_of
 from validation.report.chapters.field import counted
 from validation.report.chapters.programs import absent_of, installed_of
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS, Cell, ProblemLine, ProgramLine
-from validation.studies.field.table import Table as Field
+from validation.studies.field.table import FieldTable as Field
 
 PROBLEMS = tuple(ProblemLine(name, f"field-{name}", name, f"What of {name}?") for name in ("locked", "rocking"))
 PROGRAMS = (

@@ -38,7 +38,6 @@ STUDIES = {
     "response": "validation.studies.waves.response:STUDY",
     "work-precision": "validation.studies.work.study:WORK_PRECISION",
     "field": "validation.studies.field.study:study",
-    "engines": "validation.studies.engines.study:study",
 }
 T = TypeVar("T")
 

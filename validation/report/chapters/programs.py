@@ -1,15 +1,12 @@
-"""What the chapters of both fields say of programs: who is there, why problems have no verdict, what they are."""
+"""What the chapter of the field says of programs: who is there, why problems have no verdict, what they are."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import TypeVar
 
 from validation.report.blocks import Table, TableColumn, table
-from validation.studies.engines.table import EngineCell
-from validation.studies.field.table import MISSING, NOT_APPLICABLE, NOT_RUN, Cell, ProgramLine, is_absent
-from validation.studies.field.table import Table as FieldOf
+from validation.studies.field.table import MISSING, NOT_APPLICABLE, NOT_RUN, Cell, FieldTable, ProgramLine, is_absent
 
 NONE_INSTALLED = "No other program is installed here: README of examples/peers has a recipe for each."
 NOT_THIS_VERSION = "The study was not run by this version; run it again."
@@ -17,15 +14,12 @@ NONE = "n. a."
 PLACE = re.compile(r" \([^()]*:\d+, in [^()]*\)$")  # of the code that raised an error
 
 
-CellT = TypeVar("CellT", Cell, EngineCell)
-
-
-def cells_of(field: FieldOf[CellT], program: ProgramLine) -> list[CellT]:
+def cells_of(field: FieldTable, program: ProgramLine) -> list[Cell]:
     """Return the cells of a program, problem by problem."""
     return [field.cells[problem.name, program.name] for problem in field.problems]
 
 
-def installed_of(field: FieldOf[CellT], programs: Iterable[ProgramLine]) -> list[ProgramLine]:
+def installed_of(field: FieldTable, programs: Iterable[ProgramLine]) -> list[ProgramLine]:
     """Return the programs that are there; one that gave no answer at all is among them, an adapter alone is not."""
     installed = []
     for program in programs:
@@ -38,11 +32,11 @@ def installed_of(field: FieldOf[CellT], programs: Iterable[ProgramLine]) -> list
 
 
 def lines_of(
-    field: FieldOf[CellT],
+    field: FieldTable,
     programs: Iterable[ProgramLine],
     verdicts: Collection[str],
-    text_of: Callable[[CellT], str],
-    remark: Callable[[CellT], str] = lambda cell: "",
+    text_of: Callable[[Cell], str],
+    remark: Callable[[Cell], str] = lambda cell: "",
 ) -> list[tuple[str, str, str]]:
     """Return of each program a line for each text, with the problems of these verdicts that it applies to."""
     lines = []
@@ -59,13 +53,13 @@ def lines_of(
     return lines
 
 
-def absent_of(field: FieldOf[CellT], programs: Iterable[ProgramLine]) -> Table:
+def absent_of(field: FieldTable, programs: Iterable[ProgramLine]) -> Table:
     """Return why problems are not applicable or have no answer, those of one program with one reason in a line."""
     rows = lines_of(field, programs, (NOT_APPLICABLE, NOT_RUN), _reason)
     return table(("Program", "Problems", TableColumn("Reason", "fill")), rows)
 
 
-def _reason(cell: Cell | EngineCell) -> str:
+def _reason(cell: Cell) -> str:
     reason = PLACE.sub("", cell.reason.removeprefix("the solver says that it is not made for this scene: "))
     return f"no answer: {reason}" if cell.verdict == NOT_RUN else reason
 

@@ -31,7 +31,6 @@ CHAPTERS: dict[str, str] = {
     "columns": "validation.report.chapters.columns:chapter",
     "response": "validation.report.chapters.vibrations.response:chapter",
     "field": "validation.report.chapters.field:chapter",
-    "engines": "validation.report.chapters.engines:chapter",
 }
 
 
