@@ -22,7 +22,7 @@ from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
 
 DOCS = ROOT / "docs"
-PAGES = ("theory.md", "extending.md", "columns.md", "engines.md", "methods.md")
+PAGES = ("theory.md", "extending.md", "columns.md", "methods.md")
 # Pages that take seconds each.
 LONG = (
     "stacks.md",
@@ -92,7 +92,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("page", "outputs"), [("choose.md", 7), ("tutorial.md", 4), ("engines.md", 6)])
+@pytest.mark.parametrize(("page", "outputs"), [("choose.md", 7), ("tutorial.md", 4)])
 def test_commands_print_what_the_page_shows(
     page: str, outputs: int, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

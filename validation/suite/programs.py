@@ -1,4 +1,4 @@
-"""The programs of both fields: those whose adapters the suite has, those that users bring, and the suite's own."""
+"""The programs of the field: those whose adapters the suite has, those that users bring, and the suite's own."""
 
 from __future__ import annotations
 
@@ -16,8 +16,6 @@ DEFAULT = "-default"  # ending of the name of a program as it comes
 HABIT = "dda"
 FINE = "dda-fine"
 ELEMENTS = "fem"
-SPRINGS = "springs"  # the field of blocks on springs
-BOXES = "boxes"  # the field of rigid boxes
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -28,11 +26,7 @@ class Known:
     name: str
     title: str
     recipe: str
-    springs: bool = False
-    boxes: bool = False
     default: bool = True
-    family: str = "mechanics"  # "mechanics", "robotics" or "games"
-    halvings: int = 3
 
 
 KNOWN = tuple(Known(**entry) for entry in TABLE["program"])
@@ -40,7 +34,7 @@ KNOWN = tuple(Known(**entry) for entry in TABLE["program"])
 
 @dataclass(frozen=True)
 class Program:
-    """A column of a field.
+    """A column of the field.
 
     Attributes
     ----------
@@ -54,11 +48,6 @@ class Program:
         ``"suite"``, ``"chosen"`` (parameters chosen for accuracy), ``"default"`` (its own) or ``"user"``.
     installed
         Whether there is a solver of this name.
-    family
-        ``"suite"``, ``"user"``, or what it is made for.
-    halvings
-        How often its step is halved for the curves of error over cost; None: it has no curves, since nobody knows
-        whether it takes `rigid.refine`, or since it makes no steps.
     about
         What it says of itself: program, version, recipe, model, settings.
     """
@@ -68,22 +57,18 @@ class Program:
     recipe: str = ""
     kind: str = "suite"
     installed: bool = True
-    family: str = "suite"
-    halvings: int | None = None
     about: Mapping[str, str] = field(default_factory=dict)
 
 
-def known(asked: str = SPRINGS) -> Iterator[Program]:
-    """Yield the programs of a field whose adapters the suite has, installed or not."""
+def known() -> Iterator[Program]:
+    """Yield the programs whose adapters the suite has, installed or not."""
     there = entry_points()
     for program in KNOWN:
-        if not getattr(program, asked):
-            continue
         columns = [(program.name, program.title, "chosen")]
         if program.default:
             columns.append((program.name + DEFAULT, f"{program.title}, as it comes", "default"))
         for name, title, kind in columns:
-            yield Program(name, title, program.recipe, kind, name in there, program.family, program.halvings)
+            yield Program(name, title, program.recipe, kind, name in there)
 
 
 def brought() -> Iterator[Program]:
@@ -91,24 +76,24 @@ def brought() -> Iterator[Program]:
     names = {name for program in KNOWN for name in (program.name, program.name + DEFAULT)}
     for name in entry_points():
         if name not in names:
-            yield Program(name, name, kind="user", family="user")
+            yield Program(name, name, kind="user")
 
 
-def programs(asked: str) -> tuple[Program, ...]:
-    """Return all columns of a field."""
-    return (*(Program(**entry) for entry in TABLE["own"][asked]), *known(asked), *brought())
+def programs() -> tuple[Program, ...]:
+    """Return all columns of the field."""
+    return (*(Program(**entry) for entry in TABLE["own"]), *known(), *brought())
 
 
 def installed() -> tuple[str, ...]:
-    """Return the names of the solvers of blocks on springs that are there beside the suite's own."""
+    """Return the names of the solvers that are there beside the suite's own."""
     return tuple(program.name for program in (*known(), *brought()) if program.installed)
 
 
-def line(program: Program, *names: str) -> dict[str, Any]:
+def line(program: Program) -> dict[str, Any]:
     """Return fields of a program as plain data, and what it says of itself, asked of its solver."""
     about = dict(program.about)
     if program.installed and program.kind != "suite":
         solver = get_solver(program.name)
         about = solver.about() if isinstance(solver, UserSolver) else {}
-    fields = ("name", "title", "recipe", "kind", *names, "installed")
+    fields = ("name", "title", "recipe", "kind", "installed")
     return {name: getattr(program, name) for name in fields} | {"about": about}

@@ -39,7 +39,7 @@ def gates() -> Iterator[Gate]:
 
 def data() -> Mapping[str, Any]:
     """Return the rows and columns of the table, and which run each cell is of."""
-    columns = programs.programs(programs.SPRINGS)
+    columns = programs.programs()
     runs = {}
     for name, program in itertools.product(FIELD_PROBLEMS, columns):
         runs[f"{name} {program.name}"] = [list(case_of(name, program.name)), cell_name(program.name)]

@@ -6,15 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from validation.report.blocks import Table, TableColumn, table
-from validation.studies.field.table import (
-    MISSING,
-    NOT_APPLICABLE,
-    NOT_RUN,
-    Cell,
-    FieldTable,
-    ProgramLine,
-    is_absent,
-)
+from validation.studies.field.table import MISSING, NOT_APPLICABLE, NOT_RUN, Cell, FieldTable, ProgramLine, is_absent
 
 NONE_INSTALLED = "No other program is installed here: README of examples/peers has a recipe for each."
 NOT_THIS_VERSION = "The study was not run by this version; run it again."
