@@ -24,7 +24,7 @@ def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     blocks = [scene for scene in scenes if scene.kind == "block"]
     of_columns = (column_alarms(scene) for scene in scenes if scene.name in judged and scene.kind == "column")
     return {
-        "alarms": [alarm.record() for alarm in (*alarms(blocks, finished), *chain.from_iterable(of_columns))],
+        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_columns))],
         "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
     }
 
