@@ -7,8 +7,9 @@ contact ringing
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
 
-Those of a step that is too long for the motion are in `validation.advice.coarse`, those of contact that opens in
-`.contact_alarms`, those of friction in `.friction`, those of columns whose contacts open or slip in `.columns`.
+Those of a step that is too long for the motion are in `validation.advice.coarse`, that of a start that puts energy in
+in `.overshoot`, those of contact that opens in `.contact_alarms`, those of friction in `.friction`, those of columns
+whose contacts open or slip in `.columns`.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from validation.advice.alarm import alarm, first_row, number
 from validation.advice.coarse import coarse_alarms
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
+from validation.advice.overshoot import overshoot_alarms
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
@@ -67,6 +69,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
         yield from _tension(scene, rows)
         yield from _ringing(scene, rows)
         yield from contact_alarms(scene, rows)
+        yield from overshoot_alarms(scene, rows)
         yield from friction_alarms(scene, rows)
     yield from fixed_discount(blocks)
 

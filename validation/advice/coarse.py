@@ -37,7 +37,7 @@ FOLLOWED = 0.01  # damping ratio of the step that is named instead: a tenth of t
 SHOWN = 20  # steps a period that are named where fewer than two are taken
 LONG_RAMP = 40.0  # w times the ramp: a load that rises so slowly moves the mode by 2 / 40 = 5 % of its static part
 RESOLVED = 1e-3  # w dt at which every scheme has less than `FOLLOWED`
-TURNS = 2000  # of w dt that are tried above it: to half a per cent of the step
+TURNS = 50  # of w dt between which that step is looked for
 MOST_SUB_BLOCKS = 64  # whose modes are found here; those of more come from the run
 
 
@@ -131,8 +131,14 @@ def _scheme(scene: Scene) -> Stepping:
 @functools.lru_cache(maxsize=256)
 def _followed(stepping: Stepping, beyond: float) -> float:
     """Return the step, over the present one of w dt = `beyond`, up to which a scheme damps less than `FOLLOWED`."""
+    from scipy.optimize import brentq
+
+    def excess(omega_dt: float) -> float:
+        return stepping.damping_ratio(omega_dt) - FOLLOWED
+
     turns = np.geomspace(RESOLVED, beyond, TURNS)
-    return float(next((turn for turn in turns if not stepping.damping_ratio(turn) < FOLLOWED), beyond)) / beyond
+    first = next((i for i, turn in enumerate(turns) if excess(turn) >= 0), 0)
+    return float(brentq(excess, turns[first - 1], turns[first], rtol=1e-6)) / beyond if first else 1.0
 
 
 # ---- what must be followed -----------------------------------------------------------------------------------------
@@ -175,11 +181,11 @@ def first_frequency(scene: Scene) -> float | None:
     if math.prod(scene.block.subdivide or (1,)) > MOST_SUB_BLOCKS:
         return None
     with suppress(InputError):  # DDA does not take the scene
-        return dda_modes(_closed(scene))[0].frequency
+        return dda_modes(closed(scene))[0].frequency
     return None
 
 
-def _closed(scene: Scene) -> Scene:
+def closed(scene: Scene) -> Scene:
     """Return a scene whose contact stays closed: its springs locked, of a rigid stop as stiff as rounding allows."""
     if features.linear(scene):
         return scene
