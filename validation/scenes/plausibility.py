@@ -509,7 +509,8 @@ def _of_boxes(scene: Scene, rigid: RigidSection) -> Iterator[Implausible]:
     if t.step > LONGEST_FALL * fall:
         sentence = f"time.step = {t.step:g} s is {t.step / fall:.3g} times as long as a box falls by its height"
         yield Implausible("time.step", "step", f"{sentence}: {_or_meant('write step in s, 0.001 for 1 ms')}")
-    peak = abs(rigid.base_amplitude) * (2 * math.pi * rigid.base_frequency) ** 2
+    rate = 2 * math.pi * rigid.base_frequency
+    peak = abs(rigid.base_amplitude) * rate * rate
     if peak > LARGEST_GROUND:
         sentence = (
             f"rigid.base_amplitude = {rigid.base_amplitude:g} m at {rigid.base_frequency:g} Hz is {peak:.3g} m/s2"
