@@ -14,6 +14,9 @@ from typer.testing import CliRunner
 
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms, removal_of
 from validation.cli.app import app
+from validation.report.front.groups import groups_of_studies
+from validation.report.front.pages import alarm_lines
+from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns
 
@@ -132,6 +135,8 @@ def test_run_show_and_the_report_warn(tmp_path: Path) -> None:
     printed = CliRunner().invoke(app, ["run", str(source), "--results", str(results)])
     assert printed.exit_code == 0 and all(kind in printed.output for kind in BOTH)
     assert "[[gate]]" not in printed.output
+    first_page = alarm_lines(groups_of_studies(Results(results), ["granite"]))
+    assert all(any(kind in line.text for line in first_page) for kind in BOTH)
     refined = CliRunner().invoke(app, ["run", str(source), "--results", str(results), "--set", "time.step=1e-5"])
     assert "[[gate]]" in refined.output and not any(kind in refined.output for kind in BOTH)
     shown = json.loads(CliRunner().invoke(app, ["show", str(source), "--json"]).output)

@@ -163,12 +163,12 @@ def _next(compared: Sequence[ComparisonRecord], alarms: Sequence[AlarmRecord], w
         yield f"next: no pair agrees within {limit}, which is a finding and no tolerance:"
         yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
         return
-    coarse = {alarm["scene"]: alarm for alarm in reversed(alarms) if alarm["kind"] in KINDS}
+    coarse = {record["scene"]: record for record in reversed(alarms) if record["kind"] in KINDS}
     resolved = [c for c in agreeing if c["scene"] not in coarse]
     if not resolved:
-        first = coarse[agreeing[0]["scene"]]
-        yield broken(f"next: a smaller time.step before a gate, which would pass by the step ({first['kind']}):")
-        yield broken(f"  {first['scene']}: {first['sentence']}")
+        alarm = coarse[agreeing[0]["scene"]]
+        yield broken(f"next: a smaller time.step before a gate, which would pass by the step ({alarm['kind']}):")
+        yield broken(f"  {printable(alarm['scene'])}: {alarm['sentence']}")
         return
     first = resolved[0]
     value = first["metrics"].get(metric)
