@@ -7,7 +7,8 @@ far face moves the wrong way
     The step is so short that a push at the foot of a block of one strain opens the contact above it at once, before
     any wave arrives there.
 gain by switching
-    Average acceleration without discount: a contact that opens gains energy, and a stack at rest is thrown up.
+    Average acceleration without discount, before a run: a contact that opens may gain energy, and a stack does not come
+    to rest. After a run what it has gained is told, as "energy gained by switching".
 residual slip by the step
     Algorithmic or kinetic damping changes what slips, and what has slipped stays.
 """
@@ -19,6 +20,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from validation.advice.alarm import Alarm, alarm
+from validation.advice.contact_alarms import gained
+from validation.runs.row import Row
 from validation.scenes.column import ColumnSection, LayerSection
 from validation.scenes.scene import Scene
 from validation.theory import columns
@@ -125,8 +128,14 @@ def advised(scene: Scene, bound: ColumnLimits) -> Iterator[str]:
         yield ADVICE[kind].format(bound=bound)
 
 
-def column_alarms(scene: Scene) -> Iterator[Alarm]:
-    """Yield the alarms of a scene with a column whose contacts open or slip."""
+def column_alarms(scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
+    """Yield the alarms of a scene with a column whose contacts open or slip.
+
+    Parameters
+    ----------
+    row
+        Of the judged method's run; without one, what may happen is told.
+    """
     column = scene.column
     bound = limits(scene)
     if column is None or bound is None:
@@ -143,5 +152,7 @@ def column_alarms(scene: Scene) -> Iterator[Alarm]:
         yield alarm(FEW_SOLVES, scene.name, values, contacts=bound.contacts)
     if t.step < bound.far_face_step:
         yield alarm(FAR_FACE, scene.name, {"step": t.step, "far_face_step": bound.far_face_step})
-    if t.scheme == "newmark" and t.delta == 0.5 and t.discount == 1:
+    if row is not None:
+        yield from gained(scene, row)
+    elif t.scheme == "newmark" and t.delta == 0.5 and t.discount == 1:
         yield alarm(GAINS, scene.name, {"delta": t.delta})

@@ -12,6 +12,7 @@ from typing import Any
 
 from validation.advice import contact, friction
 from validation.advice.contact_alarms import contact_alarms
+from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.row import Row, Value
@@ -34,7 +35,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 NONE = "-"  # in place of a number that a run has not
 
 LINES: dict[str, list[dict[str, Any]]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-ALARMS = (contact_alarms, friction.friction_alarms)
+ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 
 def of_role(role: Role) -> str:

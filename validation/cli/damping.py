@@ -46,13 +46,13 @@ def advise(
         typer.Option("--damping", help="Target damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0),
     ] = None,
     solve_for: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--solve-for",
-            help="What to vary: dt, gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
+            help="What to vary: dt (if absent), gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
             metavar="NAME",
         ),
-    ] = "dt",
+    ] = None,
     at: Annotated[
         float | None,
         typer.Option("--at", help="With --damping: frequency at which it is wanted, across all schemes.", metavar="HZ"),
@@ -102,6 +102,9 @@ def advise(
     is_across = across or at is not None or no_gain is not None
     if is_across and damping is None:
         raise InputError("must be given with --at, --across and --no-gain", field="--damping", value="nothing")
+    if solve_for is not None and (is_across or fmax is not None):
+        rule = "goes with --damping alone, without --at, --across, --no-gain and --fmax"
+        raise InputError(rule, field="--solve-for", value=repr(solve_for))
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
@@ -122,7 +125,7 @@ def advise(
         wave = advise_wave(case, float(fmax or 0), loss, wavelengths, phase_error)
         echo_answer(wave.as_dict(), _wave_lines(wave), as_json)
     else:
-        _advise_damping(case, damping, solve_for, as_json)
+        _advise_damping(case, damping, solve_for or "dt", as_json)
 
 
 def _wave_lines(advice: WaveAdvice) -> Iterator[str]:
