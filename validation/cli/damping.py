@@ -296,13 +296,18 @@ def _advice_lines(advice: Advice, errors: list[dict[str, Any]]) -> Iterator[str]
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 
-    steps = "never" if solution.settling_steps is None else f"{solution.settling_steps} steps"
-    seconds = "" if solution.settling_seconds is None else f" = {solution.settling_seconds:.4g} s"
+    settles = f"never (from the {solution.settling_from})"
+    if solution.settling_from == NO_STATIC:
+        settles = f"nowhere: the loads have {NO_STATIC}"
+    elif solution.settling_steps is not None:
+        steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
+        settles = f"{steps} (from the {solution.settling_from})"
     yield "damping ratio", f"{100 * solution.damping:.6g} %"
     yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
-    yield "displacement settles", f"{steps}{seconds} (from the {solution.settling_from})"
+    yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
     for name in ("fem", "continuum"):
