@@ -54,7 +54,9 @@ class Solution:
 
     value: float  # dt [s], gg [1] or delta [1]
     damping: float  # xi of the first axial mode there [1]
-    settling_steps: int | None  # displacement within 1 % of static under the scene's loads for ever after; None if never
+    settling_steps: (
+        int | None
+    )  # displacement within 1 % of static under the scene's loads for ever after; None if never
     settling_seconds: float | None  # the same [s]
     settling_from: str  # "history", "envelope" where the history would be too long, or `NO_STATIC`
     alpha: float  # weight of the new acceleration in the displacement [1]

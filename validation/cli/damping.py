@@ -126,7 +126,7 @@ def advise(
     """
     from dataclasses import asdict
 
-    from validation.advice.columns import advised, column_alarms, limits
+    from validation.advice.columns import advised, column_alarms, limits, rest
     from validation.advice.plain import plain
     from validation.errors import InputError
     from validation.scenes.features import refuse_nonlinear
@@ -158,8 +158,11 @@ def advise(
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
+        with _progress("advise", between_calls=True):
+            resting = rest(case)
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
-        echo_answer(plain(asdict(bounds)), map(broken, (*advised(case, bounds), *alarms)), as_json)
+        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
+        echo_answer(plain(data), map(broken, (*advised(case, bounds, resting), *alarms)), as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
