@@ -143,7 +143,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         rows = [(f"no peak from {exact_response.frequency[0]:g} to {exact_response.frequency[-1]:g} Hz",)]
     echo(columns(rows))
     if left_out > 0:
-        echo(f"note: {PEAKS} peaks of each at most: unbounded ones, from the lowest frequency on, before the highest others")
+        echo(f"note: {PEAKS} peaks of each at most, unbounded ones before the highest others")
     if has_unbounded:
         echo("note: unbounded: no damping; the amplitude has no limit at this natural frequency")
     if exact_response.frequency[-1] > limit:
