@@ -15,6 +15,7 @@ from validation.cli.app import (
     SceneArgument,
     SetOption,
     _progress,
+    announced,
     app,
     one_case,
     refuse_bad_input,
@@ -118,11 +119,14 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     from validation.engine.case import Case
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
+    from validation.solvers.registry import get_solver
 
     rows: dict[str, Row] = {}
     absent: dict[str, str] = {}
     for number, (name, scene) in enumerate(scenes.items()):
-        progress(number, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
+        label = f"at most; {name}, {scene.time.steps} steps"
+        progress(number, len(scenes) + 1 + RAISES, label)
+        progress(number, len(scenes) + 1 + RAISES, label + announced(get_solver(name), scene))
         row, _ = execute(Case(scene, name), "", "contact")
         if name == own():
             refuse_bad_input(scene.name, name, row)
