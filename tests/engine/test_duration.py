@@ -13,12 +13,20 @@ LONG = load_scene("field-opening").with_values({"time.steps": 6400})
 
 
 @pytest.mark.parametrize(
-    ("earlier", "later", "times", "seconds"),
-    [(1.0, 2.0, 8.0, 16.0), (1.0, 4.0, 4.0, 64.0), (3.0, 4.0, 4.0, 10.0), (2.0, 1.9, 4.0, 1.9)],
-    ids=["linear", "quadratic", "a fixed part of 2 s", "nothing but noise"],
+    ("earlier", "later", "times", "seconds", "is_least"),
+    [
+        (1.0, 2.0, 8.0, 16.0, False),
+        (1.0, 4.0, 4.0, 64.0, False),
+        (3.0, 4.0, 4.0, 10.0, False),
+        (2.0, 1.9, 4.0, 1.9, False),
+        (1.0, 17.0, 8.0, 136.0, True),
+    ],
+    ids=["linear", "quadratic", "a fixed part of 2 s", "nothing but noise", "more switches set in"],
 )
-def test_a_run_takes_what_its_parts_say(earlier: float, later: float, times: float, seconds: float) -> None:
-    assert duration.extrapolated(earlier, later, times) == pytest.approx(seconds)
+def test_a_run_takes_what_its_parts_say(
+    earlier: float, later: float, times: float, seconds: float, is_least: bool
+) -> None:
+    assert duration.extrapolated(earlier, later, times) == duration.Prediction(pytest.approx(seconds), is_least)
 
 
 @pytest.mark.parametrize(("cost", "seconds"), [(0.01, 64.0), (1e-5, None)])
@@ -38,8 +46,8 @@ def test_a_long_run_is_predicted_and_a_short_one_is_not(
 
     monkeypatch.setattr(duration, "completed", completed)
     monkeypatch.setattr(duration.time, "perf_counter", now)
-    predicted = duration.predicted_seconds(get_solver("fem"), LONG)
-    assert predicted == (None if seconds is None else pytest.approx(seconds))
+    predicted = duration.predicted_duration(get_solver("fem"), LONG)
+    assert predicted == (None if seconds is None else duration.Prediction(pytest.approx(seconds)))
     assert max(steps) <= LONG.time.steps / 4
 
 
@@ -48,7 +56,7 @@ def test_what_is_known_to_be_short_is_not_run_for_it(
     monkeypatch: pytest.MonkeyPatch, solver: str, values: dict[str, str]
 ) -> None:
     monkeypatch.delattr(duration, "completed")
-    assert duration.predicted_seconds(get_solver(solver), LONG.with_values(values)) is None
+    assert duration.predicted_duration(get_solver(solver), LONG.with_values(values)) is None
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(36.4, "36 s"), (126.0, "2 m 6 s"), (59.7, "1 m 0 s")])

@@ -200,12 +200,12 @@ def announced(solver: Solver, scene: Scene, full: bool = False) -> str:
     import sys
 
     from validation.cli.printing.output import echo, in_minutes
-    from validation.engine.duration import predicted_seconds
+    from validation.engine.duration import predicted_duration
 
-    seconds = predicted_seconds(solver, scene, full)
-    if seconds is None:
+    prediction = predicted_duration(solver, scene, full)
+    if prediction is None:
         return ""
-    words = f"about {in_minutes(seconds)}"
+    words = f"{'more than' if prediction.is_least else 'about'} {in_minutes(prediction.seconds)}"
     if not sys.stderr.isatty():
         echo(f"{scene.name}, {solver.name}: {scene.time.steps} steps, {words}", err=True)
     return f", {words}"

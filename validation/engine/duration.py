@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import dataclass
 
 from validation.engine.measure import completed
 from validation.runs.run import Outcome
@@ -20,11 +21,20 @@ FEWEST = 2  # steps of such a run
 NOISE = 0.05  # seconds below which a run tells nothing
 TOLD = 5.0  # seconds from which on a prediction is of interest
 ENOUGH = 1.0  # seconds of a run after which no longer one is made
+STEADY = 3.0  # exponent beyond which more switches and digits set in, and a run takes longer than in proportion
 PREDICTED = (Role.REFERENCE, Role.LIMIT, Role.TRUTH)  # DDA's own steps take seconds at most
 
 
-def predicted_seconds(solver: Solver, scene: Scene, full: bool = False) -> float | None:
-    """Return about how long a run is going to take [s]; None where it is short, or linear and so known to be.
+@dataclass(frozen=True)
+class Prediction:
+    """How long a run is going to take."""
+
+    seconds: float
+    is_least: bool = False  # whether that is a lower bound, else about what it takes
+
+
+def predicted_duration(solver: Solver, scene: Scene, full: bool = False) -> Prediction | None:
+    """Return how long a run is going to take; None where it is short, or linear and so known to be.
 
     Parameters
     ----------
@@ -48,15 +58,17 @@ def predicted_seconds(solver: Solver, scene: Scene, full: bool = False) -> float
             return None
         if earlier >= NOISE:
             expected = extrapolated(earlier, seconds, scene.time.steps / steps)
-            if seconds > ENOUGH or expected < TOLD:
-                break
+        if seconds > ENOUGH:
+            break
         earlier = seconds
-    return expected if expected is not None and expected >= TOLD else None
+    return expected if expected is not None and expected.seconds >= TOLD else None
 
 
-def extrapolated(earlier: float, later: float, times: float) -> float:
-    """Return the seconds of a run `times` as long as one that took `later`, and `earlier` at half its length [s]."""
+def extrapolated(earlier: float, later: float, times: float) -> Prediction:
+    """Predict a run `times` as long as one that took `later` seconds, and `earlier` at half its length."""
     growth = math.log2(later / earlier)
+    if growth > STEADY:
+        return Prediction(later * times, is_least=True)
     if growth >= 1:
-        return later * times**growth
-    return later + 2 * max(later - earlier, 0.0) * (times - 1)
+        return Prediction(later * times**growth)
+    return Prediction(later + 2 * max(later - earlier, 0.0) * (times - 1))
