@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from validation.runs.row import Row
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
-    from validation.solvers.contract import Solver
 
 PASSED = 0
 GATE_FAILED = 1
@@ -193,19 +192,3 @@ def _progress(
             timer.join()
         if bar.live.is_started:
             bar.stop()
-
-
-def announced(solver: Solver, scene: Scene, full: bool = False) -> str:
-    """Say on standard error, if no progress bar does, how long a long run is going to take; return the words."""
-    import sys
-
-    from validation.cli.printing.output import echo, in_minutes
-    from validation.engine.duration import predicted_duration
-
-    prediction = predicted_duration(solver, scene, full)
-    if prediction is None:
-        return ""
-    words = f"{'more than' if prediction.is_least else 'about'} {in_minutes(prediction.seconds)}"
-    if not sys.stderr.isatty():
-        echo(f"{scene.name}, {solver.name}: {scene.time.steps} steps, {words}", err=True)
-    return f", {words}"

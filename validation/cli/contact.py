@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from validation.cli.announcing import announced
 from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
@@ -15,7 +16,6 @@ from validation.cli.app import (
     SceneArgument,
     SetOption,
     _progress,
-    announced,
     app,
     one_case,
     refuse_bad_input,
@@ -126,7 +126,8 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     for number, (name, scene) in enumerate(scenes.items()):
         label = f"at most; {name}, {scene.time.steps} steps"
         progress(number, len(scenes) + 1 + RAISES, label)
-        progress(number, len(scenes) + 1 + RAISES, label + announced(get_solver(name), scene))
+        if words := announced(get_solver(name), scene):
+            progress(number, len(scenes) + 1 + RAISES, label + words)
         row, _ = execute(Case(scene, name), "", "contact")
         if name == own():
             refuse_bad_input(scene.name, name, row)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Solver
     from validation.studies.declaration import Study
+from validation.cli.announcing import announced
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -42,7 +43,6 @@ from validation.cli.app import (
     SetOption,
     SummaryOption,
     _progress,
-    announced,
     app,
     known_targets,
     one_case,
