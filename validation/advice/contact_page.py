@@ -244,7 +244,8 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     load = abs(opened.resultant_load(scene))
     why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
-        f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
+        f"{why}: a restitution within {error:g} of the block's own (both over the speed of approach) and a penetration "
+        f"below {depth:g} m, "
         f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
@@ -283,7 +284,7 @@ def _allowed(steps: Mapping[str, Any] | None, gg: float) -> str:
         return "not known for this scheme, contact rule, outline or rigid stop"
     if steps["longest"] is None:
         discount = f" with gg = {gg:g}" if gg < 1 else ""
-        return f"none{discount}; the least error is {100 * steps['best']:.3g} %, at dt = {steps['best_step']:.3g} s"
+        return f"none{discount}; the least difference is {steps['best']:.3g}, at dt = {steps['best_step']:.3g} s"
     if steps["shortest"] is None:
         return f"dt <= {steps['longest']:.3g} s"
     return f"dt from {steps['shortest']:.3g} s, below which gg takes more, to {steps['longest']:.3g} s"

@@ -93,7 +93,7 @@ def advise(
     """
     from dataclasses import asdict
 
-    from validation.advice.columns import advised, column_alarms, limits
+    from validation.advice.columns import advised, column_alarms, limits, rest
     from validation.advice.plain import plain
     from validation.errors import InputError
     from validation.scenes.features import refuse_nonlinear
@@ -108,8 +108,11 @@ def advise(
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
+        with _progress("advise", between_calls=True):
+            resting = rest(case)
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
-        echo_answer(plain(asdict(bounds)), map(broken, (*advised(case, bounds), *alarms)), as_json)
+        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
+        echo_answer(plain(data), map(broken, (*advised(case, bounds, resting), *alarms)), as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
@@ -210,13 +213,18 @@ def _advice_lines(advice: Advice, errors: list[dict[str, Any]]) -> Iterator[str]
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 
-    steps = "never" if solution.settling_steps is None else f"{solution.settling_steps} steps"
-    seconds = "" if solution.settling_seconds is None else f" = {solution.settling_seconds:.4g} s"
+    settles = f"never (from the {solution.settling_from})"
+    if solution.settling_from == NO_STATIC:
+        settles = f"nowhere: the loads have {NO_STATIC}"
+    elif solution.settling_steps is not None:
+        steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
+        settles = f"{steps} (from the {solution.settling_from})"
     yield "damping ratio", f"{100 * solution.damping:.6g} %"
     yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
-    yield "displacement settles", f"{steps}{seconds} (from the {solution.settling_from})"
+    yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
     for name in ("fem", "continuum"):

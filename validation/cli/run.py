@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Solver
     from validation.suite.declaration import Study
+from validation.cli.announcing import announced
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -383,7 +384,10 @@ def solve(
     case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
-    ended = _run_case(adapter, case, full or solver.endswith(FULL), fields)
+    is_full = full or solver.endswith(FULL)
+    with _progress(f"{case.name} {solver}", between_calls=True) as progress:
+        progress(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        ended = _run_case(adapter, case, is_full, fields)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)

@@ -1,4 +1,4 @@
-r"""Columns whose contacts open or slip: how the open-close iteration ends, when a stack rests, and its static state.
+r"""Columns whose contacts open or slip: end of the open-close iteration, ring-down of a stack, its static state.
 
 A step under the scheme makes of the contacts of N blocks one problem with a tridiagonal matrix, whose entries beside
 the diagonal are at most zero where a block is rigid or
@@ -19,6 +19,7 @@ import numpy as np
 
 from validation.runs.history import Array
 from validation.scenes.column import NEAR, ColumnSection
+from validation.theory.stepping import Stepping
 
 GRID = 33  # values of w at which a root is looked for at once
 OCTAVE = 2.0  # of them; two modes of a column within a thirty-second of one are taken for none
@@ -129,19 +130,26 @@ def _top_stress(column: ColumnSection, frequencies: Array) -> Array:
     return stress
 
 
-def settling_time(omega: float, step: float, delta: float, gg: float, share: float = 1e-3) -> float:
-    """Return the time in which a vibration falls to a share of its amplitude under a step that is small for it [s].
+def ring_down(omega: float, stepping: Stepping, share: float = 1e-3) -> float:
+    """Return the time in which a free vibration falls to a share of its amplitude under a step [s].
 
-    ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)): the algorithmic damping of the scheme and the
+    dt ln(1 / share) / -ln |z|, z the largest root of a step at w dt. Where the step is small for the vibration that is
+    ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)) of Newmark's scheme: its algorithmic damping and the
     discount, which is a rate per step. Infinite where neither damps.
 
     Parameters
     ----------
     omega
         Of the vibration [rad/s].
+    stepping
+        The scheme and its step.
     """
-    rate = omega**2 * (delta - 0.5) * step / 2 + (1 - gg) / (2 * step)
-    return math.log(1 / share) / rate if rate > 0 else math.inf
+    if not stepping.damps and stepping.gg == 1:
+        return math.inf
+    radius = stepping.spectral_radius(omega * stepping.step)
+    if radius >= 1:
+        return math.inf
+    return 0.0 if radius == 0 else stepping.step * math.log(1 / share) / -math.log(radius)
 
 
 def static_forces(weights: Sequence[float], pressure: float = 0.0) -> list[float]:

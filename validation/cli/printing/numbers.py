@@ -210,8 +210,9 @@ def _contacts(scene: Scene) -> Iterator[Number]:
         yield Number("dt face", bounds.far_face_step, "s", "step below which a block's far face moves the wrong way")
     if bounds.lowest is not None:
         yield Number("w1", bounds.lowest, "rad/s", "lowest frequency of the stack, all contacts closed")
-    if bounds.settling is not None:
-        yield Number("t rest", bounds.settling, "s", "time in which the stack comes to rest to a thousandth")
+    if bounds.ring_down is not None:
+        says = "in which that vibration falls to a thousandth while none opens or slips"
+        yield Number("t ring", bounds.ring_down, "s", says)
 
 
 # ---- rigid boxes --------------------------------------------------------------------------------------------------

@@ -32,6 +32,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
 from validation.studies.columns import formulas as study
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 DDA = "dda"
 DELTA_COLORS = {0.5: "#0072b2", 0.55: "#56b4e9", 0.6: "#009e73", 0.75: "#e69f00", 1.0: "#d55e00"}
@@ -207,17 +208,16 @@ def rest_table(groups: Groups, rows: DerivedRows) -> Table:
     """Return the time in which a stack comes to rest: closed form and as stepped."""
     own: dict[str, CaseValue] = {
         "scheme": scheme,
-        "predicted": settling_time,
+        "predicted": ring_down,
         "measured": lambda case: rows.get((case.name, study.REST), {}).get("time"),
     }
     return PAGE.table("rests", [PAGE.cells("rests", case, own) for case in cases_of(groups, study.SETTLE)])
 
 
-def settling_time(case: CaseResults) -> float:
-    """Return the time in which a stack comes to rest, in closed form [s]."""
+def ring_down(case: CaseResults) -> float:
+    """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
     column = column_of(case.scene)
     layer = column.layer[0]
     mass = layer.density * layer.thickness / layer.blocks
     omega = columns.lowest_frequency(column.contacts[0].stiffness, mass, layer.blocks)
-    time = case.scene.time
-    return columns.settling_time(omega, time.step, time.delta, time.discount)
+    return columns.ring_down(omega, Stepping.of(case.scene))

@@ -112,6 +112,12 @@ def answers(methods: MethodResults) -> Blocks:
     opens = PAGE.text("opens")
     if slow is not None:
         opens += PAGE.text("opens-cost", slow=slow)
+        conserving, fast = (
+            methods.number(f"{PART}refined-{name}", "order", "solves to 1 %") for name in ("conserving", "ch-0")
+        )
+        if conserving is not None and fast is not None:
+            opens += PAGE.text("opens-conserving", share=conserving / fast)
+        opens += "."
     never = PAGE.text("never")
     if None not in rebounds.values():
         never += PAGE.text("never-rebounds", **rebounds)

@@ -63,7 +63,8 @@ def lead(rows: DerivedRows) -> str:
         return ""
     return (
         f"Near its first frequency, at 52 Hz, the block responds with {1e3 * stepped:.1f} mm instead of "
-        f"{1e3 * exact:.1f} mm: at dt = 2 ms the step has removed {percent(1 - stepped / exact)} of the resonance."
+        f"{1e3 * exact:.1f} mm: at dt = 2 ms the step has removed {percent(1 - stepped / exact)} of it. At the first "
+        "frequency itself the exact answer has no bound, since nothing damps it."
     )
 
 
