@@ -14,7 +14,7 @@ from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
 from validation.scenes.tables import ContactSection
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
-from validation.studies.catalogue import STUDIES, get_study
+from validation.suite.folders import get_study, study_names
 
 PAGE = Path(__file__).parents[2] / "docs" / "metrics.md"
 
@@ -50,10 +50,10 @@ def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> No
 
 def test_studies_scenes_and_solvers_have_a_line_each() -> None:
     studies, scenes, solvers = (listed(word)[1:] for word in ("studies", "scenes", "solvers"))
-    assert [line.split()[0] for line in studies] == list(STUDIES)
+    assert [line.split()[0] for line in studies] == study_names()
     assert [line.split()[0] for line in scenes] == list(scene_names())
     assert [line.split()[0] for line in solvers] == solver_names()
-    for line, name in zip(studies, STUDIES, strict=True):
+    for line, name in zip(studies, study_names(), strict=True):
         assert line.split()[1] == str(len(get_study(name).scenes)) and line.endswith(get_study(name).title)
     for line, name in zip(scenes, scene_names(), strict=True):
         scene = load_scene(name)
@@ -82,7 +82,7 @@ def test_lists_fit_a_terminal_and_the_plain_one_a_screen(word: str, monkeypatch:
 def test_the_plain_list_counts_what_the_others_hold() -> None:
     lines = [line.split(maxsplit=2) for line in typed("list").stdout.splitlines() if line]
     counts = {name: int(count) for name, count, *_ in lines[:6]}
-    known = {"studies": STUDIES, "scenes": scene_names(), "solvers": solver_names(), "metrics": CATALOGUE}
+    known = {"studies": study_names(), "scenes": scene_names(), "solvers": solver_names(), "metrics": CATALOGUE}
     assert {name: counts[name] for name in known} == {name: len(names) for name, names in known.items()}
 
 

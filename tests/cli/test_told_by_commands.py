@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import typer
 from conftest import typed
+from validation.studies.contact import pack as contact_pack
+from validation.studies.contact import slipping_pack
 
 from validation import load_scene, response
 from validation.advice import rayleigh
@@ -23,8 +25,6 @@ from validation.report.render.terminal import STYLES, lines
 from validation.report.scene import numbers
 from validation.runs.run import Outcome, Run
 from validation.studies import pack
-from validation.studies.contact import pack as contact_pack
-from validation.studies.contact import slipping_pack
 from validation.studies.waves import pack as waves_pack
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})

@@ -249,7 +249,7 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     path = tmp_path / "theirs.csv"
     path.write_text("t;uy\n" + "\n".join(f"{t:.7g};{u:.7g}" for t, u in table))
     arguments = ["compare", "figures-3-4", path, "--set", "time.step=0.002", "--columns", "time=t,displacement=uy"]
-    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--report", tmp_path / "a.pdf")
+    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--out", tmp_path / "a.pdf")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
         "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); the"

@@ -198,3 +198,9 @@ def test_a_measured_point_of_so_many_rows_is_refused_too(tmp_path: Path) -> None
     path.write_text(f"measpoint1 = [\n{rows}\n];\n")
     with pytest.raises(InputError, match="must hold at most 10000 rows, got 19999"):
         read(path)
+
+
+def test_decimal_commas_beside_semicolons_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "comma.csv"
+    path.write_text("time;displacement\n0,1;-1,5e-3\n0,2;-2e-3\n0,3;-2,5e-3\n0,4;-3e-3\n")
+    assert np.array_equal(read(path).displacement, [-1.5e-3, -2e-3, -2.5e-3, -3e-3])

@@ -31,7 +31,7 @@ from validation.report.site import pages
 from validation.results import Results
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
-from validation.studies.catalogue import scene_study
+from validation.suite.folders import scene_study
 
 FAILING = "fail<!--ing"  # a name that would open a comment in a script
 HOSTILE = "</script><b>50 % & 'more' @feng2017"  # the key of a source cites nothing in a user's title

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 
 import pytest
 
@@ -68,3 +69,17 @@ def test_files_and_options_are_told_from_keys() -> None:
     with pytest.raises(InputError) as refused:
         parse_assignment("no equals sign")
     assert (refused.value.source, refused.value.field) == (None, "--set")
+
+
+def test_all_missing_keys_are_said_at_once() -> None:
+    with pytest.raises(InputError) as error:
+        parse_scene({"block": {"side": 2.0}, "load": {"pressure": 1e6}, "time": {"steps": 9}}, "s")
+    assert error.value.field == "block.density, block.young, time.step"
+
+
+def test_a_decimal_comma_of_a_file_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text("[block]\ndensity = 2,650\n")
+    with pytest.raises(InputError) as error:
+        load_scene(path)
+    assert error.value.advice == "2,650: a number has a point, and no comma"

@@ -13,10 +13,15 @@ from conftest import SCENE, refused
 
 from validation.diagnosis.reading import read
 from validation.errors import InputError
-from validation.runs.files import read_csv, read_table
+from validation.gates.changes import read_verdicts
+from validation.runs.files import read_csv, read_table, write_atomically
+from validation.runs.history import History
 from validation.runs.regular import regular
+from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome
 from validation.scenes.record import read_record
-from validation.scenes.scene import load_scene
+from validation.scenes.scene import load_scene, parse_assignment
 
 MARK = b"\xef\xbb\xbf"
 TABLE = b"time,x\n0,0\n1,0.5\n2,1\n"
@@ -65,7 +70,7 @@ def test_devices_and_directories_are_named(tmp_path: Path) -> None:
     for place, kind in ((Path("/dev/zero"), "device"), (tmp_path, "directory")):
         with pytest.raises(InputError, match=f"must be a regular file, got a {kind}"):
             regular(place)
-        for reader in (read_record, read_csv, read, load_scene):
+        for reader in (read_record, read_csv, read, load_scene, *([read_verdicts] if kind == "device" else [])):
             with pytest.raises(InputError, match=f"must be a regular file, got a {kind}"):
                 reader(place)
 
@@ -105,3 +110,100 @@ def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
     for reader, largest in ((load_scene, 1_000_000), (read, 100_000_000)):
         with pytest.raises(InputError, match=rf"^{path}: must be at most {largest} bytes, got 1000000000"):
             reader(path)
+
+
+def write(path: Path, content: bytes = b"new") -> None:
+    write_atomically(path, lambda stream: stream.write(content))
+
+
+def test_an_output_keeps_the_kind_of_what_stands_there(tmp_path: Path, limited: None) -> None:
+    target, link, pipe = tmp_path / "target.csv", tmp_path / "link.csv", tmp_path / "pipe.csv"
+    link.symlink_to(target)
+    write(link)
+    assert link.is_symlink() and target.read_bytes() == b"new"
+    os.mkfifo(pipe)
+    with pytest.raises(InputError) as error:
+        write(pipe)
+    assert error.value.rule == "is a pipe that no program reads"
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write(pipe)
+    assert pipe.is_fifo() and os.read(reader, 9) == b"new"
+    os.close(reader)
+    write(Path("/dev/null"))
+    assert Path("/dev/null").is_char_device()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "pipe.csv", "target.csv"]
+
+
+@pytest.mark.parametrize("option", ["solve --csv", "solve --fields", "run --summary"])
+def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(
+    option: str, tmp_path: Path, scene_file: Path
+) -> None:
+    command, name = option.split()
+    ending = ".xdmf" if name == "--fields" else ".txt"
+    folder, loop, lost = tmp_path / f"folder{ending}", tmp_path / f"loop{ending}", tmp_path / "absent" / f"a{ending}"
+    folder.mkdir()
+    loop.symlink_to(loop)
+    for place in (folder, loop, lost):
+        assert str(place) in refused(command, scene_file, name, place, cwd=tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([folder.name, loop.name, scene_file.name])
+
+
+def kept_row(directory: Path, **changes: object) -> Results:
+    """Return results of one row, whose history has two steps of one column."""
+    results = Results(directory)
+    row = Row("k", "s", "s", "dda", Outcome.COMPLETED, {})
+    results.append(row, History(np.array([0.1, 0.2]), {"displacement": np.zeros(2)}))
+    case = {"scene": "s", "title": "", "solver": "dda", "key": "k", "definition": {}}
+    results.write_json("studies/s.json", {"study": "s", "cases": [case]})
+    return results
+
+
+def test_a_history_that_is_not_as_it_was_kept_is_refused_unread(tmp_path: Path) -> None:
+    results = kept_row(tmp_path)
+    assert results.whole("s", histories=True)["study"] == "s"
+    path = tmp_path / "histories" / "k.npz"
+    bomb = {"time": np.zeros(10**6), "displacement": np.zeros(10**6)}  # packed to some kilobytes
+    for save, columns in (
+        (np.savez_compressed, bomb),
+        (np.savez, {"time": np.zeros(2)}),
+        (np.savez, {"time": np.zeros(900), "displacement": np.zeros(900)}),
+    ):
+        save(path, **columns)
+        with pytest.raises(InputError) as error:
+            results.whole("s", histories=True)
+        assert error.value.source == path
+
+
+@pytest.mark.parametrize("name", ["rows.jsonl", "verdicts.json", "studies/s.json", "histories/k.npz", ".lock"])
+def test_a_pipe_in_a_results_directory_is_not_waited_for(name: str, tmp_path: Path, limited: None) -> None:
+    results = kept_row(tmp_path)
+    (tmp_path / name).unlink(missing_ok=True)
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(InputError) as error:
+        results.check()
+        results.whole("s", histories=True)
+        results.write_verdicts("s", [])
+    assert error.value.value == "a pipe"
+
+
+@pytest.mark.parametrize(
+    ("assignment", "words"),
+    [
+        ("time.step=" + "9" * 5001, "must have at most 4000 characters"),
+        ("time.step=" + "9" * 4000, "time.step"),
+        ("block.side=2\nyoung=3", "must be one line"),
+        ("fem.mesh=a\0b", "NUL"),
+    ],
+)
+def test_an_assignment_is_read_whole_or_refused(assignment: str, words: str, scene_file: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        load_scene(scene_file).with_values(dict([parse_assignment(assignment)]))
+
+
+def test_blocks_are_counted_before_lists_are_made(tmp_path: Path) -> None:
+    path = tmp_path / "column.toml"
+    layer = "thickness = 1.0\ndensity = 2500.0\nyoung = 1e9\nblocks = 1000000000\n"
+    path.write_text(f'[column]\nmotion = "shear"\n[[column.layer]]\n{layer}[time]\nstep = 1e-3\nsteps = 9\n')
+    with pytest.raises(InputError) as error:
+        load_scene(path)
+    assert error.value.field == "column.layer.0.blocks"

@@ -47,6 +47,24 @@ def options(
     """Take the options that stand before a command."""
 
 
+def writable(path: Path | None) -> Path | None:
+    """Refuse a file that could not be written in the end, before anything is computed."""
+    if path is not None:
+        from validation.runs.files import check_output
+
+        check_output(path)
+    return path
+
+
+def writable_pdf(path: Path | None) -> Path | None:
+    """Refuse a file that is no PDF by its name, or could not be written."""
+    if path is not None and path.suffix.lower() != ".pdf":
+        from validation.errors import InputError
+
+        raise InputError("must end in .pdf", source=path)
+    return writable(path)
+
+
 ResultsOption = Annotated[Path, typer.Option("--results", help="Results directory.", metavar="DIR")]
 SetOption = Annotated[
     list[str] | None,
@@ -70,7 +88,12 @@ RanksOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 SummaryOption = Annotated[
     Path | None,
-    typer.Option("--summary", help="Write the verdicts as Markdown, for the summary page of a CI job.", metavar="FILE"),
+    typer.Option(
+        "--summary",
+        help="Write the verdicts as Markdown, for the summary page of a CI job.",
+        metavar="FILE",
+        callback=writable,
+    ),
 ]
 BaselineOption = Annotated[
     Path | None,
@@ -92,9 +115,9 @@ def known_scenes(incomplete: str) -> list[str]:
 
 def known_targets(incomplete: str) -> list[str]:
     """Return the studies and built-in scenes that a shell may complete a word to."""
-    from validation.studies.catalogue import STUDIES
+    from validation.suite.folders import study_names
 
-    return [name for name in (*STUDIES, "all") if name.startswith(incomplete)] + known_scenes(incomplete)
+    return [name for name in (*study_names(), "all") if name.startswith(incomplete)] + known_scenes(incomplete)
 
 
 SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.", autocompletion=known_scenes)]

@@ -7,14 +7,16 @@ from typing import Annotated
 
 import typer
 
-from validation.cli.app import RESULTS, JsonOption, ResultsOption, app
+from validation.cli.app import RESULTS, JsonOption, ResultsOption, app, writable
 from validation.cli.printing.output import echo, echo_json
 
 
 @app.command()
 def claims(
     of: Annotated[str, typer.Option("--of", help="Whose: paper or literature.", metavar="NAME")] = "paper",
-    out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE", callback=writable)
+    ] = None,
     as_json: JsonOption = False,
     results: ResultsOption = RESULTS,
 ) -> None:
@@ -28,13 +30,11 @@ def claims(
     from validation.errors import InputError
     from validation.runs.files import write_atomically
     from validation.runs.results import Results
-    from validation.studies.claims import REGISTER, entries, page
-    from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE
-    from validation.studies.paper.study import CLAIMS_OF_THE_PAPER
+    from validation.suite.claims import REGISTER, entries, page
+    from validation.suite.folders import register_of, studies_with_registers
 
-    registers = {register.study: register for register in (CLAIMS_OF_THE_PAPER, CLAIMS_OF_THE_LITERATURE)}
-    check_choice("--of", of, registers)
-    register = registers[of]
+    check_choice("--of", of, studies_with_registers())
+    register = register_of(of)
     rows = [row for row in Results(results).manifest(of).get("derived", []) if row["scene"] == REGISTER]
     if not rows:
         raise InputError(f"no results of the study {of}", source=results, advice=f"run it first: dda-validate run {of}")

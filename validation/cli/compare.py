@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import JsonOption, SetOption, _progress, app, one_case
+from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
 from validation.cli.printing.output import echo, echo_json
 
 if TYPE_CHECKING:
@@ -36,7 +36,8 @@ def compare(
         float, typer.Option(help="Relative difference (L2) up to which a column counts as the same.", min=0.0, max=1.0)
     ] = 0.0,
     report: Annotated[
-        Path | None, typer.Option("--out", "--report", help="Write a one-page report.", metavar="FILE.pdf")
+        Path | None,
+        typer.Option("--out", help="Write a one-page report.", metavar="FILE.pdf", callback=writable_pdf),
     ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,

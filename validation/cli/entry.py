@@ -21,7 +21,6 @@ from validation.cli import (
     report,
     run,
     show,
-    translate,
     verdicts,
     waves,
     work,
@@ -42,7 +41,6 @@ COMMANDS = (
     contact,
     compare,
     judge,
-    translate,
     verdicts,
     waves,
     work,
@@ -51,7 +49,7 @@ GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "merge", "solve"),
     "Results": ("report", "rows", "claims", "diff", "record"),
     "Your own code or program": ("judge", "compare", "export-pack"),
-    "Time step, springs and damping": ("advise", "damping", "contact", "translate", "response", "rayleigh"),
+    "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (

@@ -141,9 +141,10 @@ def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool
     with _progress("judge", between_calls=True) as progress:
         sets = answers.read_sets(root, progress=progress)
         judged = judged_sets(sets, progress)
-        written = [f"wrote {write_site(judged, out, progress)}"] if out is not None else []
-        if keep is not None:
-            written += [f"kept in {place}" for place in answers.keep(sets, keep)]
+        places = [] if keep is None else answers.keep(sets, keep)  # first: what it refuses leaves no page
+        written = [f"kept in {place}" for place in places]
+        if out is not None:
+            written.append(f"wrote {write_site(judged, out, progress)}")
     if as_json:
         echo_json(verdicts(judged))
     else:

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Solver
-    from validation.studies.declaration import Study
+    from validation.suite.declaration import Study
+from validation.cli.announcing import announced
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -47,6 +48,7 @@ from validation.cli.app import (
     one_case,
     print_warnings,
     refuse_bad_input,
+    writable,
 )
 from validation.cli.printing.output import echo, echo_json
 from validation.cli.signals import promise_rows
@@ -128,7 +130,7 @@ def run(
     from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import STUDIES, resolve
+    from validation.suite.folders import resolve, study_names
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     part = None if shard is None else Shard.parse(shard)
@@ -151,7 +153,7 @@ def run(
         }
         raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
     for study in studies:
-        if study.name not in STUDIES:  # the suite's own studies are extreme on purpose
+        if study.name not in study_names():  # the suite's own studies are extreme on purpose
             for scene in study.scenes:
                 if not isinstance(scene, str):
                     print_warnings(scene)
@@ -175,7 +177,7 @@ class Judging:
         from validation.errors import InputError
         from validation.gates.changes import read_verdicts
         from validation.solvers.registry import is_solver, solver_names
-        from validation.studies.field.programs import known
+        from validation.suite.programs import known
 
         output_options = {"--verbose": self.verbose, "--json": self.as_json, "--quiet": self.quiet}
         exclusive = [option for option, is_set in output_options.items() if is_set]
@@ -189,10 +191,6 @@ class Judging:
                     field="--require",
                     value=repr(name),
                 )
-        if self.summary is not None and (self.summary.is_dir() or not self.summary.parent.is_dir()):
-            raise InputError(
-                "must be a file in an existing directory", field="--summary", value=repr(str(self.summary))
-            )
         return None if self.baseline is None else read_verdicts(self.baseline)
 
 
@@ -218,7 +216,7 @@ def answer_and_exit(
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run
     from validation.engine.measured import complaints, missing_gates
-    from validation.studies.catalogue import STUDIES
+    from validation.suite.folders import study_names
 
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(results.verdicts, names)))
@@ -227,7 +225,7 @@ def answer_and_exit(
     messages = [*complaints(runs), *missing_gates(runs, judging.required)]
     verdicts = list(itertools.chain.from_iterable(judged.verdicts for judged in runs))
     status = _status(verdicts, judging.required, any(judged.refused for judged in runs), worse, messages)
-    answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(STUDIES), status)
+    answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(study_names()), status)
     with tolerate_closed_pipe():
         if judging.as_json:
             echo_json(as_data(answer))
@@ -350,12 +348,15 @@ def _print_answer(answer: RunAnswer, verbose: bool) -> None:
 def solve(
     scene: SceneArgument,
     solver: Annotated[str, typer.Option(help="Solver, see `dda-validate list`.", metavar="NAME")] = "dda",
-    csv: Annotated[Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE")] = None,
+    csv: Annotated[
+        Path | None, typer.Option(help="Write the history as CSV.", metavar="FILE", callback=writable)
+    ] = None,
     fields: Annotated[
         Path | None,
         typer.Option(
             help="Write displacement and stress fields for ParaView (.xdmf: all steps, .vtu: the last one).",
             metavar="FILE",
+            callback=writable,
         ),
     ] = None,
     assignments: SetOption = None,
@@ -380,7 +381,10 @@ def solve(
     case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
-    ended = _run_case(adapter, case, full or solver.endswith(FULL), fields)
+    is_full = full or solver.endswith(FULL)
+    with _progress(f"{case.name} {solver}", between_calls=True) as progress:
+        progress(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        ended = _run_case(adapter, case, is_full, fields)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)

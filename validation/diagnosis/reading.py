@@ -165,8 +165,9 @@ def _cells(line: str) -> list[str]:
 
 
 def _numbers(row: list[str]) -> list[float] | None:
+    """Return the numbers of a row; a comma left within a cell is a decimal comma, a D opens an exponent."""
     try:
-        return [float(cell.replace("D", "e").replace("d", "e")) for cell in row]
+        return [float(cell.replace("D", "e").replace("d", "e").replace(",", ".")) for cell in row]
     except ValueError:
         return None
 

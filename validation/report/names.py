@@ -10,7 +10,7 @@ from validation.runs.history import History
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.text import shown, visible
-from validation.studies.catalogue import STUDIES
+from validation.suite.folders import study_names
 
 DOLLAR = "$"  # between two bare ones a figure sets mathematics
 KEY = re.compile(r"@(?=[a-z]+[0-9]{4}\b)")  # what would cite a source
@@ -71,7 +71,7 @@ class Readable(Results):
 
 def _change(study: str) -> Callable[[str], str]:
     """Return what makes the texts of a study fit to be shown."""
-    return escaped if study in STUDIES else quoted
+    return escaped if study in study_names() else quoted
 
 
 def with_texts(data: Any, change: Callable[[str], str], skipped: Collection[str] = ()) -> Any:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import errno
 import io
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,27 +18,37 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import Array, History
-from validation.runs.regular import regular
+from validation.runs.regular import kind_of, regular
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
 
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
-    """Yield a temporary path of the same ending beside `path`; it takes the name when the block ends well.
+    """Yield a temporary path of the same ending; what stands there when the block ends well becomes the file.
+
+    A regular file appears under its name at once, a link keeps its target and its target is written, a pipe or a
+    character device is written to.
 
     Raises
     ------
     InputError
-        The directory or the file cannot be written.
+        The directory or the file cannot be written, or what stands there is a directory, a socket or a disk.
     """
     temporary = ""
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
+        is_stream = _is_stream(path)
+        target = check_output(path)
+        directory = None if is_stream else target.parent
+        handle, temporary = tempfile.mkstemp(dir=directory, prefix=f".{target.stem}.", suffix=path.suffix)
         os.close(handle)
         yield Path(temporary)
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        if is_stream:
+            _copy_into(target, Path(temporary))
+            Path(temporary).unlink()
+        else:
+            os.chmod(temporary, 0o666 & ~_umask())
+            os.replace(temporary, target)
     except BaseException as error:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
@@ -56,8 +68,10 @@ def atomic_directory(out: Path) -> Iterator[Path]:
     InputError
         The directory cannot be made or replaced.
     """
-    target = out.absolute()
+    target = Path(os.path.realpath(out))  # of a link the directory that it names is replaced, and the link stays
     temporary: Path | None = None
+    if target.exists() and not target.is_dir():
+        raise InputError("must be a directory", source=out, value=kind_of(target.stat().st_mode))
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         temporary = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
@@ -78,6 +92,57 @@ def atomic_directory(out: Path) -> Iterator[Path]:
     finally:
         if temporary is not None:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def check_output(path: Path) -> Path:
+    """Return what a path that will be written leads to; refuse one that cannot be.
+
+    Raises
+    ------
+    InputError
+        A directory, a socket or a disk stands there, a link leads to itself, or the directory does not exist.
+    """
+    target = path if _is_stream(path) else Path(os.path.realpath(path))
+    if target.is_symlink() and not target.exists():
+        raise InputError("cannot be written: a link that leads to itself", source=path, advice="choose another place")
+    if not target.parent.is_dir():
+        raise InputError(
+            f"cannot be written: {target.parent} is not a directory", source=path, advice="choose another place"
+        )
+    if target.exists():
+        mode = target.stat().st_mode
+        if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode) or stat.S_ISCHR(mode)):
+            raise InputError("must be a file, a pipe or a character device", source=path, value=kind_of(mode))
+    return target
+
+
+def _is_stream(path: Path) -> bool:
+    """Whether bytes go into what is there: a pipe, a device, or an open descriptor such as /dev/stdout."""
+    if not path.exists():
+        return False
+    if not path.is_file():
+        return not path.is_dir()
+    link = path
+    while link.is_symlink():
+        if link.parent.resolve().parts[1:2] == ("proc",):
+            return True
+        link = link.parent / os.readlink(link)
+    return False
+
+
+def _copy_into(target: Path, content: Path) -> None:
+    """Write a file's bytes into a pipe or a device, which keeps its kind; a pipe that nobody reads is refused."""
+    try:
+        handle = os.open(target, os.O_WRONLY | os.O_APPEND | os.O_NONBLOCK)  # without waiting for a reader
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            raise InputError(
+                "is a pipe that no program reads", source=target, advice="start the reader first"
+            ) from None
+        raise
+    os.set_blocking(handle, True)
+    with os.fdopen(handle, "wb") as stream, content.open("rb") as source:
+        shutil.copyfileobj(source, stream)
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
@@ -148,7 +213,7 @@ def read_table(path: Path) -> tuple[list[str], Array]:
             table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
-    except (ValueError, UnicodeDecodeError) as error:
+    except (ValueError, csv.Error) as error:  # no numbers, no UTF-8, or a field beyond csv's limit
         raise InputError(f"must be a table of numbers under a header: {error}", source=path) from None
     if not names or names[0] != "time" or table.shape[1] != len(names):
         raise InputError("header must begin with time and name every column", source=path, value=repr(",".join(names)))

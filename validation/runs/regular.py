@@ -9,12 +9,18 @@ from pathlib import Path
 from validation.errors import InputError
 
 KINDS = (
+    (stat.S_ISREG, "file"),
     (stat.S_ISDIR, "directory"),
     (stat.S_ISFIFO, "pipe"),
     (stat.S_ISSOCK, "socket"),
     (stat.S_ISCHR, "device"),
-    (stat.S_ISBLK, "device"),
+    (stat.S_ISBLK, "disk"),
 )
+
+
+def kind_of(mode: int) -> str:
+    """Return what stands at a path with this mode, as "a pipe"."""
+    return f"a {next((name for is_kind, name in KINDS if is_kind(mode)), 'special file')}"
 
 
 def regular(path: Path, largest: float = math.inf) -> None:
@@ -29,7 +35,23 @@ def regular(path: Path, largest: float = math.inf) -> None:
     """
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
-        kind = next((name for is_kind, name in KINDS if is_kind(status.st_mode)), "something else")
-        raise InputError("must be a regular file", source=path, value=f"a {kind}")
+        raise InputError("must be a regular file", source=path, value=kind_of(status.st_mode))
     if status.st_size > largest:
         raise InputError(f"must be at most {largest:.0f} bytes", source=path, value=status.st_size)
+
+
+def regular_or_absent(path: Path) -> bool:
+    """Whether a file is there, where nothing but a regular file may be.
+
+    Raises
+    ------
+    InputError
+        Something else is there.
+    OSError
+        It is out of reach.
+    """
+    try:
+        regular(path)
+    except FileNotFoundError:
+        return False
+    return True

@@ -14,6 +14,7 @@ import os
 import zipfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -24,10 +25,12 @@ from validation.runs import strict
 from validation.runs.files import write_atomically
 from validation.runs.history import Array, History
 from validation.runs.records import Manifest, Named, VerdictRecord, Verdicts
+from validation.runs.regular import regular, regular_or_absent
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 ADVICE = "delete it and run again"
+LARGEST_HEADER = 4096  # bytes before a column's numbers; numpy writes 128
 WITH_HISTORY = (Outcome.COMPLETED, Outcome.UNSTABLE)  # outcomes whose history is kept
 _parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
 
@@ -51,11 +54,9 @@ class Results:
     def rows(self) -> dict[str, Row]:
         """Return the finished rows by key, the latest of each."""
         path = self.directory / "rows.jsonl"
-        if not path.exists():
-            return {}
-        if not path.is_file():
-            raise InputError("cannot be read: not a file", source=path, advice="choose another place with --results")
         try:
+            if not regular_or_absent(path):
+                return {}
             parsed = map(_parsed, path.read_text(encoding="utf-8", errors="replace").splitlines())
         except OSError as error:
             raise InputError(
@@ -70,8 +71,10 @@ class Results:
         """
         if history is not None:
             self._save_history(row.key, history)
+            row = replace(row, steps=len(history.time), columns=tuple(history.columns))
         path = self._make("rows.jsonl")
         try:
+            regular_or_absent(path)
             handle = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
             try:
                 line = f"\n{row.line()}\n".encode()
@@ -188,6 +191,8 @@ class Results:
             elif histories and row.outcome in WITH_HISTORY and not self._history_file(row.key).exists():
                 part = "history"
             else:
+                if histories and row.outcome in WITH_HISTORY:
+                    _check_shape(self._history_file(row.key), row)
                 continue
             raise InputError(
                 f"the {part} of {case['scene']} {case['solver']} is missing",
@@ -249,6 +254,7 @@ class Results:
             return
         path = self._make(".lock")
         try:
+            regular_or_absent(path)
             handle = os.open(path, os.O_WRONLY | os.O_CREAT, 0o666)
         except OSError as error:
             raise InputError(
@@ -261,17 +267,40 @@ class Results:
             os.close(handle)
 
 
-def _read_columns(path: Path) -> tuple[str, dict[str, Array]]:
-    """Return the key that a history was kept under, and its columns."""
+@contextmanager
+def _archive(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open a kept history, whose members are stored as they are: packed ones may be of any size."""
     try:
+        regular(path)
         with zipfile.ZipFile(path) as archive:
-            columns = {}
-            for name in archive.namelist():
-                with archive.open(name) as file:
-                    columns[name.removesuffix(".npy")] = np.lib.format.read_array(file, allow_pickle=False)
-            return archive.comment.decode(errors="replace"), columns
+            if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
+                raise ValueError
+            yield archive
+    except InputError:
+        raise
     except Exception:  # what a damaged file may raise is no closed list
         raise InputError("cannot be read as a history", source=path, advice=ADVICE) from None
+
+
+def _read_columns(path: Path) -> tuple[str, dict[str, Array]]:
+    """Return the key that a history was kept under, and its columns."""
+    with _archive(path) as archive:
+        columns = {}
+        for name in archive.namelist():
+            with archive.open(name) as file:
+                columns[name.removesuffix(".npy")] = np.lib.format.read_array(file, allow_pickle=False)
+        return archive.comment.decode(errors="replace"), columns
+
+
+def _check_shape(path: Path, row: Row) -> None:
+    """Refuse a kept history that has not the columns and steps of its row, from the archive's directory alone."""
+    with _archive(path) as archive:
+        sizes = {member.filename.removesuffix(".npy"): member.file_size for member in archive.infolist()}
+    content = 8 * row.steps  # bytes of a column of doubles
+    if {*sizes} != {"time", *row.columns}:
+        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
+    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
+        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
 
 
 def _defect(columns: dict[str, Array]) -> str | None:

@@ -18,7 +18,7 @@ class Row:
     """One finished case: what was run, how it ended, what it measured and what it cost.
 
     `metrics` holds numbers, ``"undefined"`` (no meaning here) or ``"not reported"`` (the column is absent);
-    `provenance` the versions and the commit that made the row.
+    `steps` and `columns` are those of the kept history; `provenance` the versions and the commit that made the row.
     """
 
     key: str
@@ -31,6 +31,8 @@ class Row:
     seconds: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     estimate: float | None = None
+    steps: int = 0
+    columns: tuple[str, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def line(self) -> str:
@@ -48,7 +50,12 @@ class Row:
             known_fields = {
                 name: value for name, value in data.items() if name in FIELDS
             }  # another version may say more
-            return cls(**known_fields | {"outcome": Outcome(data["outcome"]), "notes": tuple(data["notes"])})
+            typed = {
+                "outcome": Outcome(data["outcome"]),
+                "notes": tuple(data["notes"]),
+                "columns": tuple(data["columns"]),
+            }
+            return cls(**known_fields | typed)
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return None
 

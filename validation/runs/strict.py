@@ -11,8 +11,10 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from validation.errors import InputError
+from validation.runs.regular import regular
 
 LARGEST = 2**63  # what a count may be
+LARGEST_FILE = 512e6  # bytes; the verdicts and manifests of all studies are some megabytes
 
 
 def loads(text: str) -> Any:
@@ -40,8 +42,9 @@ def read(path: Path, kind: Any, advice: str, content: str = "what a run writes")
         It cannot be read, or is of another type; the line ends with the advice.
     """
     try:
+        regular(path, LARGEST_FILE)
         data = loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    except (FileNotFoundError, InputError):
         raise
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path, advice=advice) from None

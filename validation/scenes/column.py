@@ -13,6 +13,7 @@ from validation.scenes.tables import Angle, Count, Flag, NonNegative, Positive, 
 
 MOST_HEIGHTS = 99  # at which a history may look
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
+BlockCount = Annotated[Count, Field(le=100_000)]  # of a layer: faces are lists, made before memory is predicted
 PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
 FrictionAngle = Annotated[Angle, Field(ge=0)]
 OPENS, SLIPS, MOVES = 'law = "unilateral"', 'law = "frictional"', 'law = "unilateral" or "frictional"'
@@ -25,7 +26,7 @@ class LayerSection(Section):
     density: Annotated[Positive, Key("kg/m3", "mass of a volume")]
     young: Annotated[Stiffness, Key("Pa", "Young's modulus; inf: rigid blocks, where contacts open or slip")]
     poisson: Annotated[PoissonRatio, Key("", "Poisson's ratio")] = 0.0
-    blocks: Annotated[Count, Key("", "DDA blocks on each other")] = 1
+    blocks: Annotated[BlockCount, Key("", "DDA blocks on each other")] = 1
     velocity: Annotated[Real, Key("m/s", "at t = 0, upwards or with the shear", None, ("column." + MOVES,))] = 0.0
 
 

@@ -11,7 +11,7 @@ import functools
 import itertools
 import json
 import math
-import os
+import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -23,11 +23,14 @@ from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
 from validation.scenes.kinds import SceneTables
+from validation.scenes.places import scene_files
 from validation.scenes.tables import GateSection, RunSection, TimeSection
 from validation.scenes.unknown import clip, refuse_unknown_keys
 
-SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
+NEARLY_A_NUMBER = re.compile(r"[-+]?\d+([.,]\d+)?([eE][-+]?\d+)? ?%|[-+]?\d+,\d+([eE][-+]?\d+)?")
+DECIMAL_COMMA = re.compile(r"^[^#\n\"'\[]*=\s*([-+]?\d+,\d+)", re.MULTILINE)
+LONGEST_VALUE = 4000  # characters that --set takes
 
 
 class Scene(SceneTables):
@@ -109,6 +112,8 @@ class Scene(SceneTables):
         for field in FILES:
             section, _, key = field.partition(".")
             name = getattr(self.tables().get(section), key, None)
+            if name is not None and "\0" in name:
+                raise ValueError(f"{section}: {key}: must not hold a NUL, got {name!r}")
             try:
                 if name is not None:
                     regular(Path(name))
@@ -284,7 +289,8 @@ def parse_scene(data: dict[str, Any], source: str) -> Scene:
 
 def first_defect(error: ValidationError, source: str) -> InputError:
     """Return the first defect of a pydantic report as the error of bad input."""
-    first = error.errors(include_url=False)[0]
+    errors = error.errors(include_url=False)
+    first = errors[0]
     rule, value = rule_and_value(dict(first))
     field = ".".join(str(part) for part in first["loc"])
     if not field:  # a rule on the whole scene begins with its field
@@ -292,13 +298,28 @@ def first_defect(error: ValidationError, source: str) -> InputError:
         if remainder and " " not in first_word:
             field = first_word
             rule = remainder
-    more = error.error_count() - 1
+    if first["type"] == "missing":  # all that is missing at once, which is one thing to do
+        missing = [".".join(map(str, entry["loc"])) for entry in errors if entry["type"] == "missing"]
+        more = len(errors) - len(missing)
+        field = ", ".join(missing)
+        rule = "is required" if len(missing) == 1 else "are required"
+    else:
+        more = len(errors) - 1
     return InputError(
         rule,
         source=source,
         field=field or None,
         value=(value or clip(first["input"])) + (f" (and {more} more)" if more else ""),
+        advice=_number_meant(first["input"]),
     )
+
+
+def _number_meant(value: object) -> str | None:
+    """Return what to write for a number with a decimal comma or a sign of per cent, None for anything else."""
+    if not isinstance(value, str) or not NEARLY_A_NUMBER.fullmatch(value):
+        return None
+    number = value.replace(",", ".").replace(" ", "")
+    return f"write {float(number[:-1]) / 100:.12g}" if number.endswith("%") else f"write {number}, with a point"
 
 
 def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
@@ -319,7 +340,7 @@ def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return sorted(name.removesuffix(".toml") for name in os.listdir(SCENE_DIRECTORY) if name.endswith(".toml"))
+    return list(scene_files())
 
 
 def load_scene(source: str | Path) -> Scene:
@@ -336,8 +357,8 @@ def load_scene(source: str | Path) -> Scene:
         The file cannot be read, is not TOML, or states something that is not allowed.
     """
     path = Path(source)
-    if path.suffix != ".toml" and str(source) in scene_names():
-        path = SCENE_DIRECTORY / f"{source}.toml"
+    if path.suffix != ".toml":
+        path = scene_files().get(str(source), path)
     data = _read_toml(path)
     refuse_unknown_keys(data, _all_tables(), path.name)
     _beside(path.parent, data)
@@ -375,7 +396,10 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError:
         raise InputError("must be UTF-8 text", source=path, value="bytes that are not") from None
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
-        raise InputError(f"must be TOML: {' '.join(str(error).split())}", source=path) from None
+        advice = None
+        if comma := DECIMAL_COMMA.search(path.read_text(encoding="utf-8-sig", errors="replace")):
+            advice = f"{comma[1]}: a number has a point, and no comma"
+        raise InputError(f"must be TOML: {' '.join(str(error).split())}", source=path, advice=advice) from None
 
 
 def parse_assignment(text: str) -> tuple[str, Any]:
@@ -388,9 +412,15 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     """
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
-        raise InputError("must be key=value", field="--set", value=repr(text))
+        raise InputError("must be key=value", field="--set", value=repr(text[:LONGEST_VALUE]))
+    if "\n" in text or "\r" in text:
+        raise InputError("must be one line", field="--set", value=repr(text), advice="one --set for each key")
+    if len(value) > LONGEST_VALUE:
+        raise InputError(
+            f"must have at most {LONGEST_VALUE} characters, got {len(value)}", field="--set", value=repr(key)
+        )
     try:
         parsed = tomllib.loads(f"value = {value}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # no TOML, or a number of more digits than Python reads
         parsed = value
     return key.strip(), parsed

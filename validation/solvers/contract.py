@@ -84,8 +84,13 @@ class Prepared:
             refuses a value, or it has no fields.
         """
         if fields is not None and not self.has_fields:
-            rule = "needs the solver fem, a locked contact and a constant gg"
-            raise InputError(rule, source=self.scene.name, field="--fields", value=fields)
+            raise InputError(
+                "takes the solver fem, a locked contact and a constant gg",
+                source=self.scene.name,
+                field="--fields",
+                value="no such model",
+                advice="add --solver fem",
+            )
         self.fields = fields
         check_step(self.scene, self.highest_frequency)
         try:

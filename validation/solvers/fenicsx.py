@@ -49,6 +49,7 @@ OPENING_COLUMNS = (
     "cuts",
 )
 WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx")  # type: ignore[union-attr,arg-type]
+MOST_RANKS = 256  # processes on one machine
 # One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
 # that is not of the locale's characters, unless Python reads paths as UTF-8.
 ENVIRONMENT = {
@@ -151,8 +152,8 @@ class FEniCSx(Solver):
 
     def option(self, text: str) -> Solver:
         """Return the solver for ``fenicsx:N``, N ranks."""
-        if not text.isdecimal() or int(text) < 1:
-            raise InputError("fenicsx:N takes a number of ranks from 1 on", field="solver", value=repr(text))
+        if not (text.isdecimal() and len(text) < 9 and 1 <= int(text) <= MOST_RANKS):
+            raise InputError(f"fenicsx:N takes 1 to {MOST_RANKS} ranks", field="solver", value=repr(text))
         self.ranks = int(text)
         if self.ranks > 1:
             self.name = f"fenicsx:{self.ranks}"

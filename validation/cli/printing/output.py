@@ -79,16 +79,15 @@ def print_lines(lines: Iterable[StyledLine]) -> None:
             end = len(word) if text.startswith(word) else len(text)
             styled_text.stylize(STYLES[word], 0, end)
         printer.print(styled_text, soft_wrap=True)
+def in_minutes(seconds: float) -> str:
+    """Return a duration in words, "36 s" or "2 m 6 s"."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} m {rest} s" if minutes else f"{rest} s"
 
 
 def settings_text(settings: Mapping[str, float]) -> str:
     """Return settings as ``--set`` takes them."""
     return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())
-
-
-def spread(rebound: Mapping[str, float]) -> str:
-    """Return the range of a rebound over the phase in words."""
-    return f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}"
 
 
 @contextmanager

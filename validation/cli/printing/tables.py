@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.cli.printing.answer import how_it_ended
-from validation.cli.printing.output import echo
+from validation.cli.printing.output import broken, echo
 from validation.gates.gate import Verdict, value_text
 from validation.report.blocks import Blocks, Listing, Paragraph, Table, TableColumn, table
 from validation.report.scene.differences import DIFFERENCES, difference_table
 from validation.runs.case_name import CaseName
-from validation.runs.records import BaselineVerdict, ComparisonRecord, VerdictRecord
+from validation.runs.records import AlarmRecord, BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.runs.text import printable
@@ -84,7 +84,8 @@ def difference_blocks(results: Results, study: str, writable: bool) -> Blocks:
         return [Paragraph(text)]
     more = len(compared) - PAIRS_SHOWN
     note = (f"and {more} more pairs; dda-validate report shows all",) if more > 0 else ()
-    return [replace(differences, notes=note), Listing("\n".join(_next(compared, writable)))]
+    proposal = "\n".join(_next(compared, results.manifest(study)["alarms"], writable))
+    return [replace(differences, notes=note), Listing(proposal)]
 
 
 def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
@@ -98,8 +99,10 @@ def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
     )
 
 
-def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
-    """Yield the lines of a gate for a scene that nothing has judged."""
+def _next(compared: Sequence[ComparisonRecord], alarms: Sequence[AlarmRecord], writable: bool) -> Iterator[str]:
+    """Yield the lines of a gate for a scene that nothing has judged; of none where the step makes the agreement."""
+    from validation.advice.coarse import KINDS
+
     metric = next(iter(DIFFERENCES))
     agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
     if not agreeing:
@@ -107,7 +110,14 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
         yield f"next: no pair agrees within {limit}, which is a finding and no tolerance:"
         yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
         return
-    first = agreeing[0]
+    coarse = {record["scene"]: record for record in reversed(alarms) if record["kind"] in KINDS}
+    resolved = [c for c in agreeing if c["scene"] not in coarse]
+    if not resolved:
+        alarm = coarse[agreeing[0]["scene"]]
+        yield broken(f"next: a smaller time.step before a gate, which would pass by the step ({alarm['kind']}):")
+        yield broken(f"  {printable(alarm['scene'])}: {alarm['sentence']}")
+        return
+    first = resolved[0]
     value = first["metrics"].get(metric)
     place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
     yield f"next: write {place} what you tolerate, with your reason, and run it again:"

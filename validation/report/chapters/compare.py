@@ -1,4 +1,4 @@
-"""The page of `compare --report`: the answer, the curves and the ranking."""
+"""The page of `compare --out`: the answer, the curves and the ranking."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
+from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
@@ -30,18 +31,18 @@ from validation.report.chapters.text import (
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
-from validation.report.references import SOURCES
 from validation.report.scene.differences import difference_table
 from validation.report.scene.page import SceneDescription
 from validation.runs.case_name import CaseName
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
-from validation.runs.records import AlarmRecord, Manifest
+from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
+from validation.suite.folders import sources_of
 
 MOST_PANELS = 10
 FEW = 4  # scenes of a study; of more of them a figure holds the first column alone
@@ -63,13 +64,12 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
 
 def scene_page(group: CaseGroup, directory: Path) -> Blocks:
     """Return the page of a scene: its model, what its solvers differ by, its alarms, its histories and numbers."""
-    alarms = [Callout(f"{alarm['kind']}: {alarm['sentence']}.", "warn") for alarm in first_alarms(group.alarms)]
     _, conclusion, *section = scene_section(group, directory, apart=True)
     return [
         Heading(group.title),
         conclusion,
         *description(group).model(),
-        *alarms,
+        *alarm_lines({group.name: group}),
         *difference_blocks(group),
         *section,
         *budget_blocks(group, directory),
@@ -86,11 +86,6 @@ def description(group: CaseGroup) -> SceneDescription:
     return SceneDescription(scenes, len(scenes), {key: [*values] for key, values in varied.items()}, group.solvers)
 
 
-def first_alarms(alarms: Sequence[AlarmRecord]) -> list[AlarmRecord]:
-    """Return the first alarm of each kind."""
-    return list({alarm["kind"]: alarm for alarm in reversed(alarms)}.values())[::-1]
-
-
 def difference_blocks(group: CaseGroup) -> Blocks:
     """Return what the solvers of a scene differ by; nothing where no pair was compared."""
     labels = {case.name: case.label for case in group.cases}
@@ -104,7 +99,7 @@ def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
-    sources = SOURCES.get(manifest.get("study", ""), "")
+    sources = sources_of(manifest.get("study", ""))
     rests_on = f"Sources: {sources}" if sources else ""
     paragraphs = (Paragraph(lead, "lead"), Paragraph(text), Paragraph(rests_on, "small"))
     title = manifest.get("title") or manifest["study"]

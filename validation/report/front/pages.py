@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.report.blocks import Blocks, PageBreak, Paragraph
+from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import Groups, Verdicts
 from validation.report.chapters.gates import not_passed
 from validation.report.front.decisions import decisions
@@ -28,10 +29,10 @@ def front_pages(
     failures = not_passed(verdicts)
     if paper is None:
         judged = [verdict_line(verdicts)] if verdicts else []
-        if len(studies) == 1:  # whose page begins here
+        if len(groups) == 1:  # whose page begins here, with its alarms
             return [imprint, *judged, *failures]
         what = f"{len(groups)} scene{'s' * (len(groups) != 1)} of {', '.join(studies)}: one chapter a study."
-        return [imprint, Paragraph(what, "lead"), *judged, *failures, PageBreak()]
+        return [imprint, Paragraph(what, "lead"), *judged, *alarm_lines(groups), *failures, PageBreak()]
     return [
         imprint,
         *first_page(groups, paper, verdicts, directory),

@@ -1,0 +1,37 @@
+"""Studies as the suite declares them: the engine's, with alarms and damping budgets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from validation.advice.alarms import alarms
+from validation.advice.budget import budgets
+from validation.advice.columns import column_alarms
+from validation.engine import study
+from validation.engine.finished import Finished
+from validation.runs.records import Annotations
+from validation.scenes import features
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
+from validation.solvers.registry import role
+
+
+def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
+    """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
+    judged = {scene: row for (scene, solver), row in finished.rows.items() if role(solver) is Role.JUDGED}
+    blocks = [scene for scene in scenes if scene.kind == "block"]
+    columns = [scene for scene in scenes if scene.name in judged and scene.kind == "column"]
+    of_columns = (column_alarms(scene, judged[scene.name]) for scene in columns)
+    return {
+        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_columns))],
+        "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
+    }
+
+
+@dataclass(frozen=True)
+class Study(study.Study):
+    """A study whose cases are annotated with alarms and damping budgets."""
+
+    annotate: Callable[[Sequence[Scene], Finished], Annotations] = annotated
