@@ -87,7 +87,7 @@ def test_what_is_needed_is_told_with_its_own_step_depth_and_returns() -> None:
     asked = {"restitution_error": 0.05, "penetration": 1e-5, "stated": ["penetration"]}
     found = {"needed": need, "asked": asked, "landing_speed": 1.5, "restitution_now": None}
     text = list(contact_page._needed(scene, found))
-    assert text[0].startswith("Asked for: a restitution within 5 % of the block's own and a penetration below 1e-05 m")
+    assert text[0].startswith("Asked for: a restitution within 0.05 of the block's own and a penetration below 1e-05 m")
     assert text[1].endswith(": the exact block then penetrates 2e-05 m, and no stiffer ones were tried")
     assert text[2:4] == [
         "  time step   at that p: dt <= 0.0001 s",
@@ -152,7 +152,7 @@ def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked(
     assert "by 0.49635 m" in hops and "penetration below" not in hops
     stays = typed("contact", *slope, "--penetration", "1e-3").stdout
     assert "hops  " not in stays and "A gap may open faster than it closed without any gain of energy" in stays
-    assert "Asked for: a restitution within 5 % of the block's own and a penetration below 0.001 m" in stays
+    assert "Asked for: a restitution within 0.05 of the block's own and a penetration below 0.001 m" in stays
 
 
 def test_every_run_is_announced_before_it_starts() -> None:

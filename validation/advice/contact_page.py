@@ -243,7 +243,7 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     load = abs(opened.resultant_load(scene))
     why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
-        f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
+        f"{why}: a restitution within {error:g} of the block's own and a penetration below {depth:g} m, "
         f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
