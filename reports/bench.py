@@ -509,11 +509,11 @@ PAGE = """# Speed
 
 Written by `make bench` ({machine}, Python {python}, numpy {numpy}); one BLAS thread on both sides, run by turns,
 least seconds of some repeats, set-up counted. Constant acceleration, p = E, dt = 1e-3 s. A ratio above one is how many
-times as long the rival takes; the last column is the greatest difference of the two answers over the maximum. The rivals
-are `reports/rivals` and, for FEniCSx, `fem_reference/fenicsx`. The strongest of each kind that a user has sums modes, each
-a recursion by `scipy.signal.lfilter`: of the block both, which is the same answer; of the elements the {modes} lowest by
-`eigsh` about the static answer, which leave out what the last column says. A loop over steps is what one writes for
-whatever is not linear.
+times as long the rival takes; the last column is the greatest difference of the two answers over the maximum. The
+rivals are `reports/rivals` and, for FEniCSx, `fem_reference/fenicsx`. The strongest of each kind that a user has sums
+modes, each a recursion by `scipy.signal.lfilter`: of the block both, which is the same answer; of the elements the
+{modes} lowest by `eigsh` about the static answer, which leave out what the last column says. A loop over steps is what
+one writes for whatever is not linear.
 
 | what | ours [s] | rival | rival [s] | ratio | asked for | difference |
 |---|---|---|---|---|---|---|
