@@ -71,13 +71,16 @@ class Contest:
     repeats: int = 3
 
 
-def timed(run: Callable[[], History]) -> tuple[float, History]:
-    """Return seconds and answer of one run; of what takes less than 10 ms, the least of some runs in a row."""
+def timed(run: Callable[[], History], clock: Callable[[], float] = time.process_time) -> tuple[float, History]:
+    """Return seconds and answer of one run; of what takes less than 10 ms, the least of some runs in a row.
+
+    By the processor: on a machine that others use the clock favours what is over before it is interrupted.
+    """
     least, total = float("inf"), 0.0
     while total < 0.01:
-        began = time.perf_counter()
+        began = clock()
         answer = run()
-        spent = time.perf_counter() - began
+        spent = clock() - began
         least, total = min(least, spent), total + spent
     return least, answer
 
@@ -203,7 +206,7 @@ def fenicsx_line(n: int = 64, steps: int = 1000) -> str:
     """Return the line of FEniCSx, whose seconds are its own, without starting its interpreter."""
     values = {"block.poisson": 0.25, "fem.elements": n, "fem.degree": 1, "time.steps": steps, "time.step": 1e-3}
     scene = load_scene("figures-3-4").with_values(values)
-    ours = least_seconds(lambda: fem_history(steps, 0.25, n), 3)
+    ours = min(timed(lambda: fem_history(steps, 0.25, n), time.perf_counter)[0] for _ in range(3))
     runs = [completed(get_solver("fenicsx"), scene) for _ in range(2)]
     name, rival = f"fem, {n} x {n}, mu = 0.25, {steps:,} steps", "FEniCSx, PETSc LU"
     if runs[0].outcome is not Outcome.COMPLETED:
@@ -508,12 +511,12 @@ def threads_line(repeats: int = 2) -> str:
 PAGE = """# Speed
 
 Written by `make bench` ({machine}, Python {python}, numpy {numpy}); one BLAS thread on both sides, run by turns,
-least seconds of some repeats, set-up counted. Constant acceleration, p = E, dt = 1e-3 s. A ratio above one is how many
-times as long the rival takes; the last column is the greatest difference of the two answers over the maximum. The
-rivals are `reports/rivals` and, for FEniCSx, `fem_reference/fenicsx`. The strongest of each kind that a user has sums
-modes, each a recursion by `scipy.signal.lfilter`: of the block both, which is the same answer; of the elements the
-{modes} lowest by `eigsh` about the static answer, which leave out what the last column says. A loop over steps is what
-one writes for whatever is not linear.
+least processor seconds of some repeats, set-up counted. Constant acceleration, p = E, dt = 1e-3 s. A ratio above one is
+how many times as long the rival takes; the last column is the greatest difference of the two answers over the maximum.
+The rivals are `reports/rivals` and, by the clock, FEniCSx (`fem_reference/fenicsx`). The strongest of each kind that a
+user has sums modes, each a recursion by `scipy.signal.lfilter`: of the block both, which is the same answer; of the
+elements the {modes} lowest by `eigsh` about the static answer, which leave out what the last column says. A loop
+over steps is what one writes for whatever is not linear.
 
 | what | ours [s] | rival | rival [s] | ratio | asked for | difference |
 |---|---|---|---|---|---|---|

@@ -258,7 +258,6 @@ def viscous_damping_ratio(scene: Scene) -> float:
     + gg + gg W^2 (1/2 - delta + alpha) - e (1 - delta).
     """
     t = scene.time
-    assert scene.damping is not None
     w = dda_frequency(scene)
     W2 = (w * t.step) ** 2
     e = t.step * (scene.damping.mass + scene.damping.stiffness * w * w)
