@@ -108,6 +108,8 @@ class Claim:
         The condition under which it holds, and the bands that hold then.
     numbers
         What an independent program gives: number, value, and half a unit of its last digit.
+    misprint
+        Whether it is a slip of print in an equation or a number, which no curve or conclusion of the paper hangs on.
     sources, read, tested
         Of a claim of other publications: keys of the bibliography, how much of them was read, and how it is tested.
     """
@@ -123,6 +125,7 @@ class Claim:
     condition: str = ""
     conditional: tuple[Band, ...] = ()
     numbers: tuple[tuple[str, float, float], ...] = ()
+    misprint: bool = False
     sources: tuple[str, ...] = ()
     read: str = ""
     tested: str = ""

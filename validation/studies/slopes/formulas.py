@@ -1,8 +1,8 @@
 """The study `slopes`: trajectories on inclines against closed forms.
 
 While every corner slips one way or is open, u_t + tan(phi) u_n of the centroid moves freely under
-a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.theory.friction`). So the run-out, what
-a discount takes of it and the slope at which a block begins to slide are known to rounding.
+a_s = g (sin b - tan(phi) cos b), in any scheme and, without cohesion, through bounces (`validation.theory.friction`).
+So the run-out, what a discount takes of it and the slope at which a block begins to slide are known to rounding.
 """
 
 from __future__ import annotations
