@@ -15,8 +15,8 @@ from faults.fault import Fault, energy_changed, told
 from faults.kill_matrix import cases_of, check_kill_matrix
 
 from validation import solve
-from validation.studies.literature.closed import exact_locked
 from validation.studies.methods import study as methods
+from validation.studies.methods.closed import exact_locked
 from validation.studies.methods.methods import METHODS, SCHEMES, method
 from validation.theory import rebound
 

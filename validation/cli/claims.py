@@ -1,4 +1,4 @@
-"""The command ``claims``: a register of statements with their verdicts."""
+"""The command ``claims``: the register of the paper's statements with their verdicts."""
 
 from __future__ import annotations
 
@@ -13,37 +13,30 @@ from validation.cli.printing.output import echo, echo_json
 
 @app.command()
 def claims(
-    of: Annotated[str, typer.Option("--of", help="Whose: paper or literature.", metavar="NAME")] = "paper",
     out: Annotated[Path | None, typer.Option("--out", help="Write the register as Markdown.", metavar="FILE")] = None,
     as_json: JsonOption = False,
     results: ResultsOption = RESULTS,
 ) -> None:
-    """List statements with their verdicts: the paper's, or those of other publications on schemes and contacts.
+    """List the paper's statements with their verdicts.
 
     Example: [bold]dda-validate run paper && dda-validate claims[/bold]
-
-    Example: [bold]dda-validate run literature && dda-validate claims --of literature[/bold]
     """
-    from validation.advice.limits import check_choice
     from validation.errors import InputError
     from validation.runs.files import write_atomically
     from validation.runs.results import Results
     from validation.studies.claims import REGISTER, entries, page
-    from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE
     from validation.studies.paper.study import CLAIMS_OF_THE_PAPER
 
-    registers = {register.study: register for register in (CLAIMS_OF_THE_PAPER, CLAIMS_OF_THE_LITERATURE)}
-    check_choice("--of", of, registers)
-    register = registers[of]
-    rows = [row for row in Results(results).manifest(of).get("derived", []) if row["scene"] == REGISTER]
+    rows = [row for row in Results(results).manifest("paper").get("derived", []) if row["scene"] == REGISTER]
     if not rows:
-        raise InputError(f"no results of the study {of}", source=results, advice=f"run it first: dda-validate run {of}")
-    listed = entries(register, rows)
+        advice = "run it first: dda-validate run paper"
+        raise InputError("no results of the study paper", source=results, advice=advice)
+    listed = entries(CLAIMS_OF_THE_PAPER, rows)
     if as_json:
         echo_json(listed)
     else:
         for claim in listed:
             echo(f"{claim['id']:<4} {claim['verdict'] or 'not run':<27} {claim['says']} [{claim['place']}]")
     if out is not None:
-        text = page(register, rows)
+        text = page(CLAIMS_OF_THE_PAPER, rows)
         write_atomically(out, lambda stream: stream.write(text.encode()))

@@ -19,7 +19,6 @@ STUDIES = {
     "core": "validation.studies.core:CORE",
     "two-codes": "validation.studies.second_fem_code:TWO_CODES",
     "paper": "validation.studies.paper.study:PAPER",
-    "literature": "validation.studies.literature.study:STUDY",
     "limits": "validation.studies.limits:STUDY",
     "stiff-contact": "validation.studies.stiff_contact:STUDY",
     "stability-small": "validation.studies.stability:small",

@@ -13,7 +13,6 @@ CHAPTERS: dict[str, str] = {
     "work-precision": "validation.report.chapters.work:chapter",
     "two-codes": "validation.report.chapters.block.two_codes:chapter",
     "paper": "validation.report.chapters.paper:paper_chapter",
-    "literature": "validation.report.chapters.literature:chapter",
     "limits": "validation.report.chapters.limits.locking:chapter",
     "stiff-contact": "validation.report.chapters.limits.stiff_contact:contact_chapter",
     "stability-small": "validation.report.chapters.limits.stability:stability_chapter",

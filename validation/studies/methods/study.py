@@ -22,7 +22,8 @@ from validation.scenes.scene import Scene, load_scene
 from validation.studies import tables
 from validation.studies.bands import Band, about, fitted_order
 from validation.studies.declaration import Study
-from validation.studies.literature.closed import exact_locked
+from validation.studies.methods import facts
+from validation.studies.methods.closed import exact_locked
 from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
 from validation.theory import friction, rebound, spectra
 from validation.theory.stepping import Stepping
@@ -186,8 +187,9 @@ def scenes() -> tuple[Scene, ...]:
     declared += [sliding(one) for one in FRICTIONAL]
     columns = {"run.columns": ["displacement"]}
     dropped = exact("columns-drop-average", COLUMN_EVENTS, "Five rigid blocks dropped", 1e-3, COLUMN_TIME, **columns)
-    opened = exact("unlocked-average", BLOCK_EVENTS, "Contact that opens", REFINED_TIME / COARSEST, REFINED_TIME)
-    return (*declared, opened, dropped)
+    step = REFINED_TIME / COARSEST
+    unlocked_exactly = exact("unlocked-average", BLOCK_EVENTS, "Contact that opens", step, REFINED_TIME)
+    return (*declared, unlocked_exactly, dropped, load_scene(facts.AUGMENTED))
 
 
 @functools.cache
@@ -205,6 +207,30 @@ def locked_cases() -> Iterator[Scene]:
     """Yield the cases of the locked block."""
     for one in SCHEMES:
         yield from expanded(locked(one))
+
+
+def rigid_stops() -> tuple[Scene, ...]:
+    """Return the cases of the rigid stop in displacements."""
+    return expanded(rigid("displacements"))
+
+
+def opened() -> dict[str, Scene]:
+    """Return the cases of contact that opens, at 0.2 ms, that are held to the exact motion, by scheme and p."""
+    compared = {}
+    for name, word, index in (
+        ("leapfrog", "leapfrog, p = 1E", 1),
+        ("leapfrog", "leapfrog, p = 100E", 3),
+        ("average", "(1/4, 1/2), p = 1E", 1),
+        ("average", "(1/4, 1/2), p = 100E", 3),
+        ("constant", "(1/2, 1), p = 1E", 1),
+    ):
+        compared[word] = expanded(unlocked(method(name)))[index]
+    return compared
+
+
+def opened_exactly() -> dict[str, Scene]:
+    """Return the cases whose exact motion these are held to, by p."""
+    return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
 
 
 def sliding_cases() -> Iterator[Scene]:
@@ -360,7 +386,7 @@ def derived() -> tuple[Derived, ...]:
     for one in SCHEMES:
         for case in expanded(column(one)):
             declared.append(row(case, "column error", [case], column_error, case, exact=(COLUMN_EVENTS,)))
-    return tuple(declared)
+    return (*declared, *facts.derived(opened(), opened_exactly()))
 
 
 CURVES = ("constant", "average", "ch-0.8", "ch-0.5", "ch-0", "hht-0.1", "bathe-half", "tr-bdf2", "leapfrog")
@@ -431,4 +457,5 @@ def slid_by_implicit_euler(case: Scene) -> Band | None:
 
 def study() -> Study:
     """Return the study, whose many scenes are made when it is asked for."""
-    return tables.study(__name__, scenes=scenes(), derived=derived, data=data)
+    exact_too = tuple((case.name, "block-events") for case in opened_exactly().values())
+    return tables.study(__name__, scenes=scenes(), extra=exact_too, derived=derived, data=data)

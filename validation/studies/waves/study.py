@@ -10,7 +10,7 @@ from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.bands import APART, gate
 from validation.studies.declaration import Study
-from validation.studies.waves import rows
+from validation.studies.waves import oblique, rows
 
 SITE = "waves-site"
 USUAL = {"time.alpha": 0.5, "time.delta": 1.0, "time.step": 0.01, "time.steps": 900}
@@ -37,12 +37,14 @@ def derived() -> tuple[Derived, ...]:
         *(wave.row(rows.parted) for wave in rows.jointed()),
         *(wave.row(rows.sent_back) for wave in rows.returned()),
         Derived(needs[-1][0], "order", needs, rows.joint_order),
+        *oblique.derived(),
     )
 
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *site())
+    waves = (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *oblique.gates())
+    return (*waves, *site())
 
 
 def site() -> Iterator[Gate]:
