@@ -61,9 +61,8 @@ def test_examples_run_as_they_stand(
     run = solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
     table = np.column_stack([run.time, -1000 * run.displacement])  # millimetres, downwards
     np.savetxt(tmp_path / "theirs.csv", table, delimiter=",", header="t,uy", comments="", fmt="%.17g")
-    shards = [["run", "my-scene.toml", "--shard", f"{i}/3", "--results", f"part-{i}"] for i in (1, 2, 3)]
     figures = [["run", "figures-3-4"]]
-    first = {"report": figures, "diff": figures, "merge": shards}
+    first = {"report": figures, "diff": figures}
     for words in (*first.get(name, []), *examples(name)):
         if words[0] == "diff":
             (tmp_path / "main").mkdir()

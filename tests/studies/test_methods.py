@@ -86,7 +86,7 @@ FAULTS = [
 
 def check(faults: list[Fault], words: tuple[str, ...], tmp_path: Path, finished_cases: Path) -> None:
     declared = methods.study()
-    without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # bitten below, in test_facts.py
+    without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # in test_facts.py
     gates = [gate for gate in declared.gates() if (gate.scene, gate.pair[0]) not in without_runs]
     if words:
         gates = [gate for gate in gates if gate.scene.startswith(words)]

@@ -114,8 +114,8 @@ def gates() -> Iterator[Gate]:
         f"c dt/h is at most 1, where (1/2, 1) sends back up to 8 %; {independent}"
     )
     at_angle = (
-        "dashpots rho cP and rho cS with Poisson's ratio 1/4, of which Bao, Hatzor and Huang (2012) speak, take all of a "
-        f"wave that comes straight down only; {independent}"
+        "dashpots rho cP and rho cS with Poisson's ratio 1/4, of which Bao, Hatzor and Huang (2012) speak, take all of "
+        f"a wave that comes straight down only; {independent}"
     )
     for (scheme, blocks), texts in REFLECTED.items():
         for courant, text in zip(COURANTS, texts, strict=True):

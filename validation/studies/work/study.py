@@ -19,7 +19,6 @@ from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies import tables
 from validation.studies.bands import fitted_order
-from validation.studies.work import record as work_record
 
 SCHEMES = {"constant": (0.5, 1.0), "average": (0.25, 0.5)}
 LEVELS = 6
@@ -167,22 +166,10 @@ def grid_convergence() -> Derived:
 
 @functools.cache
 def derived() -> tuple[Derived, ...]:
-    """Return the rows of orders, of the grid-convergence index and of the comparison with the record."""
+    """Return the rows of orders and of the grid-convergence index."""
     times = [order_in_time(f"work-dt-{scheme}-{start}") for scheme, start in STARTS]
     meshes = [order_in_mesh(f"work-h-degree-{degree}") for degree in (1, 2)]
-    return (*times, *meshes, grid_convergence(), work_record.compared(study_cases()))
+    return (*times, *meshes, grid_convergence())
 
 
-@functools.cache
-def study_cases() -> tuple[tuple[str, str], ...]:
-    """Return the (case, solver) pairs whose errors and work the record keeps."""
-    pairs: list[tuple[str, str]] = []
-    for scene in (*refined_together(), *refined_meshes()):
-        for case in scene.expand():
-            pairs += [(case.name, solver) for solver in case.run.solvers]
-    return tuple(pairs)
-
-
-WORK_PRECISION = tables.study(
-    __name__, scenes=scenes(), gates=lambda: (*tables.gates(__name__), *work_record.gates()), derived=derived
-)
+WORK_PRECISION = tables.study(__name__, scenes=scenes(), derived=derived)
