@@ -87,5 +87,5 @@ def test_what_takes_long_shows_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
     monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
-    monkeypatch.setattr("validation.studies.pack.write_pack", work)
+    monkeypatch.setattr("validation.problems.pack.write_pack", work)
     assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: the bar is there\n"
