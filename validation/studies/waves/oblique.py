@@ -121,8 +121,8 @@ def gates() -> Iterator[Gate]:
         for courant, text in zip(COURANTS, texts, strict=True):
             name = f"{blocks} blocks a wave, {scheme}, c dt/h = {courant:g}"
             yield printed(FACTS, "viscous base", name, float(text), half_unit(text), normal)
-    for wave, texts in SENT_BACK.items():
-        for angle, text in zip(ANGLES, texts, strict=True):
+    for wave, shares in SENT_BACK.items():
+        for angle, text in zip(ANGLES, shares, strict=True):
             metric = f"{wave} at {angle:g} deg"
             yield printed(FACTS, "oblique waves", metric, float(text), half_unit(text), at_angle)
         yield gate(FACTS, "oblique waves", f"{wave} at 0 deg", (0.0, 1e-12), f"{at_angle}; band: rounding")
