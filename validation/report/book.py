@@ -71,7 +71,7 @@ def build(results: Results, out: Path, gates: bool = False) -> Path:
     return write_document(out, lambda root: _all_blocks(results, studies, root, gates))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool) -> list[Part]:
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> list[Part]:
     from validation.report.appendix.pages import appendix
     from validation.report.front.groups import groups_of_studies
     from validation.report.front.pages import front_pages
