@@ -77,9 +77,8 @@ def test_the_notes_tell_what_is_proven(tmp_path: Path) -> None:
     prepared = get_solver("block-events").prepare(scene(tmp_path))
     notes = prepared.run().notes
     assert sum(note.startswith("proven: ") for note in notes) == 2
-    enclosed = prepared.enclosures()
-    assert len(enclosed) == len(prepared.switches())
-    assert all(radius < 1e-40 and len(midpoint) > 35 for _, _, midpoint, radius in enclosed)
+    assert len(prepared.switch_events) == len(prepared.switches())
+    assert all(event.radius < 1e-40 and len(event.midpoint) > 35 for event in prepared.switch_events)
 
 
 GRANITE = """

@@ -10,23 +10,22 @@ from conftest import refused
 from faults import seams
 from faults.fault import soft_springs, told, with_scheme
 from faults.kill_matrix import whole
-from validation.studies.claims import REGISTER, Band, Evidence, Finding, Register, page
-from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE, STUDY
-from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
 from dda import ContactResult
 from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import _derived_record, finish
-from validation.engine.study import Study
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 from validation.studies.paper import open_close
+from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
+from validation.suite.claims import REGISTER, Band, Evidence, Finding, page
 
 ROOT = Path(__file__).parents[2]
+PAPER = get_study("paper")
 pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
 OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS for need in claim.needs}
@@ -37,30 +36,21 @@ def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
     return finish(cases, PAPER, Results(directory))
 
 
-REGISTERS = {
-    "paper": (CLAIMS_OF_THE_PAPER, PAPER, run),
-    "literature": (CLAIMS_OF_THE_LITERATURE, STUDY, lambda directory: finish(STUDY.cases(), STUDY, Results(directory))),
-}
-
-
-@pytest.fixture(scope="module", params=REGISTERS)
-def kept(request: pytest.FixtureRequest, finished_cases: Path) -> tuple[Register, Study, Finished]:
-    """Return a register, its study and its finished cases."""
-    register, study, finished = REGISTERS[request.param]
-    return register, study, finished(finished_cases)
+@pytest.fixture(scope="module")
+def finished(finished_cases: Path) -> Finished:
+    """Return the finished cases of the register."""
+    return run(finished_cases)
 
 
 @pytest.mark.long
-def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(kept: tuple[Register, Study, Finished]) -> None:
-    register, study, finished = kept
-    found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in register.claims}
-    assert found == {claim.id: claim.expected for claim in register.claims}
-    assert all(evaluate(gate, finished).status is Status.PASS for gate in study.gates())
+def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished: Finished) -> None:
+    found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in CLAIMS}
+    assert found == {claim.id: claim.expected for claim in CLAIMS}
+    assert all(evaluate(gate, finished).status is Status.PASS for gate in PAPER.gates())
 
 
-def test_a_changed_threshold_turns_the_verdict_over(kept: tuple[Register, Study, Finished]) -> None:
-    register, _, finished = kept
-    for claim in register.claims:
+def test_a_changed_threshold_turns_the_verdict_over(finished: Finished) -> None:
+    for claim in CLAIMS:
         numbers = claim.measure(Evidence(finished))
         bands = (*claim.printed, *claim.conditional)
         assert {band.number for band in bands} | {name for name, _, _ in claim.numbers} <= numbers.keys(), claim.id
@@ -74,11 +64,10 @@ def test_a_changed_threshold_turns_the_verdict_over(kept: tuple[Register, Study,
         assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
 
 
-def test_the_page_in_docs_is_what_a_fresh_run_writes(kept: tuple[Register, Study, Finished]) -> None:
-    register, _, finished = kept
-    rows = [_derived_record(finished, REGISTER, claim.id) for claim in register.claims]
-    text = (ROOT / register.page).read_text(encoding="utf-8")
-    assert text == page(register, rows)
+def test_the_page_in_docs_is_what_a_fresh_run_writes(finished: Finished) -> None:
+    rows = [_derived_record(finished, REGISTER, claim.id) for claim in CLAIMS]
+    text = (ROOT / CLAIMS_OF_THE_PAPER.page).read_text(encoding="utf-8")
+    assert text == page(CLAIMS_OF_THE_PAPER, rows)
     assert "below 1e-12" in text and not re.search(r"e-1[0-9]", text.replace("below 1e-12", ""))
 
 

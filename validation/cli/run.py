@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import os
 import time
-from collections import Counter
 from contextlib import closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from validation.cli.printing.answer import RunAnswer
     from validation.engine.measured import JudgedStudy
     from validation.engine.run import StudyCases
-    from validation.engine.shards import RunOptions, Shard
     from validation.gates.gate import Verdict
     from validation.runs.records import BaselineVerdict
     from validation.runs.results import Results
@@ -119,10 +117,6 @@ def run(
     verbose: VerboseOption = False,
     as_json: JsonOption = False,
     quiet: QuietOption = False,
-    shard: Annotated[
-        str | None,
-        typer.Option(help="Run this part of all cases only, for `dda-validate merge` to judge.", metavar="I/N"),
-    ] = None,
 ) -> None:
     """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
@@ -130,32 +124,17 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.engine.shards import Shard
-    from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
     from validation.suite.folders import resolve, study_names
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
-    part = None if shard is None else Shard.parse(shard)
-    if part is not None and (require or summary or baseline or verbose):
-        raise InputError(
-            "goes without --require, --summary, --baseline and --verbose", field="--shard", advice="give them to merge"
-        )
     before = judging.check()
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     store = Results(results)
     store.check()
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
-    if part is not None:
-        options: RunOptions = {
-            "targets": targets or ["core"],
-            "assignments": assignments or [],
-            "full": full,
-            "ranks": ranks,
-        }
-        raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
     for study in studies:
         if study.name not in study_names():  # the suite's own studies are extreme on purpose
             for scene in study.scenes:
@@ -285,46 +264,6 @@ def _run_studies(
             seconds[group.study.name] = now - last
             last = now
     return [runs[study.name] for study in studies], [seconds[study.name] for study in studies]
-
-
-def _run_shard(
-    shard: Shard,
-    options: RunOptions,
-    studies: Sequence[Study],
-    results: Results,
-    machine: Machine,
-    judging: Judging,
-) -> int:
-    """Run a part of the studies' cases, keep its record, print what it did and return the status."""
-    from validation.cli.printing.answer import how_it_ended
-    from validation.engine import shards
-    from validation.engine.measured import JudgedStudy
-    from validation.engine.run import study_cases
-
-    groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    part = shard.part(groups)
-    shards.begin(shard, results)
-    runs: list[JudgedStudy] = []
-    with _running(part, results, machine, judging) as ended:
-        for group in ended:
-            rows = group.finished(results).rows
-            run = JudgedStudy(group.study, (), {case: row.outcome for case, row in rows.items()})
-            runs.append(run)
-            if not judging.quiet and not judging.as_json:
-                for case in run.failed:
-                    echo(how_it_ended(*case, rows[case].outcome, rows[case].notes))
-    shards.write(shards.record_of(shard, options, groups), results)
-    counted = len(shards.all_keys(part))
-    total = len(shards.all_keys(groups))
-    status = _status([], [], any(run.refused for run in runs), None, [str(run.failed) for run in runs if run.failed])
-    if judging.as_json:
-        outcomes = Counter(str(outcome) for run in runs for outcome in run.outcomes.values())
-        data = {"status": status, "results": str(results.directory), "shard": str(shard), "cases": counted}
-        echo_json(data | {"of_cases": total, "outcomes": dict(outcomes)})
-    elif not judging.quiet:
-        echo(f"shard {shard}: {counted} of {total} cases, results: {results.directory}")
-        echo("next: dda-validate merge with the directories of all shards judges them")
-    return status
 
 
 def _print_answer(answer: RunAnswer, verbose: bool) -> None:

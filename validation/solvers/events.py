@@ -124,14 +124,6 @@ class Motion(Prepared):
         events = completed(self.switch_events)
         return tuple(Switch(event.time, event.corner, *KINDS[event.kind]) for event in events)
 
-    def enclosures(self) -> list[tuple[str, str, str, float]]:
-        """Return corner, kind, decimal digits of the midpoint and radius [s] of each switch that is enclosed."""
-        return [
-            (event.corner, event.kind, event.midpoint, event.radius)
-            for event in self.switch_events or ()
-            if event.midpoint
-        ]
-
     def instants(self) -> Array:
         """Return the instants that are reported [s]."""
         return np.asarray(self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1), dtype=np.float64)

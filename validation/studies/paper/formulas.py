@@ -24,7 +24,6 @@ CLAIMS_OF_THE_PAPER = Register(
     study="paper",
     title="The paper's statements and slips",
     page="docs/claims.md",
-    speaker="The paper",
     introduction="Every line is computed: the verdict follows from the measured numbers and is a gate of the study "
     "`paper`. This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh "
     "run. Numbers below 1e-12 are written as 0.",
