@@ -22,7 +22,8 @@ import numpy as np
 from flint import arb, arb_poly
 from numpy.typing import ArrayLike
 
-from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_length
+from fem_reference.events.column_drive import ANGLE
+from fem_reference.events.column_flow import OPEN, SLIPS, expand, step_length
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import bits_of, check_request, precision
