@@ -179,6 +179,43 @@ def test_the_motion_of_a_base_enters_the_bound(tmp_path: Path) -> None:
     assert reach(shaken) == math.inf
 
 
+LATE = "time,velocity\n5,0\n6,1\n7,0\n"
+OPENS: dict[str, Any] = STACK | {"motion": "pressure", "law": "unilateral", "gap": 0.01}
+SLIPS: dict[str, Any] = STACK | {"motion": "shear", "law": "frictional", "strength": 1e4}
+AT_REST: dict[str, Any] = {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
+SETTLED: dict[str, Any] = OPENS | AT_REST | {"stiffness": 1e3, "gravity": 9.81, "settled": True}
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem", "column-events", "bars-events"])
+@pytest.mark.parametrize(
+    ("column", "drive", "time"),
+    [
+        (OPENS | AT_REST, LATE, {}),
+        (SLIPS | AT_REST, LATE, {}),
+        (SETTLED, None, {"step": 1e-7}),
+        (OPENS | AT_REST | {"gap": 0.0}, {"shape": "sine", "velocity": 0.1, "frequency": 100.0}, {"step": 0.01}),
+        (OPENS | AT_REST, {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}, {"step": 0.02}),
+    ],
+    ids=["late", "late slip", "settled", "drive between steps", "pulse between steps"],
+)
+def test_a_column_with_gaps_and_hardly_a_drive_is_sound(
+    column: dict[str, Any], drive: str | dict[str, Any] | None, time: dict[str, Any], solver: str, tmp_path: Path
+) -> None:
+    if isinstance(drive, str):
+        (tmp_path / "late.csv").write_text(drive)
+        drive = {"record": str(tmp_path / "late.csv")}
+    columns = ["displacement"]
+    if column["law"] == "unilateral":
+        columns += ["gap_1", "gap_2"]
+    run = {"solvers": [solver], "columns": columns}
+    stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | time
+    tables = {"input": {"at": "base"} | drive} if drive else {}
+    still = parse_scene({"column": column | {"heights": [0.0, 2.0]}, "time": stepped, "run": run, **tables}, "still")
+    refused = get_solver(solver).refusal(still)
+    assert refused is None
+    assert solve(still, solver).outcome is Outcome.COMPLETED
+
+
 def test_a_refusal_of_a_scene_from_python_is_an_error() -> None:
     with pytest.raises(InputError):
         solve(scene(0.01, 2, contact=OPEN), "dda")
