@@ -12,7 +12,8 @@ from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.columns.events import drive_of
+from validation.solvers.columns.events import ColumnEventMotion, drive_of
+from validation.solvers.events import TERMS_A_SECOND
 from validation.solvers.registry import get_solver, solve
 
 LAYERS = [
@@ -187,6 +188,22 @@ def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch)
     run = solve(scene_of(OPENS, ["displacement"]), "column-events")
     assert run.outcome is Outcome.HORIZON
     assert "exact up to" in run.notes[0]
+
+
+def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_of(OPENS, ["displacement"])
+    shares: list[float] = []
+    for limit, predicted in ((6e3, False), (10.0, True)):
+        monkeypatch.setattr(ColumnEventMotion, "most_terms", limit)
+        prepared = get_solver("column-events").prepare(scene)
+        assert 0 < prepared.expected_seconds() <= limit / TERMS_A_SECOND
+        prepared.progress = shares.append
+        run = prepared.run()
+        assert run.outcome is Outcome.HORIZON
+        assert ("would have at least" in run.notes[0]) is predicted
+        assert "column-events:full" in run.notes[0]
+    assert shares == sorted(shares) and 0 < shares[-1] < 1
+    assert solve(scene, "column-events", full=True).outcome is Outcome.COMPLETED
 
 
 @pytest.mark.long

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -73,6 +73,7 @@ class Prepared:
     keeps_contact_record = False  # whether `contact_record` will be asked for; set before `run`
     has_fields = False  # whether it can write displacement and stress fields
     fields: Path | None = None  # file for these fields
+    progress: Callable[[float], None] | None = None  # takes the share of a run that is done; set before `run`
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene; `fields` names a file for displacement and stress fields.
@@ -93,6 +94,10 @@ class Prepared:
                 return self.history_run()
         except OverflowError as error:  # of plain floats, where an array would have become infinite
             return Run(Outcome.OVERFLOW, notes=(str(error),))
+
+    def expected_seconds(self) -> float | None:
+        """Return how long a run takes about, at least [s]; None where that is not known."""
+        return None
 
     def highest_frequency(self) -> float | None:
         """Return the largest frequency of the model, contacts closed and sticking [rad/s]; infinite on a rigid stop.
