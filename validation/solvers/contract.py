@@ -9,6 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array, Complex
@@ -18,6 +20,10 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming
+
+# What solvers raise where numbers leave the range of double precision: also a pivot or a mass that rounding or
+# underflow has made zero.
+OUT_OF_RANGE = (OverflowError, ZeroDivisionError, FloatingPointError, np.linalg.LinAlgError)
 
 
 class NotReported(LookupError):
@@ -88,11 +94,11 @@ class Prepared:
             rule = "needs the solver fem, a locked contact and a constant gg"
             raise InputError(rule, source=self.scene.name, field="--fields", value=fields)
         self.fields = fields
-        check_step(self.scene, self.highest_frequency)
         try:
+            check_step(self.scene, self.highest_frequency)
             with naming(self.scene):
                 return self.history_run()
-        except OverflowError as error:  # of plain floats, where an array would have become infinite
+        except OUT_OF_RANGE as error:  # of plain floats and factors, where an array would have become infinite
             return Run(Outcome.OVERFLOW, notes=(str(error),))
 
     def expected_seconds(self) -> float | None:

@@ -129,12 +129,14 @@ def _reach_of_column(scene: Scene) -> float:
     drive = motion_at(scene, instants)
     pressure_displacement = float(np.max(np.abs(drive.pressure))) / mass * time * time / 2
     jumps = float(np.sum(np.abs(np.diff(drive.velocity, prepend=0.0))))
-    base_displacement = time * jumps + float(np.max(np.abs(drive.displacement)))
+    # A base moves the column while it runs; how long a wave takes through a soft layer adds nothing.
+    run_time = scene.time.duration + scene.time.step
+    base_displacement = run_time * jumps + float(np.max(np.abs(drive.displacement)))
     # A transmitting base takes in at most Z v^2 of the incident wave.
     incident_energy = float(np.sum(np.diff(instants) * drive.velocity[1:] ** 2))
     settlement, stored_energy = _at_rest(column) if column.settled else (0.0, 0.0)
     input_energy = (column.impedance or 0.0) * incident_energy + kinetic_energy + stored_energy
-    fall = column.gravity * time * time
+    fall = column.gravity * run_time * run_time
     gaps = sum(contact.gap for contact in column.contacts)
     at_start = gaps + settlement + ROUNDING * column.height
     driven = pressure_displacement + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)
