@@ -23,6 +23,7 @@ from validation.solvers.registry import get_solver
 from validation.studies.paper import open_close
 from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
 from validation.suite.claims import REGISTER, Band, Evidence, Finding, page
+from validation.suite.folders import get_study
 
 ROOT = Path(__file__).parents[2]
 PAPER = get_study("paper")

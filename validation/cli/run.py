@@ -7,13 +7,14 @@ import os
 import time
 from contextlib import closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from validation.cli.printing.answer import RunAnswer
     from validation.engine.measured import JudgedStudy
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from validation.runs.results import Results
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
-    from validation.solvers.contract import Solver
+    from validation.solvers.contract import Prepared, Solver
     from validation.suite.declaration import Study
 from validation.cli.announcing import announced
 from validation.cli.app import (
@@ -57,6 +58,7 @@ RequireOption = Annotated[
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")]
+LONG_RUN = 5.0  # s, from which on `solve` says before it begins how long a run takes
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
@@ -312,6 +314,7 @@ def solve(
     from validation.errors import InputError
     from validation.runs.files import write_csv
     from validation.runs.run import Outcome
+    from validation.solvers.contract import Role
     from validation.solvers.registry import FULL, distributed, get_solver
 
     adapter = get_solver(solver)
@@ -324,9 +327,11 @@ def solve(
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
     is_full = full or solver.endswith(FULL)
-    with _progress(f"{case.name} {solver}", between_calls=True) as progress:
-        progress(0, 1, announced(adapter, case, is_full).removeprefix(", "))
-        ended = _run_case(adapter, case, is_full, fields)
+    with _progress(f"solve {solver}", between_calls=True) as show:
+        if adapter.role is Role.REFERENCE:  # an exact motion says by itself how long it takes
+            show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        watch = partial(_watch, solver, show)
+        ended = _run_case(adapter, case, is_full, fields, watch)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)
@@ -344,7 +349,17 @@ class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run:
+def _watch(solver: str, show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+    """Say how long a run takes where that is long, and show how far it is."""
+    seconds = prepared.expected_seconds()
+    if seconds is None:
+        return
+    if seconds > LONG_RUN:
+        echo(f"{solver}: takes at least about {seconds:.0f} s", err=True)
+    prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
+
+
+def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None, watch: Callable[[Prepared], None]) -> Run:
     """Run a case; a file of fields takes its name only when the run has completed."""
     from validation.engine.measure import completed
     from validation.errors import InputError
@@ -352,9 +367,9 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> R
     from validation.runs.run import Outcome
 
     if fields is None:
-        return completed(solver, case, full)
+        return completed(solver, case, full, watch=watch)
     with suppress(_Abandoned), atomic_path(fields) as part:
-        run = completed(solver, case, full, part)
+        run = completed(solver, case, full, part, watch)
         if run.outcome is not Outcome.COMPLETED:
             raise _Abandoned
         if part.stat().st_size == 0:
