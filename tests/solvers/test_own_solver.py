@@ -17,8 +17,8 @@ from conftest import SCENE, thinned
 from oracles.pages import write_my_solver
 from oracles.processes import answer_here
 
-from validation import plugin
 from validation.engine.measure import completed
+from validation.entry import plugin
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.results import Results

@@ -17,7 +17,6 @@ from validation.cli import (
     contact,
     damping,
     judge,
-    merge,
     report,
     run,
     show,
@@ -33,7 +32,6 @@ from validation.runs.text import printable
 
 COMMANDS = (
     run,
-    merge,
     show,
     report,
     claims,
@@ -46,8 +44,8 @@ COMMANDS = (
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
-    "Scenes and runs": ("list", "show", "run", "merge", "solve"),
-    "Results": ("report", "rows", "claims", "diff", "record"),
+    "Scenes and runs": ("list", "show", "run", "solve"),
+    "Results": ("report", "rows", "claims", "diff"),
     "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
 }

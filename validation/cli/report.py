@@ -32,6 +32,9 @@ def report(
     figures: Annotated[
         Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
     ] = None,
+    appendix: Annotated[
+        bool, typer.Option("--appendix", help="In the PDF, list the gates that passed, by the reason of their band.")
+    ] = False,
     docs: Annotated[
         str,
         typer.Option(help="With --site: folder of the documentation's pages, seen from it.", metavar="ADDRESS"),
@@ -59,7 +62,7 @@ def report(
     names = studies or None
     if out is not None:
         with _progress("report", between_calls=True):
-            build(store, out, names)
+            build(store, out, names, appendix)
         echo(f"wrote {out}")
     if site is not None:
         from validation.report.site import pages

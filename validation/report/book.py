@@ -64,8 +64,10 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     return reasons
 
 
-def build(results: Results, out: Path, chosen: Sequence[str] | None = None) -> Path:
+def build(results: Results, out: Path, chosen: Sequence[str] | None = None, gates: bool = False) -> Path:
     """Write the PDF of all studies in a results directory, or of some of them, and return its path.
+
+    Where `gates` is true, those that passed are listed.
 
     Raises
     ------
@@ -74,10 +76,10 @@ def build(results: Results, out: Path, chosen: Sequence[str] | None = None) -> P
     """
     results = Readable(results)
     studies = ordered_studies(results, chosen)
-    return write_document(out, lambda root: _all_blocks(results, studies, root))
+    return write_document(out, lambda root: _all_blocks(results, studies, root, gates))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> Blocks:
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> Blocks:
     from validation.report.appendix.pages import appendix
     from validation.report.front.groups import groups_of_studies
     from validation.report.front.pages import front_pages
@@ -95,7 +97,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> Bloc
         verdicts = [verdict for verdict in results.verdicts() if verdict["study"] in readable]
         provenances = [results.manifest(study).get("provenance", {}) for study in readable]
         front = front_pages(groups, verdicts, readable, figures, provenances)
-        return [*front, *chapters, *appendix(results, groups, verdicts, readable)]
+        return [*front, *chapters, *appendix(results, groups, verdicts, readable, gates)]
 
 
 def chapter_blocks(results: Results, study: str, figures: Path) -> Blocks:

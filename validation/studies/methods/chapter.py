@@ -103,6 +103,7 @@ def answers(methods: MethodResults) -> Blocks:
     cost = methods.derived.get(("methods-cost", "displacement error"), {})
     ratios = [float(value) for name, value in cost.items() if name != "average" and isinstance(value, float)]
     slow = methods.number("methods-cost", "order", "constant over ch-0")
+    conserving = methods.number("methods-cost", "order", "constant over conserving")
     rebounds = {}
     for word, name in (("ch08", "ch-0.8"), ("hht", "hht-0.1"), ("bathe", "bathe-half"), ("ch0", "ch-0")):
         rebounds[word] = methods.number(f"{PART}impact-{name}", "rebound on a rigid contact", "most")
@@ -110,14 +111,8 @@ def answers(methods: MethodResults) -> Blocks:
     if ratios:
         locked += PAGE.text("locked-cost", least=short(min(ratios), 3), most=short(max(ratios), 3))
     opens = PAGE.text("opens")
-    if slow is not None:
-        opens += PAGE.text("opens-cost", slow=slow)
-        conserving, fast = (
-            methods.number(f"{PART}refined-{name}", "order", "solves to 1 %") for name in ("conserving", "ch-0")
-        )
-        if conserving is not None and fast is not None:
-            opens += PAGE.text("opens-conserving", share=conserving / fast)
-        opens += "."
+    if slow is not None and conserving is not None:
+        opens += PAGE.text("opens-cost", slow=slow, conserving=conserving)
     never = PAGE.text("never")
     if None not in rebounds.values():
         never += PAGE.text("never-rebounds", **rebounds)
