@@ -19,6 +19,7 @@ An expression says what is looked up of a line:
     "bars/pieces: piece 1"          the same of another owner
     ": wave.left"                   a metric of the line's own derived row
     "blocks"                        a word of its name
+    "a else b"                      the first of two that says something
 """
 
 from __future__ import annotations
@@ -120,6 +121,10 @@ class StudyTable:
         """Return what an expression says of a line, None where there is nothing."""
         if expression in line.words:
             return line.words[expression]
+        first, otherwise, second = expression.partition(" else ")
+        if otherwise:
+            value = self.value(line, first)
+            return self.value(line, second) if value is None else value
         row, colon, metric = expression.rpartition(": ")
         if colon:
             return self._of_row(line, row, metric)

@@ -234,6 +234,9 @@ class WrittenChapter:
 
     def _points(self, line: Query, group: Sequence[Line]) -> ChartLine:
         """Return the points of some lines of the table that have both numbers."""
+        if "x_ends" in line:  # a level, from end to end
+            level = self.table.number(group[0], line["y"])
+            return ChartLine("", np.array(line["x_ends"]), np.full(2, level or np.nan) * line.get("y_factor", 1.0))
         x_values = []
         y_values = []
         notes = []
@@ -252,13 +255,15 @@ class WrittenChapter:
         return ChartLine("", np.array(x_values), np.array(y_values), notes=tuple(notes))
 
     def _history(self, line: Query, one: Line) -> ChartLine | None:
-        """Return a column of a history over time; it is drawn, and nothing is computed from it."""
+        """Return a column of a history over time, or the mean of some; it is drawn, and no number comes from it."""
         history = None if one.case is None else one.case.histories.get(line["history"])
         if history is None:
             return None
+        names = line["y"] if isinstance(line["y"], list) else [line["y"]]
+        column = np.mean([history.columns[name] for name in names], axis=0)
         x, y = (
             values * line.get(f"{axis}_factor", 1.0) / self._unit(line, axis, one)
-            for axis, values in (("x", history.time), ("y", history.columns[line["y"]]))
+            for axis, values in (("x", history.time), ("y", column))
         )
         drawn = x < line.get("x_end", np.inf)
         return ChartLine("", x[drawn], y[drawn] + line.get("y_start", 0.0))

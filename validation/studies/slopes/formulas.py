@@ -10,15 +10,17 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.metrics.values import or_nan
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
-from validation.suite.bands import APART, Band, about, cases, near
+from validation.suite.bands import APART, Band, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 
@@ -32,6 +34,7 @@ QUAKE = "slope-quake"
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
 RIGID = "sliding block"
 # The shaking
+STANDS = 1e-9  # m/s of slip, below which a block stands
 CYCLES = 4
 RATE = 2.0  # Hz
 
@@ -143,3 +146,42 @@ def lag(case: Scene) -> Band:
 
 def _beside(slide: float, allowed: float) -> dict[str, Band]:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
+
+
+def closed(case: Scene) -> Mapping[str, Value]:
+    """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
+    acceleration = friction.sliding_acceleration(case)
+    displacement, _ = friction.free_motion(case, acceleration)
+    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": float(displacement[-1])}
+
+
+def beside_closed(case: Scene, dda: Row) -> Mapping[str, Value]:
+    """Return how far a run is beyond the closed form [m], and its displacement over that without drag."""
+    final = or_nan(dda.metrics.get("horizontal.final"))
+    displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+    return {"ahead": final - float(displacement[-1]), "share": final / friction.run_out(case, case.time.duration)}
+
+
+def start(case: Scene, dda: Row) -> Mapping[str, Value]:
+    """Return the slip a second [m/s], and that a block stands whose corners do not slip."""
+    slip_rate = or_nan(dda.metrics.get("contact.slip_rate"))
+    if friction.sliding_acceleration(case) < 0 and slip_rate < STANDS:
+        return {"state": "stands", "slip": 0.0}
+    return {"slip": slip_rate}
+
+
+def beside_rigid(case: Scene) -> Mapping[str, Value]:
+    """Return the slide of a rigid mass at the end, and by how much a block may differ from it [m]."""
+    low, high = (in_an_earthquake if case.name.startswith(QUAKE) else shaken)(case)["slide"]
+    return {"slide": (low + high) / 2, "allowed": (high - low) / 2}
+
+
+def data() -> Mapping[str, Any]:
+    """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
+    free = []
+    for case in (*tuple(cases(SLIDING))[-1:], *cases(DRAG)):
+        displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+        instants = np.unique(np.linspace(0, case.time.steps - 1, 200).round().astype(int))
+        free.append({"time": short((instants + 1) * case.time.step), "distance": short(displacement[instants])})
+    x = np.geomspace(0.1, 100.0, 61)  # of a drag, 1/s times a second
+    return {"free": free, "drag": {"rate": short(x), "share": short(2 * (x + np.expm1(-x)) / x**2)}}
