@@ -36,6 +36,7 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
     "power": lambda value, _: bounded(value, power(value)),
     "g": lambda value, _: f"{value:g}",
+    "three": lambda value, _: f"{value:.3g}",
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
 }

@@ -229,8 +229,9 @@ class WrittenChapter:
         words = {}
         for name, number in line.get("numbers", {}).items():
             words[name] = self._number(number, [first]) or DASH
-        name = look.pop("name", line.get("name", "")).format(each=_key(key), **words)
-        return replace(drawn, name=name, **look)
+        for part in ("name", "note"):
+            look[part] = look.get(part, line.get(part, "")).format(each=_key(key), **words)
+        return replace(drawn, **look)
 
     def _points(self, line: Query, group: Sequence[Line]) -> ChartLine:
         """Return the points of some lines of the table that have both numbers."""
