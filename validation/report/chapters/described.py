@@ -30,12 +30,23 @@ from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.runs.row import Value
 
+
+def _brief(value: float, _: int) -> str:
+    """Return a number that fits into a cell of a map."""
+    if abs(value) < 1e-9:
+        return "0"
+    if abs(value) < 1e-3:
+        return "<0.001"
+    return short(value, 3) if value < 100 else f"{value:.0f}"
+
+
 FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written with some digits
     "plain": plain,
     "short": short,
     "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
     "power": lambda value, _: bounded(value, power(value)),
     "g": lambda value, _: f"{value:g}",
+    "brief": _brief,
     "three": lambda value, _: f"{value:.3g}",
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus

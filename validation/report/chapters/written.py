@@ -19,11 +19,13 @@ and ``when``, a list of scenes that must be there. `validation.report.chapters.q
     [table.NAME]    a query, ``group_by``, columns; caption, notes, dense, ruled
     [figure.NAME]   panels, file, caption
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
+    [maps.NAME]     file, caption; ``of`` a list, a line of maps for each; rows, columns, and the maps, each an expression
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 import string
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -39,6 +41,8 @@ from validation.report.chapters.queries import Line, Query, StudyTable
 from validation.report.chapters.scene import gate_count, history_block, opening, outcomes
 from validation.report.chapters.text import DASH, capital
 from validation.report.figures.charts import ChartLine
+from validation.report.figures.histories import saved
+from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -97,9 +101,11 @@ class WrittenChapter:
         shown: Blocks = []
         if "figure" in part:
             shown += self._figure(part["figure"])
+        if "maps" in part:
+            shown += self._maps(part["maps"])
         if "table" in part:
             shown += self._table(part["table"], query)
-        if ("figure" in part or "table" in part) and not shown:
+        if {"figure", "maps", "table"} & set(part) and not shown:
             return []
         if "history" in part:
             shown.append(history_block(self.table.groups[part["history"]], part["columns"], self.directory))
@@ -144,7 +150,8 @@ class WrittenChapter:
         value = self.table.picked(lines, column)
         if value is None or (isinstance(value, str) and not number.get("words")):
             return value
-        return number.get("pattern", "{}").format(_written(column, value))
+        text = _written(column, value)
+        return text if text == number.get("zero_text") else number.get("pattern", "{}").format(text)
 
     def _list(self, described: Query) -> str | None:
         """Return the lines of a list as one text: each with its numbers, those that have them all."""
@@ -181,7 +188,8 @@ class WrittenChapter:
 
     def _cell(self, column: Query, group: Sequence[Line]) -> str:
         value = self.table.picked(group, column)
-        return _written(column, value)
+        text = _written(column, value)
+        return column.get("pattern", "{}").format(text) if value is not None else text
 
     def _caption(self, text: str) -> str:
         values = {word: self._word(word) for _, word, _, _ in string.Formatter().parse(text) if word}
@@ -285,6 +293,58 @@ class WrittenChapter:
             shaded = tuple(_array(curve[part]) for part in line["shaded"]) if "shaded" in line else None
             drawn = ChartLine("", x, y, shaded=shaded)  # type: ignore[arg-type]
             yield self._named(line, drawn, Line(""), curve.get(line.get("each", "")))
+
+
+    # ---- maps -------------------------------------------------------------------------------------------------------
+
+    def _maps(self, name: str) -> list[FigureBlock]:
+        """Return maps of numbers over two expressions: a line for each scene, a map for each expression."""
+        described = self.page.described("maps", name)
+        rows = described["rows"]
+        columns = described["columns"]
+        lines = self.table.lines(described)
+        row_values = sorted({self.table.number(one, rows["of"]) or 0.0 for one in lines})
+        column_values = sorted({self.table.number(one, columns["of"]) or 0.0 for one in lines})
+        if columns.get("descending"):
+            column_values.reverse()
+        grid = []
+        for patterns in described["of"]:
+            own = self.table.lines(described | {"of": patterns})
+            if own:
+                grid.append([self._map(one, own, described, row_values, column_values) for one in described["maps"]])
+        if not grid:
+            return []
+        row_texts = [rows.get("pattern", "{}").format(_written(rows, value)) for value in row_values]
+        column_texts = [_written(columns, value) for value in column_values]
+        labels = columns.get("label", ""), rows.get("label", "")
+        figure = map_figure(grid, row_texts, column_texts, labels, MapScale(*described["scale"]))
+        caption = self._caption(described["caption"])
+        return [saved(figure, self.directory, described["file"], caption)]
+
+    def _map(
+        self, one: Query, lines: Sequence[Line], maps: Query, rows: Sequence[float], columns: Sequence[float]
+    ) -> NumberMap:
+        """Return a map: the number of each cell, shaded from ``from`` to ``to``."""
+        values = np.full((len(rows), len(columns)), np.nan)
+        texts = []
+        for i, row in enumerate(rows):
+            texts.append([])
+            for j, column in enumerate(columns):
+                where = {maps["rows"]["of"]: row, maps["columns"]["of"]: column} | one.get("where", {})
+                value = self.table.picked(lines, one | {"where": where})
+                if isinstance(value, int | float):
+                    values[i, j] = _shade(one["shade"], value)
+                texts[i].append(_written(one, value) if value is not None else maps.get("missing", DASH))
+        return NumberMap(one["title"], values, texts)
+
+
+def _shade(shade: Query, value: float) -> float:
+    """Return how dark a value is, from 0 to 1: between two values, or as far from the first on either side."""
+    low, high = shade["from"], shade["to"]
+    if shade.get("logarithmic"):
+        value, low, high = (math.log(max(one, 1e-300)) for one in (value, low, high))
+    share = (value - low) / (high - low)
+    return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share)) * shade.get("most", 1.0)
 
 
 def _is_measured(column: Query) -> bool:
