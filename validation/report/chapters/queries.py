@@ -5,8 +5,9 @@ A *line* of the table is a case, one solver of a case, or a derived row. A query
     of = ["slope-*"]                names of scenes, or of what owns derived rows, in this order
     where = { "time.delta" = 0.5 }  what must stand in an expression, or in one of a list
     row = "dda at {blocks} blocks"  the derived rows of such names, whose words become expressions
+    metric = "piece {piece}"        of these the metrics of such names, a line each: "piece" and "value" are its words
     by = "solver"                   a line for each solver of a case, or for each "gate", with the words of its verdict
-    sort = "time.step"              an expression
+    sort = "time.step"              an expression, or a list of them
 
 An expression says what is looked up of a line:
 
@@ -82,8 +83,8 @@ class StudyTable:
         for expression, wanted in query.get("where", {}).items():
             values = wanted if isinstance(wanted, list) else [wanted]
             lines = [line for line in lines if _is_among(self.value(line, expression), values)]
-        if "sort" in query:
-            lines.sort(key=lambda line: _order(self.value(line, query["sort"])))
+        for expression in reversed(_listed(query.get("sort", ()))):
+            lines.sort(key=lambda line, by=expression: _order(self.value(line, by)))  # type: ignore[misc]
         return lines
 
     def _of_cases(self, query: Query) -> Iterator[Line]:
@@ -108,14 +109,14 @@ class StudyTable:
 
     def _with_rows(self, query: Query) -> Iterator[Line]:
         """Yield the derived rows whose names follow a pattern, by their owners' order in the query."""
-        pattern = re.compile(PLACEHOLDER.sub(r"(?P<\1>.+)", re.escape(query["row"])))
+        pattern = _pattern(query["row"])
         for wanted in _listed(query.get("of", "*")):
             for (owner, name), metrics in self.derived.items():
                 match = pattern.fullmatch(name)
                 if match and (fnmatch.fnmatchcase(owner, wanted) or fnmatch.fnmatchcase(scene_of(owner), wanted)):
                     group, case = self.cases.get(owner, (self.groups.get(scene_of(owner)), None))
-                    words = {word: _number(text) for word, text in match.groupdict().items()}
-                    yield Line(owner, group, case, words, metrics)
+                    line = Line(owner, group, case, _words(match), metrics)
+                    yield from _by_metric(line, query["metric"]) if "metric" in query else [line]
 
     def value(self, line: Line, expression: str) -> Value:
         """Return what an expression says of a line, None where there is nothing."""
@@ -201,6 +202,23 @@ class StudyTable:
         for line in lines:
             groups.setdefault(tuple(self.value(line, one) for one in expressions), []).append(line)
         return list(groups.values())
+
+
+def _pattern(text: str) -> re.Pattern[str]:
+    """Return what names follow in which words stand in braces."""
+    return re.compile(PLACEHOLDER.sub(r"(?P<\1>.+)", re.escape(text)))
+
+
+def _words(match: re.Match[str]) -> dict[str, Value]:
+    return {word: _number(text) for word, text in match.groupdict().items()}
+
+
+def _by_metric(line: Line, text: str) -> Iterator[Line]:
+    """Yield a derived row metric by metric."""
+    pattern = _pattern(text)
+    for name, value in line.metrics.items():
+        if match := pattern.fullmatch(name):
+            yield replace(line, words={**line.words, **_words(match), "value": value})
 
 
 def _listed(value: str | Sequence[str]) -> Sequence[str]:

@@ -178,10 +178,9 @@ class WrittenChapter:
             pairs = zip(cells, columns, previous or [""] * len(cells), strict=True)
             rows.append(["" if column.get("once") and text == above else text for text, column, above in pairs])
             previous = cells
-        for row in reversed(described.get("first", [])):
-            rows.insert(0, row)
         if not rows:
             return []
+        rows = [[self._caption(cell) for cell in row] for row in described.get("first", [])] + rows
         look = {key: described[key] for key in ("notes", "ruled", "dense") if key in described}
         caption = self._caption(described.get("caption", ""))
         return [table([_column(column).head for column in columns], rows, caption, **look)]
@@ -189,7 +188,10 @@ class WrittenChapter:
     def _cell(self, column: Query, group: Sequence[Line]) -> str:
         value = self.table.picked(group, column)
         text = _written(column, value)
-        return column.get("pattern", "{}").format(text) if value is not None else text
+        if value is None:
+            return text
+        others = [self._cell(one, group) for one in column.get("also", ())]
+        return column.get("pattern", "{}").format(text, *others)
 
     def _caption(self, text: str) -> str:
         values = {word: self._word(word) for _, word, _, _ in string.Formatter().parse(text) if word}
