@@ -47,6 +47,8 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "power": lambda value, _: bounded(value, power(value)),
     "g": lambda value, _: f"{value:g}",
     "brief": _brief,
+    # Signed; without a power of ten where it is large.
+    "signed": lambda value, _: f"{value:{'+.0f' if abs(value) >= 1000 else '+.3g'}}".replace("-", "−"),
     "three": lambda value, _: f"{value:.3g}",
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus

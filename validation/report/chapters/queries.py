@@ -3,6 +3,7 @@
 A *line* of the table is a case, one solver of a case, or a derived row. A query is a table of a chapter's description:
 
     of = ["slope-*"]                names of scenes, or of what owns derived rows, in this order
+    scene = "methods-locked-{method}"   or scenes of such names, whose words become expressions; or a list of these
     where = { "time.delta" = 0.5 }  what must stand in an expression, or in one of a list
     row = "dda at {blocks} blocks"  the derived rows of such names, whose words become expressions
     metric = "piece {piece}"        of these the metrics of such names, a line each: "piece" and "value" are its words
@@ -17,7 +18,7 @@ An expression says what is looked up of a line:
     "dda work.unknowns"             work, seconds and their sum, "dda seconds"
     "dda|fem displacement.l2"       a metric of a pair
     "closed: drag"                  a metric of the derived row `closed` of the case, or of its scene
-    "bars/pieces: piece 1"          the same of another owner
+    "bars/pieces: piece 1"          the same of another owner, in which words may stand, "impact-{method}/map: mean"
     ": wave.left"                   a metric of the line's own derived row
     "blocks"                        a word of its name
     "a else b"                      the first of two that says something
@@ -88,34 +89,39 @@ class StudyTable:
         return lines
 
     def _of_cases(self, query: Query) -> Iterator[Line]:
-        for group in self._groups_of(query.get("of", "*")):
+        for group, words in self._groups_of(query):
             for case in group.cases:
-                line = Line(case.name, group, case)
+                line = Line(case.name, group, case, words)
                 if query.get("by") == "solver":
                     for solver in case.rows:
-                        yield replace(line, words={"solver": solver})
+                        yield replace(line, words={**words, "solver": solver})
                 elif query.get("by") == "gate":
                     for verdict in (one for one in group.verdicts if one["scene"] == case.name):
                         low, high = verdict["band"]
-                        words = {"metric": verdict["metric"], "value": verdict["value"], "low": low, "high": high}
-                        yield replace(line, words=words)
+                        judged = {"metric": verdict["metric"], "value": verdict["value"], "low": low, "high": high}
+                        yield replace(line, words={**words, **judged})
                 else:
                     yield line
 
-    def _groups_of(self, patterns: str | Sequence[str]) -> Iterator[CaseGroup]:
-        for pattern in _listed(patterns):
+    def _groups_of(self, query: Query) -> Iterator[tuple[CaseGroup, Mapping[str, Value]]]:
+        for pattern in _listed(query.get("scene", ())):
+            for name, group in self.groups.items():
+                if match := _pattern(pattern).fullmatch(name):
+                    yield group, _words(match)
+        for pattern in () if "scene" in query else _listed(query.get("of", "*")):
             for name in fnmatch.filter(self.groups, pattern):
-                yield self.groups[name]
+                yield self.groups[name], {}
 
     def _with_rows(self, query: Query) -> Iterator[Line]:
         """Yield the derived rows whose names follow a pattern, by their owners' order in the query."""
         pattern = _pattern(query["row"])
-        for wanted in _listed(query.get("of", "*")):
+        for wanted in _listed(query.get("scene", query.get("of", "*"))):
             for (owner, name), metrics in self.derived.items():
                 match = pattern.fullmatch(name)
-                if match and (fnmatch.fnmatchcase(owner, wanted) or fnmatch.fnmatchcase(scene_of(owner), wanted)):
+                words = _words_of_owner(owner, wanted)
+                if match and words is not None:
                     group, case = self.cases.get(owner, (self.groups.get(scene_of(owner)), None))
-                    line = Line(owner, group, case, _words(match), metrics)
+                    line = Line(owner, group, case, {**words, **_words(match)}, metrics)
                     yield from _by_metric(line, query["metric"]) if "metric" in query else [line]
 
     def value(self, line: Line, expression: str) -> Value:
@@ -151,6 +157,7 @@ class StudyTable:
         if not row:
             return line.metrics.get(metric)
         owner, slash, name = row.rpartition("/")
+        owner = owner.format_map({word: str(value) for word, value in line.words.items()})
         owners = (owner,) if slash else (line.name, scene_of(line.name))
         for candidate in owners:
             if (candidate, name) in self.derived:
@@ -213,6 +220,16 @@ def _words(match: re.Match[str]) -> dict[str, Value]:
     return {word: _number(text) for word, text in match.groupdict().items()}
 
 
+def _words_of_owner(owner: str, wanted: str) -> dict[str, Value] | None:
+    """Return the words of what owns a row, or of its scene, None where it is another one."""
+    for name in (owner, scene_of(owner)):
+        if match := _pattern(wanted).fullmatch(name):
+            return _words(match)
+        if fnmatch.fnmatchcase(name, wanted):
+            return {}
+    return None
+
+
 def _by_metric(line: Line, text: str) -> Iterator[Line]:
     """Yield a derived row metric by metric."""
     pattern = _pattern(text)
@@ -226,7 +243,7 @@ def _listed(value: str | Sequence[str]) -> Sequence[str]:
 
 
 def _number(text: str) -> Value:
-    """Return a word of a row's name, as a number where it is one."""
+    """Return a word of a name, as a number where it is one."""
     try:
         return float(text)
     except ValueError:

@@ -146,12 +146,16 @@ class WrittenChapter:
         return self._number(number, self.table.lines(number))
 
     def _number(self, number: Query, lines: Sequence[Line]) -> str | None:
-        column = number | {"of": number["value"]}
+        column = self._with_words(number | {"of": number["value"]})
         value = self.table.picked(lines, column)
-        if value is None or (isinstance(value, str) and not number.get("words")):
+        if value is None or (isinstance(value, str) and value not in column.get("words", {})):
             return value
         text = _written(column, value)
         return text if text == number.get("zero_text") else number.get("pattern", "{}").format(text)
+
+    def _with_words(self, column: Query) -> Query:
+        """Return a column whose words, where it says ``words_of``, are those that the study keeps under that name."""
+        return column | {"words": self.table.data.get(column["words_of"], {})} if "words_of" in column else column
 
     def _list(self, described: Query) -> str | None:
         """Return the lines of a list as one text: each with its numbers, those that have them all."""
@@ -186,6 +190,7 @@ class WrittenChapter:
         return [table([_column(column).head for column in columns], rows, caption, **look)]
 
     def _cell(self, column: Query, group: Sequence[Line]) -> str:
+        column = self._with_words(column)
         value = self.table.picked(group, column)
         text = _written(column, value)
         if value is None:
@@ -236,7 +241,7 @@ class WrittenChapter:
         look = {name: line[name] for name in LINE_FIELDS if name in line}
         look |= line.get("looks", {}).get(_key(key), {})
         look = {name: tuple(value) if isinstance(value, list) else value for name, value in look.items()}
-        words = {}
+        words = {name: str(value) for name, value in first.words.items()}
         for name, number in line.get("numbers", {}).items():
             words[name] = self._number(number, [first]) or DASH
         for part in ("name", "note"):
@@ -289,12 +294,13 @@ class WrittenChapter:
         for key in line["data"].split("."):
             data = data.get(key, {})
         for curve in data if isinstance(data, list) else [data] if data else []:
-            if not all(curve.get(key) == value for key, value in line.get("where", {}).items()):
+            if not all(curve.get(key) in _as_list(value) for key, value in line.get("where", {}).items()):
                 continue
             x, y = (_array(curve[line[axis]]) * line.get(f"{axis}_factor", 1.0) for axis in ("x", "y"))
             shaded = tuple(_array(curve[part]) for part in line["shaded"]) if "shaded" in line else None
             drawn = ChartLine("", x, y, shaded=shaded)  # type: ignore[arg-type]
-            yield self._named(line, drawn, Line(""), curve.get(line.get("each", "")))
+            own = {key: value for key, value in curve.items() if isinstance(value, str)}
+            yield self._named(line, drawn, Line("", words=own), curve.get(line.get("each", "")))
 
 
     # ---- maps -------------------------------------------------------------------------------------------------------
@@ -340,6 +346,10 @@ class WrittenChapter:
         return NumberMap(one["title"], values, texts)
 
 
+def _as_list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
+
+
 def _shade(shade: Query, value: float) -> float:
     """Return how dark a value is, from 0 to 1: between two values, or as far from the first on either side."""
     low, high = shade["from"], shade["to"]
@@ -364,8 +374,8 @@ def _key(value: Value) -> str:
 
 def _written(column: Query, value: Value) -> str:
     """Return a value as a column writes it: by its words, or as a number."""
-    if "words" in column and value is not None:
-        return str(column["words"].get(_key(value), column["words"].get("", _key(value))))
+    if _key(value) in column.get("words", {}):
+        return str(column["words"][_key(value)])
     if isinstance(value, float | int) and abs(value) <= column.get("zero", -1.0):
         return str(column.get("zero_text", "0"))
     if isinstance(value, str) and ("without" in column or column.get("raw")):
