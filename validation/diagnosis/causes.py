@@ -28,6 +28,7 @@ HALF = 0.5  # steps late: a mean of two
 UNEXPLAINED = "unexplained"
 SWAPPED = "swapped"
 DIVERGED = "diverged"
+SINGLE_ROWS = "single-rows"
 
 
 @dataclass(frozen=True)
@@ -228,6 +229,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
         "scheme": "",
         "open_steps": "",
         "between": "",
+        "rows": "",
     }
     if v is not None and scene is not None:
         squared = scene.gg < 1 and abs(v.gg - scene.gg**2) < 1e-6

@@ -196,7 +196,7 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     if target.explained(scene_fit.residual) and not (
         is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
     ):
-        return Verdict(scene_fit, Explanation((), scene_fit), True)
+        return Verdict(scene_fit, Explanation((), scene_fit), True, reached=True)
     names = tuple(f for ids, f in aliases.items() if ids != best.ids)
     return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=names)
 
@@ -287,16 +287,21 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
     if target.explained(target.inner(candidate.residual, v)):
         return True
     if candidate is scene_fit or v == scene_fit.variant:
-        return candidate.misfit <= NEGLIGIBLE
+        return _is_negligible(target, candidate, NEGLIGIBLE)
     # rounded constants leave that much, and the passes of an augmented Lagrangian; of the other schemes and contact
     # methods some come as near to another one by chance
     is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
-    if is_usual and candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
+    if is_usual and _is_negligible(target, candidate, min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE)):
         return True
     noise = MARGIN * target.spread
     around = AROUND_OPEN if v.opens else AROUND
     loose = min(math.hypot(around, noise), SHARE * scene_fit.misfit)
     return candidate.misfit <= loose and _surrounded(target, candidate)
+
+
+def _is_negligible(target: Target, candidate: Fit, least: float) -> bool:
+    """Whether a fit leaves next to nothing, as rounded constants do, and no row by itself that is another one."""
+    return candidate.misfit <= least and not target.has_lone_row(candidate.residual)
 
 
 def _surrounded(target: Target, candidate: Fit) -> bool:
@@ -382,7 +387,7 @@ def simple(target: Target, scene: Variant) -> Verdict:
     """
     scene_fit = fit_one(target, scene)
     nothing = Explanation((), scene_fit)
-    if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
+    if target.within_digits(scene_fit.residual) or _is_negligible(target, scene_fit, NEGLIGIBLE):
         return Verdict(scene_fit, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
     verdict = decided(target, scene_fit, [nothing, *single])
