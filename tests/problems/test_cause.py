@@ -58,6 +58,14 @@ def test_ddas_habit_and_another_integrator() -> None:
     habit = named("locked", get_solver("dda").solve(asked.scene).history)
     assert habit.sentence.startswith("DDA's usual scheme, constant acceleration (alpha = 0.5, delta = 1, gg = 1)")
     assert habit.sentence.endswith("at this step: numerical damping")
+    every = round(asked.scene.time.step / habit.passing_step)
+    finer = {"time.step": asked.scene.time.step / every, "time.steps": every * asked.scene.time.steps}
+    passing = get_solver("dda").solve(asked.scene.with_values(finer)).history
+    at_steps = History(passing.time[every - 1 :: every], {k: x[every - 1 :: every] for k, x in passing.columns.items()})
+    assert judge(asked, at_steps).word is Word.PASS
+    interchanged = asked.scene.with_values({"time.alpha": 1.0, "time.delta": 0.5})
+    slip = named("locked", get_solver("dda").solve(interchanged).history)
+    assert slip.ids == ("scheme",) and models.INTERCHANGED in slip.sentence
     average = named("locked", fine("locked", {}, 1))
     assert average.ids == ("scheme",)
     assert "another integrator, average acceleration" in average.sentence

@@ -317,8 +317,8 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     if SINGLE_ROWS in ids:
         values[SINGLE_ROWS] = min(step for _, step, _ in single_rows)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
-    if "dead-band" in ends:
-        values["dead-band"] = causes.roundest(*ends["dead-band"])
+    limits = [name for name in causes.BAND_FIELDS if name in ends]
+    values |= {name: causes.roundest(*ends[name]) for name in limits}
     alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
     alike = alike or families.relatives(target, ids, values, v)
     nearest: dict[str, Any] | None = None
@@ -330,9 +330,10 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     further = {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
     if steps:
         further["open_steps"] = f" in steps {sentences.span(steps)}"
-    if "dead-band" in ends:
-        low, high = ends["dead-band"]
-        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    for name in limits:
+        low, high = ends[name]
+        unit = "m" if name == "dead-band" else "Pa"
+        further["between"] = f" ({low:.3g} to {high:.3g} {unit} give the same rows)"
     further |= _undecided(target, v, ids)
     words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
@@ -348,7 +349,11 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         sentence = sentences.sentence(subject)
     best = histories(target.column, [best_fit.variant], target.steps)
     as_read = case.as_read or case.reading
-    curves = {"the file": as_read.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
+    curves = {
+        "the file": as_read.displacement,
+        DDA: expected[0][target.rows],
+        "best": best.displacement[target.rows, 0],
+    }
     pressures = {"the file": as_read.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         scheme=schemes.scheme_numbers(v),

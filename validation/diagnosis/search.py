@@ -18,7 +18,7 @@ from validation.diagnosis.causes import CONTACT_METHODS, LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
+from validation.diagnosis.moves import FINE_BANDS, OPENING_TENSION, Move, dead_bands, moves
 from validation.diagnosis.schemes import SHARED
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
@@ -45,6 +45,7 @@ ROUND = 3  # significant digits of a round number
 EXACT = 1e-7  # relative error of a round number
 LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
 WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
+SWITCHING = (("dead-band",), (OPENING_TENSION,), ("late-opening",), ("late-contact",))
 MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
@@ -175,7 +176,8 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     """Return the verdict over candidates, the scene as it is among them or not."""
     scores = {id(f): score(target, f.fit, f.moves) for f in explanations}
     ranked = sorted(explanations, key=lambda f: scores[id(f)])
-    fine = [f for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
+    fine = [_with_effect(target, f) for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
+    scores |= {id(f): score(target, f.fit, f.moves) for f in fine}
     if not fine:
         return Verdict(
             scene_fit,
@@ -186,10 +188,10 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
-    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
+    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band or a lag without effect
     # not the best one with a further part that has no effect
     others = [f for f in close if f.ids != best.ids and not set(best.ids) < set(f.ids)]
-    alike = {f.ids: f for f in reversed(others) if best.ids not in WITHOUT_BAND or f.ids != ("dead-band",)}
+    alike = {f.ids: f for f in reversed(others) if best.ids not in WITHOUT_BAND or f.ids not in SWITCHING}
     best, aliases = _canonical(target, best, close)
     alike = {ids: f for ids, f in alike.items() if ids not in aliases}
     is_named = not alike and _nameable(target, scene_fit, best)
@@ -199,6 +201,19 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
         return Verdict(scene_fit, Explanation((), scene_fit), True, reached=True)
     names = tuple(f for ids, f in aliases.items() if ids != best.ids)
     return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=names)
+
+
+def _with_effect(target: Target, explanation: Explanation) -> Explanation:
+    """Return a dead band that also opens beyond a gap as the tension that this is, where the closing has no effect."""
+    v = explanation.fit.variant
+    if explanation.ids != ("dead-band",) or v.reopening == 0:
+        return explanation
+    opening = {"hold": v.band * v.reopening, "band": 0.0, "reopening": 0.0}
+    alone = fit_one(target, replace(v, **opening))
+    if alone.misfit > explanation.fit.misfit * (1 + SAME_PROGRAM) + target.floor:
+        return explanation
+    changes = {**explanation.moves[0].changes, **opening}
+    return Explanation((Move(OPENING_TENSION, changes),), alone)
 
 
 def _rounder(close: list[Explanation]) -> list[Explanation]:
