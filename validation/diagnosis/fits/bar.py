@@ -108,6 +108,16 @@ def white(remainder: Array) -> bool:
     return statistic <= lags + SHAPELESS * math.sqrt(2 * lags) + SHAPELESS**2 / 2
 
 
+def spread_of_most(remainder: Array) -> float:
+    """Return the spread of most rows of a remainder, by their median: a few wrong rows do not excuse themselves."""
+    return MEDIAN * float(np.median(np.abs(remainder))) if len(remainder) else 0.0
+
+
+def outlying(remainder: Array, spread: float, unit: Array) -> NDArray[np.bool_]:
+    """Return which rows of a remainder are farther away than noise of a spread, and units of last digits, have them."""
+    return np.asarray(np.abs(remainder) > OUTLYING * np.hypot(spread, ROUNDED * unit))
+
+
 @dataclass(frozen=True, eq=False)
 class Bar:
     """What digits and noise may leave of a column, in its unit."""
@@ -130,14 +140,12 @@ class Bar:
         return np.asarray(self.rounding + ARITHMETIC * self.size)
 
     def _spread_of_most(self, remainder: Array) -> float:
-        """Return the spread of most rows of a remainder, by their median: a few wrong rows do not excuse themselves."""
-        moving_rows = np.abs(remainder[self.moving])
-        return MEDIAN * float(np.median(moving_rows)) if len(moving_rows) else 0.0
+        """Return the spread of most of the rows that are not at rest."""
+        return spread_of_most(remainder[self.moving])
 
     def outlying(self, remainder: Array) -> NDArray[np.bool_]:
         """Return which rows of a remainder are farther away than the noise of most of its rows would have them."""
-        spread = np.hypot(self._spread_of_most(remainder), ROUNDED * self.unit)
-        return np.asarray(np.abs(remainder) > OUTLYING * spread)
+        return outlying(remainder, self._spread_of_most(remainder), self.unit)
 
     def has_lone_row(self, remainder: Array) -> bool:
         """Whether a row stands out of a remainder alone, whose neighbours do not.
