@@ -209,7 +209,7 @@ def _with_effect(target: Target, explanation: Explanation) -> Explanation:
     if explanation.ids != ("dead-band",) or v.reopening == 0:
         return explanation
     opening = {"hold": v.band * v.reopening, "band": 0.0, "reopening": 0.0}
-    alone = fit_one(target, replace(v, **opening))
+    alone = fit_one(target, changed(v, opening))
     if alone.misfit > explanation.fit.misfit * (1 + SAME_PROGRAM) + target.floor:
         return explanation
     changes = {**explanation.moves[0].changes, **opening}

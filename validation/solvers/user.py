@@ -256,10 +256,10 @@ def _wrong_units(scene: Scene, history: History, expected: Array, reference: His
             expected_values = reference.columns[name]
             if np.isfinite(expected_values).all() and (difference := factor(name, values, expected_values)) is not None:
                 return difference
-    return None if reference is None else _force(scene, history, reference)
+    return None if reference is None else force(scene, history, reference)
 
 
-def _force(scene: Scene, history: History, reference: History) -> str | None:
+def force(scene: Scene, history: History, reference: History) -> str | None:
     """Say that the pressure is a force, if it is larger by the length of the base and the motion is the expected one.
 
     With one spring in place of two the pressure is larger by two, and so is the gap: no force on a base of 2 m.
