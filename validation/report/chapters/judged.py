@@ -98,7 +98,7 @@ def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
 
 
 def _cause_data(cause: Cause) -> dict[str, Any]:
-    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    statement: dict[str, Any] = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
     if cause.passing_step is not None:
         statement["passing_step_s"] = cause.passing_step
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
