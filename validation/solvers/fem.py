@@ -263,6 +263,7 @@ class FiniteElements(Solver):
                 features.UNILATERAL,
                 features.IMPLICIT,
                 features.COLUMN,
+                features.PLANE,
                 features.UNILATERAL_COLUMN,
                 features.FRICTIONAL_COLUMN,
                 features.RIGID_JOINTS,
@@ -276,7 +277,7 @@ class FiniteElements(Solver):
         (features.ADAPTIVE, features.COURSES),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input", "plane")
     unread = (*OF_SUB_BLOCKS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
@@ -299,4 +300,8 @@ class FiniteElements(Solver):
 
             kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
             return kind(scene, scheme_of(scene))
+        if scene.plane is not None:
+            from validation.solvers.plane import PlaneMesh
+
+            return PlaneMesh(scene, scene.plane, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)
