@@ -24,7 +24,7 @@ gallery: $(READY)  ## the results as a static site with calculators, in reports/
 	@$(BIN)/dda-validate gallery --out reports/gallery
 
 field: $(PEERS)  ## other people's programs on the problems, and their table; minutes. FIELD='--require yade' insists on one
-	@$(BIN)/dda-validate run field engines --results reports/field $(FIELD); status=$$?; \
+	@$(BIN)/dda-validate run field --results reports/field $(FIELD); status=$$?; \
 	$(BIN)/dda-validate report --results reports/field --out reports/field.pdf && exit $$status
 
 test: $(READY)  ## the tests and the accuracy gates, without the long ones

@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from validation.advice.across import advise_across as advise_across
     from validation.advice.advice import advise as advise
-    from validation.advice.engine_settings import advise_engine as advise_engine
-    from validation.advice.engines import translate as translate
     from validation.advice.response import response as response
     from validation.advice.spectra import damping as damping
     from validation.errors import InputError as InputError
@@ -46,13 +44,11 @@ _NAMES = {
     "Solver": "solvers.contract",
     "advise": "advice.advice",
     "advise_across": "advice.across",
-    "advise_engine": "advice.engine_settings",
     "damping": "advice.spectra",
     "get_solver": "solvers.registry",
     "load_scene": "scenes.scene",
     "response": "advice.response",
     "solve": "solution",
-    "translate": "advice.engines",
 }
 # They warn of values that were probably not meant.
 _OF_A_SCENE = ("advise", "advise_across", "advise_engine", "damping", "response", "solve")

@@ -22,8 +22,8 @@ from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status, Verdict
 from validation.runs.results import Results
-from validation.studies.own_solver.gates import applying, asked, cases, gates, recipes, study_of
-from validation.studies.own_solver.session import Session, plain
+from validation.suite.own_solver.gates import applying, asked, cases, gates, recipes, study_of
+from validation.suite.own_solver.session import Session, plain
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -11,7 +11,7 @@ from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms,
 from validation.engine.run import finish, run_study
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.declaration import Study
+from validation.suite.declaration import Study
 
 STIFFNESS = load_scene("figures-5-6")
 STEPS = load_scene("model-form")

@@ -19,7 +19,7 @@ from validation.gates.changes import Change
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.studies.catalogue import get_study
+from validation.suite.folders import get_study
 
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
 GATE = Gate(CASE.name, ("dda", "bar"), "displacement.l2", 0.031, 0.042, "the reason " * 12)

@@ -195,6 +195,6 @@ def test_an_end_of_a_file_is_no_interruption(monkeypatch: pytest.MonkeyPatch) ->
     def torn(*arguments: object) -> None:
         raise EOFError("marshal data too short")
 
-    monkeypatch.setattr("validation.studies.catalogue.get_study", torn)
+    monkeypatch.setattr("validation.suite.folders.get_study", torn)
     with pytest.raises(EOFError, match="too short"):
         typed("list")

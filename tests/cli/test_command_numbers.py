@@ -12,6 +12,9 @@ import pytest
 from conftest import typed
 from oracles.made_cases import between, kept_study, made_history, made_row
 from oracles.pages import table
+from validation.studies.claims import page
+from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER
+from validation.studies.work import record as work_record
 
 from validation import load_scene
 from validation.cli.printing import tables
@@ -21,9 +24,6 @@ from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.studies.claims import page
-from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER
-from validation.studies.work import record as work_record
 
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
 

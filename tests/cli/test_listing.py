@@ -13,7 +13,7 @@ from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
 from validation.scenes.tables import ContactSection
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
-from validation.studies.catalogue import STUDIES, get_study
+from validation.suite.folders import get_study, study_names
 
 PAGE = Path(__file__).parents[2] / "docs" / "metrics.md"
 
@@ -55,10 +55,10 @@ def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> No
 
 def test_studies_scenes_and_solvers_have_a_line_each() -> None:
     studies, scenes, solvers = (listed(word)[1:] for word in ("studies", "scenes", "solvers"))
-    assert [line.split()[0] for line in studies] == list(STUDIES)
+    assert [line.split()[0] for line in studies] == study_names()
     assert [line.split()[0] for line in scenes] == list(scene_names())
     assert [line.split()[0] for line in solvers] == solver_names()
-    for line, name in zip(studies, STUDIES, strict=True):
+    for line, name in zip(studies, study_names(), strict=True):
         assert line.split()[1] == str(len(get_study(name).scenes)) and line.endswith(get_study(name).title)
     for line, name in zip(scenes, scene_names(), strict=True):
         scene = load_scene(name)
@@ -79,7 +79,7 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch: pyte
 def test_the_plain_list_names_all_four_with_their_titles() -> None:
     shown = typed("list").stdout
     words = shown.replace(",", "").split()
-    for name in (*STUDIES, *scene_names(), *solver_names(), *CATALOGUE):
+    for name in (*study_names(), *scene_names(), *solver_names(), *CATALOGUE):
         assert name in words
     lines = [line.split(maxsplit=1) for line in shown.splitlines()]
     for name, title in (("core", get_study("core").title), ("figures-3-4", load_scene("figures-3-4").title)):

@@ -1,30 +1,118 @@
 """What commands print, kept word by word: the one place for wordings. Numbers may differ where no digit is meant.
 
 The numbers are computed apart beside the functions that they come from; here a page is only held to what it was. A page
-that is changed on purpose is written anew by ``python tests/cli/test_pages.py``.
+that is changed on purpose is written anew by ``python tests/cli/test_pages.py``; a command line
+behind it becomes another page.
 """
 
+import atexit
 import json
 import re
 import shlex
+import shutil
 import sys
+import tempfile
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 PAGES = Path(__file__).with_name("pages.json")
+SECONDS = re.compile(r"[\d.]+(?=(?: s| +)?$)", re.M)  # of `run`, at the end of a line
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 KEPT = json.loads(PAGES.read_text(encoding="utf-8"))  # command line -> status and lines of output and error
 COMMANDS = {name: list(lines) for name, lines in groupby(sorted(KEPT), key=lambda line: line.split()[0])}
+
+
+STEPS = 60
+SCENE = """title = "My block"
+[block]
+side = 2.0
+density = 2700.0
+young = 1.0e9
+[contact]
+stiffness = 1.0e9
+[load]
+pressure = 5.0e6
+[time]
+step = 0.002
+steps = 50
+[fem]
+elements = 4
+[run]
+solvers = ["dda", "fem", SOLVER]
+"""
+ONE_GATE = """[[gate]]
+pair = [SOLVER, "dda"]
+metric = "displacement.l2"
+band = [0.0, 1e-6]
+reason = "the same model and scheme"
+"""
+BROKEN = """import numpy as np
+def raises(scene):
+    raise ValueError("no step left")
+def not_a_number(scene):
+    return np.full(scene.time.steps, np.nan), np.zeros(scene.time.steps)
+def exits(scene):
+    raise SystemExit(3)
+def short(scene):
+    return np.zeros(3), np.zeros(3)
+"""
+
+
+def history(**values: object) -> np.ndarray:
+    """Return time, displacement and force of DDA on figures 3 and 4 at 2 ms, with some values of the scene changed."""
+    from validation import load_scene, solve
+
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS, **values})
+    columns = solve(scene, "dda").history.columns
+    times = scene.time.step * np.arange(1, STEPS + 1)
+    return np.stack([times, columns["displacement"], columns["contact_pressure"]])
+
+
+@cache
+def desk() -> Path:
+    """Return a folder with what a user has there: histories by programs with one slip each, scenes, broken solvers."""
+    place = Path(tempfile.mkdtemp())
+    atexit.register(shutil.rmtree, place)
+    right = history()
+    files = {
+        "right": right,
+        "millimetres": right * [[1], [1e3], [1]],
+        "kilopascals": right * [[1], [1], [1e-3]],
+        "signs": right * [[1], [-1], [1]],
+        "milliseconds": right * [[1e3], [1], [1]],
+        "from-zero": np.hstack([np.zeros((3, 1)), right]),
+        "missing-rows": np.delete(right, [10, 11, 30], axis=1),
+        "every-other": right[:, 1::2],
+        "discount": history(**{"time.gg": 0.98}),
+        "half-springs": history(**{"contact.stiffness": 0.5e9}),
+        "start": history(**{"time.start": "consistent", "time.alpha": 0.25, "time.delta": 0.5}),
+    }
+    header = "time,displacement,contact_pressure"
+    for name, rows in files.items():
+        np.savetxt(place / f"{name}.csv", rows.T, "%.6g", ",", header=header, comments="")
+    np.savetxt(place / "four-digits.csv", right.T, "%.4g", ",", header=header, comments="")
+    (place / "broken.py").write_text(BROKEN)
+    (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    for name in ("raises", "not_a_number", "exits", "short"):
+        (place / f"{name}.toml").write_text((SCENE + ONE_GATE).replace("SOLVER", f'"broken:{name}"'))
+    return place
 
 
 def page(line: str) -> list[object]:
     """Return status, and lines of output and error, of a command line."""
     from conftest import typed
 
-    done = typed(*shlex.split(line), cwd=PAGES.parent)
-    return [done.returncode, *(done.stdout + done.stderr).splitlines()]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(desk())
+        done = typed(*shlex.split(line), cwd=desk())
+    printed = done.stdout + done.stderr
+    if line.startswith("run "):
+        printed = SECONDS.sub("0", printed)
+    return [done.returncode, *printed.splitlines()]
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -37,5 +125,6 @@ def test_a_command_prints_what_it_did(command: str) -> None:
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(Path(__file__).parents[1]))
-    PAGES.write_text(json.dumps({line: page(line) for line in KEPT}, indent=1) + "\n", encoding="utf-8")
+    sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
+    pages = {line: page(line) for line in [*KEPT, *sys.argv[1:]]}
+    PAGES.write_text(json.dumps(pages, indent=1) + "\n", encoding="utf-8")

@@ -11,6 +11,8 @@ import pytest
 import typer
 from conftest import typed
 from rich.console import Console
+from validation.studies.contact import pack as contact_pack
+from validation.studies.contact import slipping_pack
 
 from validation import load_scene, response
 from validation.advice import rayleigh
@@ -23,8 +25,6 @@ from validation.problems import pack as problems_pack
 from validation.report.figures import response as figures
 from validation.runs.run import Outcome, Run
 from validation.studies import pack
-from validation.studies.contact import pack as contact_pack
-from validation.studies.contact import slipping_pack
 from validation.studies.waves import pack as waves_pack
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})

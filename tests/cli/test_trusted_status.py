@@ -20,7 +20,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.studies.catalogue import STUDIES, get_study
+from validation.suite.folders import get_study, study_names
 
 RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
@@ -119,7 +119,7 @@ def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp
         assert bool(run.failed) is failed
     found = [row.outcome for row in Results(tmp_path).rows().values()]
     assert found == [Outcome.OVERFLOW]
-    assert [name for name in STUDIES if get_study(name).expects] == ["stability-small", "stability", "field", "engines"]
+    assert [name for name in study_names() if get_study(name).expects] == ["stability-small", "stability", "field"]
 
 
 # ---- required solvers -----------------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ from validation.runs.row import Value
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import load_scene
 from validation.solvers.contract import Solver
-from validation.studies.catalogue import get_study
+from validation.suite.folders import get_study
 
 
 def test_a_derived_row_is_computed_once_for_all_gates(tmp_path: Path) -> None:

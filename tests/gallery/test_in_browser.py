@@ -27,7 +27,7 @@ from validation.gallery import site
 from validation.gallery.calculators import CALCULATORS
 from validation.results import Results
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.catalogue import scene_study
+from validation.suite.folders import scene_study
 from validation.theory import landing, restitution, spectra
 from validation.theory.rebound import rebound_statistics, spring_steps
 from validation.theory.stepping import Stepping

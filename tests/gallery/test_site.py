@@ -18,7 +18,7 @@ from validation.gallery.cases import readable
 from validation.gallery.pages import Pages
 from validation.report.blocks import Block, PageBreak
 from validation.results import Results
-from validation.studies.catalogue import scene_study
+from validation.suite.folders import scene_study
 
 ROOT = Path(__file__).parents[2]
 STATIC = ROOT / "validation/gallery/static"

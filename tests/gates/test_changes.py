@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import SCENE, refused, typed
 from oracles.pages import table
+from validation.studies.pack import write_pack
 
 from validation import solve
 from validation.errors import InputError
@@ -14,7 +15,6 @@ from validation.gates.changes import changes, markdown, read_verdicts
 from validation.metrics.catalogue import pair
 from validation.runs.files import read_csv
 from validation.scenes.scene import load_scene
-from validation.studies.pack import write_pack
 
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 

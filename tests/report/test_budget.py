@@ -22,8 +22,8 @@ from validation.report.figures.charts import chart_figure
 from validation.report.figures.curves import GREY, style_of
 from validation.report.front.groups import groups_of_studies
 from validation.scenes.scene import load_scene
-from validation.studies import Study
-from validation.studies.catalogue import scene_study
+from validation.suite import Study
+from validation.suite.folders import scene_study
 
 
 def budget_of(**parts: float) -> dict[str, Any]:

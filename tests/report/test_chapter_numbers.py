@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from oracles.made_cases import kept_study, lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
 
 from validation.report.blocks import Heading, Table
-from validation.report.chapters import paper as chapters_paper
-from validation.report.chapters.limits import stability as chapters_stability
-from validation.report.chapters.limits import stiff_contact as chapters_contact
-from validation.report.chapters.limits.stability import ExtremeRun
-from validation.report.chapters.paper import PaperFigure
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
+from validation.studies.paper import chapter as chapters_paper
+from validation.studies.paper.chapter import PaperFigure
+from validation.studies.stability import chapter as chapters_stability
+from validation.studies.stability.chapter import ExtremeRun
+from validation.studies.stiff_contact import chapter as chapters_contact
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
 GREY = "#6b6b6b"
@@ -89,7 +89,7 @@ def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dic
 
 def test_statements_and_slips_stand_under_their_own_headings(tmp_path: Path) -> None:
     told = [{"id": name, "says": "it", "place": "p. 1", "why": "so", "condition": ""} for name in ("S1", "C1", "C2")]
-    blocks = chapters_paper.paper_chapter(Results(tmp_path), {"study": "paper", "data": {"claims": told}}, tmp_path)
+    blocks = chapters_paper.chapter(Results(tmp_path), {"study": "paper", "data": {"claims": told}}, tmp_path)
     at = [block.text if isinstance(block, Heading) else [row[0] for row in block.rows]
           for block in blocks if isinstance(block, Heading | Table)]  # fmt: skip
     assert at == ["paper", "Statements", ["C1", "C2"], "Slips of the equations", ["S1"], "The figures"]

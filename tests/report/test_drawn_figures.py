@@ -11,13 +11,15 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, rules_of
 
-from validation.report.chapters import ledger, paper
-from validation.report.chapters.paper import PaperFigure, figure_block
-from validation.report.figures import cost, curves, motion
+from validation.report.chapters import ledger
+from validation.report.figures import curves, motion
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.runs.results import Row
 from validation.scenes.scene import load_scene
-from validation.studies.work.points import Point
+from validation.studies.paper import chapter as paper
+from validation.studies.paper.chapter import PaperFigure, figure_block
+from validation.studies.work_precision import figure as cost
+from validation.studies.work_precision.points import Point
 
 GREY = "#bbbbbb"
 ENDS = {"dda": -0.004, "fem": -0.010, "bar": -0.016, "continuum": -0.001}  # m; in no order

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from validation.report.blocks import Table as Shown
-from validation.report.chapters import field as chapter
 from validation.report.chapters.data import spoken_of
-from validation.report.chapters.field import counted
-from validation.report.chapters.programs import absent_of, installed_of
+from validation.studies.field import chapter
+from validation.studies.field.chapter import counted
+from validation.studies.field.marks import absent_of, installed_of
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PARTIAL, PASS, Cell, ProblemLine, ProgramLine
-from validation.studies.field.table import Table as Field
+from validation.studies.field.table import FieldTable as Field
 
 PROBLEMS = tuple(ProblemLine(name, f"field-{name}", name, f"What of {name}?") for name in ("locked", "rocking"))
 PROGRAMS = (

@@ -18,13 +18,14 @@ from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
-from validation.report.chapters.block import core, two_codes
-from validation.report.chapters.limits import locking
 from validation.report.chapters.scene import conclusion, history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
+from validation.studies.core import chapter as core
+from validation.studies.limits import chapter as locking
+from validation.studies.two_codes import chapter as two_codes
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 

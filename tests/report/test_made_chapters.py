@@ -13,13 +13,18 @@ from matplotlib.figure import Figure
 from oracles.made_cases import between, lines_of, made_case, made_group
 
 from validation.report.blocks import Table
-from validation.report.chapters import subblocks, waves
-from validation.report.chapters.opened import impacts, rebound, turning
-from validation.report.chapters.slopes import creeping
-from validation.report.chapters.vibrations import response
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
-from validation.studies.slopes import creep
+from validation.studies.creep import chapter as creeping
+from validation.studies.creep import formulas as creep
+from validation.studies.impacts import chapter as impacts
+from validation.studies.rebound import chapter as rebound
+from validation.studies.response import chapter as response
+from validation.studies.rocking import chapter as rocking_chapter
+from validation.studies.subblocks import chapter as subblocks
+from validation.studies.toppling import chapter as toppling_chapter
+from validation.studies.waves import chapter as waves
+from validation.theory.rocking import rectangle
 
 TIME = np.array([0.5, 1.0, 1.5, 2.0])
 
@@ -147,7 +152,7 @@ def told_by_gates(scene: str, **values: float) -> tuple[Any, ...]:
 def test_a_swing_has_its_slenderness_tilt_period_rate_and_housners_rate() -> None:
     scene = load_scene("rocking-release").expand()[1]  # 2 m wide, 4 m high, 1 mrad
     group = made_group(made_case(scene, {}), verdicts=told_by_gates(scene.name, quarter_period=1.25, rate_ratio=0.75))
-    (row,) = turning.swing_table([group]).rows
+    (row,) = rocking_chapter.swing_table([group]).rows
     alpha = math.atan(0.5)
     housner = 1 - 1.5 * math.sin(alpha) ** 2
     assert [float(cell) for cell in row] == pytest.approx([2.0, 1e-3 / alpha, 1.25, 0.75, housner], rel=0.03)
@@ -156,19 +161,19 @@ def test_a_swing_has_its_slenderness_tilt_period_rate_and_housners_rate() -> Non
 def test_a_pulse_has_its_size_its_peak_and_its_time() -> None:
     scene = load_scene("rocking-pulse").expand()[0]
     group = made_group(made_case(scene, {}), verdicts=told_by_gates(scene.name, time=1.125, peak=0.875))
-    (row,) = turning.pulse_table([group]).rows
+    (row,) = rocking_chapter.pulse_table([group]).rows
     assert row[1:] == ("0.875", "1.125") and 0.5 < float(row[0]) < 2
 
 
 def test_tilts_are_over_the_first_tilt_and_over_the_tipping_angle() -> None:
     let_go = load_scene("rocking-release").expand()[0]
-    tilt, block = math.radians(let_go.block.tilt), turning.rectangle(let_go)
+    tilt, block = math.radians(let_go.block.tilt), rectangle(let_go)
     turned = History(block.quarter_period(tilt) * TIME, {"rotation": -0.25 * tilt * np.arange(1, 5)})
-    (line,) = turning.swing_panel(made_group(made_case(let_go, {}, {"dda": turned}))).lines
+    (line,) = rocking_chapter.swing_panel(made_group(made_case(let_go, {}, {"dda": turned}))).lines
     assert np.allclose(line.x, TIME[:3]) and np.allclose(line.y, [0.75, 0.5, 0.25])
     pushed = load_scene("rocking-pulse").expand()[0]
-    leaning = history(rotation=turning.rectangle(pushed).alpha * np.array([0.1, 0.5, 0.9, 0.4]))
-    panel = turning.pulse_panel(made_group(made_case(pushed, {}, {"dda": leaning})))
+    leaning = history(rotation=rectangle(pushed).alpha * np.array([0.1, 0.5, 0.9, 0.4]))
+    panel = rocking_chapter.pulse_panel(made_group(made_case(pushed, {}, {"dda": leaning})))
     assert np.allclose(panel.lines[0].y, [0.1, 0.5, 0.9, 0.4]) and panel.marks == {"": 0.36}
 
 
@@ -177,9 +182,9 @@ def test_a_fall_turns_downwards_and_first_order_rotation_grows_in_per_cent() -> 
         rotation=[-0.05, -0.1, -0.2, -0.3], area=area)}))
         for name, area in (("toppling-fall", [1.0] * 4), ("toppling-growth", [1.0, 1.001, 1.003, 1.005])))  # fmt: skip
     found = [replace(fallen, name="toppling-fall"), replace(grown, name="toppling-growth")]
-    lines = {line.name: line.y for line in turning.fall_panel(found).lines}
+    lines = {line.name: line.y for line in toppling_chapter.fall_panel(found).lines}
     assert np.allclose(lines["released"], [0.05, 0.1, 0.2, 0.3]) and np.isclose(lines["rigid"][-1], 0.3)
-    areas = {line.name: line.y for line in turning.area_panel(found).lines}
+    areas = {line.name: line.y for line in toppling_chapter.area_panel(found).lines}
     assert np.allclose(areas["exact"], 0) and np.allclose(areas["first-order"], [0, 0.1, 0.3, 0.5])
     product = np.cumprod(1 + np.array([0.05, 0.05, 0.1, 0.1]) ** 2) - 1
     assert np.allclose(areas["product"], 100 * product)

@@ -9,9 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from validation.report.blocks import Callout, FigureBlock, Heading, Table
-from validation.report.chapters import methods as chapter
 from validation.report.chapters.registry import chapter_of
 from validation.runs.results import Results
+from validation.studies.methods import chapter
 from validation.studies.methods.methods import METHODS
 
 RIGID = {"mean": 1.614, "least": 0.341, "most": 2.887, "mean_square": 3.147}

@@ -13,14 +13,14 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import line_in, lines_of, made_case, made_group, names_at
 
-from validation.report.chapters import waves
-from validation.report.chapters.opened import rebound
 from validation.report.figures import response
 from validation.report.figures.charts import ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.histories import Margins
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.scenes.scene import load_scene
+from validation.studies.rebound import chapter as rebound
+from validation.studies.waves import chapter as waves
 
 F = np.array([1.0, 2.0, 4.0])  # Hz
 

@@ -2,12 +2,12 @@
 
 import json
 
-from validation.report.chapters.paper import claims_table, conclusion
-from validation.studies.paper.study import PAPER
+from validation.studies.paper.chapter import claims_table, conclusion
+from validation.suite.folders import get_study
 
 
 def test_the_register_lists_every_claim() -> None:
-    claims = json.loads(json.dumps(dict(PAPER.data())))["claims"]  # as a manifest holds them
+    claims = json.loads(json.dumps(dict(get_study("paper").data())))["claims"]  # as a manifest holds them
     table = claims_table(claims, {"C1": {"verdict": 2.0, "left": 0.001}, "C6": {"verdict": 1.0}})
     rows = {row[0]: row for row in table.rows}
     assert {f"C{i}" for i in range(1, 23)} | {"S13", "S16", "S20", "S21", "S29", "S32"} == set(rows)

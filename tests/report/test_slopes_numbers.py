@@ -12,17 +12,19 @@ from matplotlib.figure import Figure
 from oracles.made_cases import made_case, made_group, made_row
 
 from validation.report.blocks import Callout, Table
-from validation.report.chapters.block import two_codes
 from validation.report.chapters.data import CaseGroup
-from validation.report.chapters.opened import rebound, turning
-from validation.report.chapters.slopes import creeping, sliding
-from validation.report.chapters.vibrations import response
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
-from validation.studies.slopes import creep
-from validation.studies.slopes import sliding as study
+from validation.studies.creep import chapter as creeping
+from validation.studies.creep import formulas as creep
+from validation.studies.rebound import chapter as rebound
+from validation.studies.response import chapter as response
+from validation.studies.slopes import chapter as sliding
+from validation.studies.slopes import formulas as study
+from validation.studies.toppling import chapter as toppling_chapter
+from validation.studies.two_codes import chapter as two_codes
 from validation.theory import friction
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
@@ -105,7 +107,7 @@ def test_what_is_judged_of_a_shaken_base_is_what_stands_beside_the_rigid_block()
 def test_a_fall_has_its_number_before_the_edges_of_its_band() -> None:
     case = made_case(load_scene("toppling-static").expand()[0], {})
     verdicts = ({"scene": case.name, "metric": "turned", "value": 0.5, "band": [0.25, 0.75]},)
-    table = turning.fall_table([replace(made_group(case, verdicts=verdicts), name="toppling-static")])
+    table = toppling_chapter.fall_table([replace(made_group(case, verdicts=verdicts), name="toppling-static")])
     assert table.rows == (("static", "greatest turn [rad]", "0.5", "0.25", "0.75"),)
 
 

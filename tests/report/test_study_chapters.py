@@ -17,13 +17,11 @@ from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Ta
 from validation.report.chapters.registry import chapter_of
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.columns import study as columns
-from validation.studies.contact import impacts, rebound
-from validation.studies.rocking import rocking, toppling
-from validation.studies.slopes import creep, sliding
-from validation.studies.waves import response
-from validation.studies.waves import study as waves
+from validation.studies.columns import formulas as columns
+from validation.studies.creep import formulas as creep
+from validation.studies.slopes import formulas as sliding
 from validation.studies.waves.rows import curves
+from validation.suite.folders import get_study
 
 GIVEN = {"mode": "zip"}  # values of a sweep that stand beside each other
 STIFF = {"contact.stiffness": [1e11], "time.step": [1e-3], "time.steps": [60]}
@@ -86,7 +84,7 @@ def some_columns() -> Study:
     scenes = [stack("columns-solves-rest", 3), stack(columns.SPALL_BLOCKS, 1), stack(columns.SLIPS, 1),
               stack(columns.SETTLE, 1)]  # fmt: skip
     cases = {case.name for scene in scenes for case in scene.expand()}
-    whole = columns.study()
+    whole = get_study("columns")
     rows = [row for row in whole.derived() if all(name in cases and who == "dda" for name, who in row.needs)]
     return replace(whole, scenes=scenes, extra=(), gates=tuple, derived=lambda: rows)
 
@@ -104,37 +102,37 @@ CHAPTERS: dict[str, tuple[Any, list[str], list[str], list[tuple[int, int, int, s
         [(0, 0, 0, "comes to rest"), (2, 1, 3, "−22.39"), (2, 1, 4, "2.107"), (3, 0, 3, "0.618")],  # mm, s
     ),
     "rebound": (
-        lambda: bare(rebound.STUDY, swept("rebound"), extra=()),
+        lambda: bare(get_study("rebound"), swept("rebound"), extra=()),
         ["What a landing returns", "Energy, switches and solves"],
         ["rebound-restitution.svg", "rebound-maps.svg"],
         [(0, 0, 0, "constant"), (0, 0, 1, "100E"), (0, 1, 0, "average"), (0, 1, 2, "1")],
     ),
     "impacts": (
-        lambda: bare(impacts.STUDY, [load_scene("bouncing-mass")]),
+        lambda: bare(get_study("impacts"), [load_scene("bouncing-mass")]),
         ["A mass bounces on a spring: code_aster V5.01.108, modelling A"],
         [],
         [(0, 0, 1, "dda"), (0, 0, 2, "541.00")],
     ),
     "slopes": (
-        lambda: bare(sliding.STUDY, swept("slopes"), solvers=("dda",)),
+        lambda: bare(get_study("slopes"), swept("slopes"), solvers=("dda",)),
         ["Run-out", "Where sliding begins"],
         ["slopes-ways.svg"],
         [(0, 0, 6, "1.21989"), (0, 0, 8, "18.64"), (0, 1, 7, "0.689234"), (1, 0, 3, "0.0019770")],
     ),
     "creep": (
-        lambda: bare(creep.STUDY, swept("creep"), solvers=("dda",)),
+        lambda: bare(get_study("creep"), swept("creep"), solvers=("dda",)),
         [],
         ["creep.svg"],
         [(0, 0, 3, "1.01"), (0, 1, 1, "0.142"), (1, 0, 1, "11.4"), (1, 0, 3, "10.7"), (1, 0, 4, "0.142")],
     ),
     "toppling": (
-        lambda: with_own(toppling.STUDY, ["toppling-growth"]),
+        lambda: with_own(get_study("toppling"), ["toppling-growth"]),
         [],
         ["toppling.svg"],
         [(0, 0, 0, "growth")],
     ),
     "rocking": (
-        lambda: with_own(rocking.STUDY, ["rocking-pulse"]),
+        lambda: with_own(get_study("rocking"), ["rocking-pulse"]),
         [],
         ["rocking.svg"],
         [(1, 0, 0, "0.900"), (1, 2, 0, "1.01"), (1, 0, 2, "–")],
@@ -146,13 +144,13 @@ CHAPTERS: dict[str, tuple[Any, list[str], list[str], list[tuple[int, int, int, s
         [(0, 1, 0, "triangles"), (0, 1, 1, "2"), (1, 0, 0, "3"), (2, 0, 1, "226.5"), (2, 1, 0, "0.5")],
     ),
     "waves": (
-        lambda: with_own(waves.study(), ["waves-discount", "waves-site-usual"]),
+        lambda: with_own(get_study("waves"), ["waves-discount", "waves-site-usual"]),
         ["A site under a record"],
         ["waves-site.svg"],
         [(0, 0, 5, "0.151"), (0, 0, 6, "0.01889")],
     ),
     "response": (
-        lambda: response.STUDY,
+        lambda: get_study("response"),
         [],
         ["response.svg"],
         [(0, 5, 1, "52"), (0, 5, 2, "31.4419"), (0, 5, 4, "32.4739"), (0, 5, 7, "17.8527")],
@@ -178,8 +176,8 @@ def test_a_chapter_says_and_draws_what_was_run(name: str, tmp_path: Path, drawn:
 def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path: Path) -> None:
     """Of a study without its data, and of one of which no case has finished."""
     results = Results(tmp_path / "results")
-    run_study(bare(response.STUDY, response.STUDY.scenes[:1], solvers=("dda",), data=dict), results)
-    run_study(bare(rocking.STUDY, []), results)
+    run_study(bare(get_study("response"), get_study("response").scenes[:1], solvers=("dda",), data=dict), results)
+    run_study(bare(get_study("rocking"), []), results)
     blocks = chapter_of("response")(results, results.whole("response"), tmp_path)
     assert [type(block) for block in blocks] == [Heading, Paragraph]
     blocks = chapter_of("rocking")(results, results.manifest("rocking"), tmp_path)

@@ -23,7 +23,7 @@ from validation.solvers import registry
 from validation.solvers.contract import Role, Solver
 from validation.solvers.names import check_names
 from validation.solvers.registry import by_role, get_solver, role
-from validation.studies import Study
+from validation.suite import Study
 
 JOINTS = "rusty joints"
 OWN = (  # a solver that is added leaves the roles of these as they are

@@ -31,7 +31,8 @@ from validation.solvers import fenicsx as adapters_fenicsx
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, worker_directories
 from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
-from validation.studies.second_fem_code import POLYGONS, SAME, TWO_CODES
+from validation.studies.two_codes.formulas import POLYGONS, SAME
+from validation.suite.folders import get_study
 
 pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
 
@@ -65,7 +66,7 @@ def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, mon
     assert row.outcome is Outcome.NOT_RUN
     results = Results(tmp_path)
     for _ in range(2):
-        finish([Case(scene, "fenicsx")], TWO_CODES, results)
+        finish([Case(scene, "fenicsx")], get_study("two-codes"), results)
     assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
 
 
@@ -270,7 +271,7 @@ FEW = ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent",
 
 
 def failed(finished: Finished) -> set[str]:
-    return {gate.id for gate in TWO_CODES.gates() if evaluate(gate, finished).status is Status.FAIL}
+    return {gate.id for gate in get_study("two-codes").gates() if evaluate(gate, finished).status is Status.FAIL}
 
 
 def module_of(line: str) -> str:
@@ -300,7 +301,7 @@ def kills_of(
     names: Collection[str], everywhere: Collection[str], directory: Path, finished_cases: Path
 ) -> dict[str, set[str]]:
     """Return the gates that see each fault, on all scenes or on a few, and print how many; none fails without one."""
-    sound = finish(TWO_CODES.cases(), TWO_CODES, Results(finished_cases))
+    sound = finish(get_study("two-codes").cases(), get_study("two-codes"), Results(finished_cases))
     assert not failed(sound)
     faults = {fault.name: fault for fault in OTHER_FAULTS}
     for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
@@ -319,7 +320,7 @@ def kills_of(
 def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     ours = ("fem: load 2e-10 high", "dda: load 2e-10 high")
     bitten = set().union(*kills_of([*ours, "fenicsx: load 2e-10 high"], ours, tmp_path, finished_cases).values())
-    assert bitten == {gate.id for gate in TWO_CODES.gates()}
+    assert bitten == {gate.id for gate in get_study("two-codes").gates()}
 
 
 @pytest.mark.long
@@ -329,7 +330,9 @@ def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, fini
     kills = kills_of(names, [name for name in names if EDGE in name], tmp_path, finished_cases)
     for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
         bitten = set().union(*(found for name, found in kills.items() if name.startswith(code)))
-        judged = {gate.id for gate in TWO_CODES.gates() if any(name.startswith(solver) for name in gate.pair)}
+        judged = {
+            gate.id for gate in get_study("two-codes").gates() if any(name.startswith(solver) for name in gate.pair)
+        }
         assert bitten == judged, "gates that no fault of this code bites"
 
 
@@ -337,12 +340,14 @@ def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> 
     """Return the gates that fail with a fault; only the solvers that it reaches run again."""
     reached = [
         case
-        for case in TWO_CODES.cases()
+        for case in get_study("two-codes").cases()
         if case.solver in fault.solvers and (everywhere or any(word in case.scene.name for word in FEW))
     ]
     with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
         fault.seam.wrap(patch, fault.replacement)
-        faulty = finish(reached, TWO_CODES, Overlay(directory / fault.name.replace("/", "-"), sound.results))
+        faulty = finish(
+            reached, get_study("two-codes"), Overlay(directory / fault.name.replace("/", "-"), sound.results)
+        )
     worker.close_all()
     whole(fault.name, faulty)
     return failed(Finished(sound.rows | faulty.rows, faulty.results))

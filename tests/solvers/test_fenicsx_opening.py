@@ -17,7 +17,7 @@ from validation.scenes.scene import Scene, load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
 from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
-from validation.studies.second_fem_code import SAME
+from validation.studies.two_codes.formulas import SAME
 
 pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
 FEW = ("displacement", "contact_pressure", "horizontal_displacement")

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from validation import plugin
-from validation.studies.own_solver import block
-from validation.studies.own_solver.session import GateReport
+from validation.suite.own_solver import block
+from validation.suite.own_solver.session import GateReport
 
 SAID = GateReport(
     "g", "core", "s", 40, "statics", "displacement.static", "PASS", 1.0, 0.9, 1.1, "", "completed", "k", "r"

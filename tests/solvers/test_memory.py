@@ -15,7 +15,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers import memory
-from validation.studies.catalogue import scene_study
+from validation.suite.folders import scene_study
 
 MB = 2**20
 

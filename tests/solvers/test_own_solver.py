@@ -28,11 +28,11 @@ from validation.solvers import user
 from validation.solvers.processes.worker import GRACE, WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.solvers.user import ALLOWANCE, VARIABLE
-from validation.studies.own_solver import block as block_module
-from validation.studies.own_solver import block_data, gates
-from validation.studies.own_solver.block import block, first, outside, telling
-from validation.studies.own_solver.history import AT_REST, PENCIL, TAIL, natural_frequency, rest, root
-from validation.studies.own_solver.session import GateReport, Session
+from validation.suite.own_solver import block as block_module
+from validation.suite.own_solver import block_data, gates
+from validation.suite.own_solver.block import block, first, outside, telling
+from validation.suite.own_solver.history import AT_REST, PENCIL, TAIL, natural_frequency, rest, root
+from validation.suite.own_solver.session import GateReport, Session
 from validation.theory import spectra
 
 ROOT = Path(__file__).parents[2]

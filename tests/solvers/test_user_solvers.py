@@ -17,7 +17,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE, UserSolver
-from validation.studies.catalogue import scene_study
+from validation.suite.folders import scene_study
 
 GATES = "--pyargs validation -m validation -q -rs -p no:cacheprovider -k figures-3-4"
 HERE = Path(__file__).parent / "user_solvers"
@@ -149,7 +149,7 @@ def test_a_broken_solver_fails_by_name() -> None:
 
 
 def test_a_user_is_asked_for_the_two_block_model_alone() -> None:
-    from validation.studies.own_solver.gates import applying
+    from validation.suite.own_solver.gates import applying
 
     asked = list(applying())
     assert any(name.startswith("figures-3-4") for name in asked)

@@ -11,6 +11,9 @@ from conftest import refused
 from faults import seams
 from faults.fault import of_first, soft_springs, told, with_scheme
 from faults.kill_matrix import whole
+from validation.studies.claims import REGISTER, Band, Evidence, Finding, Register, page
+from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE, STUDY
+from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
 from dda import ContactResult, Unilateral
 from validation import solve
@@ -22,10 +25,7 @@ from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.studies.claims import REGISTER, Band, Evidence, Finding, Register, page
-from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE, STUDY
 from validation.studies.paper import friction, open_close
-from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.xdist_group("claims")

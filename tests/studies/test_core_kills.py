@@ -26,7 +26,7 @@ from faults.fault import (
 )
 from faults.kill_matrix import check_kill_matrix
 
-from validation.studies.core import CORE
+from validation.suite.folders import get_study
 
 SLOW = ("figure-7",)  # 20,000 steps: a few of the faults, enough to bite its gates
 FEW = (
@@ -74,11 +74,11 @@ FAULTS = [
 
 def check(slow: bool, names: Collection[str], directory: Path, finished_cases: Path) -> None:
     """Check the kill matrix of the longest scene or of the others with the faults of these names."""
-    cases = [case for case in CORE.cases() if case.scene.name.startswith(SLOW) == slow]
-    gates = [gate for gate in CORE.gates() if gate.scene.startswith(SLOW) == slow]
+    cases = [case for case in get_study("core").cases() if case.scene.name.startswith(SLOW) == slow]
+    gates = [gate for gate in get_study("core").gates() if gate.scene.startswith(SLOW) == slow]
     faults = [fault for fault in FAULTS if fault.name in names]
     assert len(faults) == len(names)
-    check_kill_matrix(CORE, cases, gates, faults, directory, finished_cases)
+    check_kill_matrix(get_study("core"), cases, gates, faults, directory, finished_cases)
 
 
 @pytest.mark.long

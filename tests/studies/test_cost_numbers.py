@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, made_row
+from validation.studies.work import record as work_record
+from validation.studies.work import study as work_precision
+from validation.studies.work.points import COSTS, METHODS, Point, cheapest, floor, front, points, table
 
 from validation.report.chapters import subblocks as chapters_subblocks
 from validation.report.chapters import work as chapters_work
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.studies.work import record as work_record
-from validation.studies.work import study as work_precision
-from validation.studies.work.points import COSTS, METHODS, Point, cheapest, floor, front, points, table
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40, "fem.elements": 12})
 V, P = "displacement", "contact pressure"

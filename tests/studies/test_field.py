@@ -14,9 +14,10 @@ from validation.problems.problem import PREFIX
 from validation.results import Results
 from validation.runs.run import Outcome
 from validation.solvers import registry
-from validation.studies.field import answered, cells, programs, scenes
-from validation.studies.field import study as module
+from validation.studies.field import answered, cells, scenes
+from validation.studies.field import formulas as module
 from validation.studies.field.table import FAIL, NOT_APPLICABLE, NOT_RUN, PASS, read
+from validation.suite import programs
 
 ROOT = Path(__file__).parents[2]
 CHEAP = ("locked",)

@@ -10,8 +10,9 @@ from faults import seams
 from faults.fault import Fault, scaled, told
 from faults.kill_matrix import cases_of, check_kill_matrix
 
-from validation.studies.bands import cases
-from validation.studies.contact import impacts
+from validation.studies.impacts import formulas as impacts
+from validation.suite.bands import cases
+from validation.suite.folders import get_study
 
 BLOCK, BAR = (impacts.BLOCK,), (impacts.BAR,)
 FAULTS = [
@@ -30,8 +31,10 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    gates = impacts.STUDY.gates()
-    check_kill_matrix(impacts.STUDY, cases_of(impacts.STUDY, gates), gates, FAULTS, tmp_path, finished_cases)
+    gates = get_study("impacts").gates()
+    check_kill_matrix(
+        get_study("impacts"), cases_of(get_study("impacts"), gates), gates, FAULTS, tmp_path, finished_cases
+    )
 
 
 @pytest.mark.parametrize(("ratio", "known"), [(10, 2.0839173495), (100, 2.00839173495)])

@@ -15,9 +15,9 @@ from faults.fault import Fault, energy_changed, told
 from faults.kill_matrix import cases_of, check_kill_matrix
 
 from validation import solve
-from validation.studies.literature.closed import exact_locked
-from validation.studies.methods import study as methods
+from validation.studies.methods import formulas as methods
 from validation.studies.methods.methods import METHODS, SCHEMES, method
+from validation.suite.folders import get_study
 from validation.theory import rebound
 
 DDA = ("dda",)
@@ -77,7 +77,7 @@ FAULTS = [
 
 
 def check(faults: list[Fault], words: tuple[str, ...], tmp_path: Path, finished_cases: Path) -> None:
-    declared = methods.study()
+    declared = get_study("methods")
     gates = [gate for gate in declared.gates() if gate.pair[0] != methods.RIGID_MAP]
     if words:
         gates = [gate for gate in gates if gate.scene.startswith(words)]
@@ -95,7 +95,7 @@ def test_gates_of_four_scenes_are_bitten(tmp_path: Path, finished_cases: Path) -
 
 
 def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    gates = [gate for gate in methods.study().gates() if gate.pair[0] == methods.RIGID_MAP]
+    gates = [gate for gate in get_study("methods").gates() if gate.pair[0] == methods.RIGID_MAP]
     rows = {row.scene: row for row in methods.derived() if row.name == methods.RIGID_MAP}
 
     def failing() -> set[str]:
@@ -140,7 +140,7 @@ def test_gains_make_chaos_of_what_is_not_gated() -> None:
         pressures = np.array([float(run.contact_pressure.max()) for run in runs])
         peaks[name] = float(np.ptp(pressures) / pressures.mean())
     assert peaks["ch-0"] < 1e-9 < 1e-3 < peaks["ch-0.8"]
-    gated = {gate.scene for gate in methods.study().gates()}
+    gated = {gate.scene for gate in get_study("methods").gates()}
     names = {name: methods.expanded(methods.unlocked(method(name)))[3].name for name in peaks}
     assert names["ch-0"] in gated and names["ch-0.8"] not in gated
 
@@ -148,5 +148,7 @@ def test_gains_make_chaos_of_what_is_not_gated() -> None:
 def test_the_exact_locked_block_is_that_of_the_exact_solver() -> None:
     case = methods.locked(method("average")).expand()[4]
     exact = solve(case, "block-events").displacement
-    assert np.abs(exact_locked(case, solve(case, "block-events").time) - exact).max() < 1e-12 * np.abs(exact).max()
+    assert (
+        np.abs(methods.exact_locked(case, solve(case, "block-events").time) - exact).max() < 1e-12 * np.abs(exact).max()
+    )
     assert math.isclose(case.time.duration, methods.LOCKED_TIME)

@@ -22,8 +22,8 @@ from validation.engine.measure import execute
 from validation.metrics.catalogue import pair
 from validation.runs.history import History
 from validation.scenes.scene import Scene
-from validation.studies.bands import half_unit
-from validation.studies.opening import OPENING
+from validation.suite.bands import half_unit
+from validation.suite.folders import get_study
 
 
 def pressed(found: Any) -> Any:
@@ -72,8 +72,8 @@ FAULTS = [  # of the data by parts in 1e11 and less, which move every number by 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    cases = [case for case in OPENING.cases() if case.solver != "fenicsx"]  # not judged
-    check_kill_matrix(OPENING, cases, OPENING.gates(), FAULTS, tmp_path, finished_cases)
+    cases = [case for case in get_study("opening").cases() if case.solver != "fenicsx"]  # not judged
+    check_kill_matrix(get_study("opening"), cases, get_study("opening").gates(), FAULTS, tmp_path, finished_cases)
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,10 @@ from faults import seams
 from faults.fault import Fault, energy_changed, told
 from faults.kill_matrix import cases_of, check_kill_matrix
 
-from validation.studies.bands import cases
-from validation.studies.contact import rebound
-from validation.studies.own_solver.gates import applies
+from validation.studies.rebound import formulas as rebound
+from validation.suite.bands import cases
+from validation.suite.folders import get_study
+from validation.suite.own_solver.gates import applies
 
 
 def fewer(sound: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,7 +46,9 @@ FAULTS = [
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
     gates = [gate for gate in rebound.gates() if gate.scene != rebound.MAP]
     faults = [fault for fault in FAULTS if fault.solvers != ("map",)]
-    check_kill_matrix(rebound.STUDY, cases_of(rebound.STUDY, gates), gates, faults, tmp_path, finished_cases)
+    check_kill_matrix(
+        get_study("rebound"), cases_of(get_study("rebound"), gates), gates, faults, tmp_path, finished_cases
+    )
 
 
 def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,10 +15,13 @@ from faults.kill_matrix import check_kill_matrix, failed
 from validation.engine.run import finish
 from validation.gates.gate import Gate
 from validation.runs.results import Results
-from validation.scenes.record import read_record
-from validation.scenes.scene import SCENE_DIRECTORY
-from validation.studies.waves import response
-from validation.studies.waves.response import BASE, DAMPING, FREQUENCIES, LOW, STUDY
+from validation.scenes.record import base_record
+from validation.scenes.scene import load_scene
+from validation.studies.response import formulas as response
+from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW
+from validation.suite.folders import get_study
+
+STUDY = get_study("response")
 
 
 def another_frequency(sound: Callable[..., Any]) -> Callable[..., Any]:
@@ -62,7 +65,8 @@ def test_gates_on_steps_are_bitten(tmp_path: Path, finished_cases: Path) -> None
 def test_records_are_sines_of_a_millimetre_of_whole_periods(
     name: str, frequencies: tuple[float, ...], step: float
 ) -> None:
-    record = read_record(SCENE_DIRECTORY / f"{name}.csv")
+    record = base_record(load_scene(name).expand()[0])
+    assert record is not None
     sines = 1e-3 * np.sin(2 * np.pi * np.outer(frequencies, record.time)).sum(axis=0)
     assert np.allclose(record.time, step * np.arange(701), rtol=1e-14)
     assert np.allclose(record.y, sines, rtol=0, atol=1e-15)

@@ -21,8 +21,10 @@ from dda.stepping.driver import driver
 from fem_reference.exact.rocking import Pulse, RockingBlock
 from fem_reference.exact.rocking import solve as solve_rigid
 from validation.engine.study import Study
-from validation.studies.bands import cases
-from validation.studies.rocking import rocking, toppling
+from validation.studies.rocking import formulas as rocking
+from validation.studies.toppling import formulas as toppling
+from validation.suite.bands import cases
+from validation.suite.folders import get_study
 from validation.theory.rocking import Rectangle
 
 DDA = ("dda",)
@@ -123,7 +125,7 @@ FAULTS = {
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("study", [rocking.STUDY, toppling.STUDY], ids=lambda study: study.name)
+@pytest.mark.parametrize("study", [get_study("rocking"), get_study("toppling")], ids=lambda study: study.name)
 def test_every_gate_is_bitten_and_every_fault_is_seen(study: Study, tmp_path: Path, finished_cases: Path) -> None:
     check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
 

@@ -26,8 +26,10 @@ from validation.runs.results import Results
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.rigid.sliding import rigid_slide
-from validation.studies.bands import cases
-from validation.studies.slopes import creep, sliding
+from validation.studies.creep import formulas as creep
+from validation.studies.slopes import formulas as sliding
+from validation.suite.bands import cases
+from validation.suite.folders import get_study
 from validation.theory import friction
 
 Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -69,7 +71,9 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    check_kill_matrix(sliding.STUDY, sliding.STUDY.cases(), sliding.STUDY.gates(), FAULTS, tmp_path, finished_cases)
+    check_kill_matrix(
+        get_study("slopes"), get_study("slopes").cases(), get_study("slopes").gates(), FAULTS, tmp_path, finished_cases
+    )
 
 
 def test_the_record_of_the_shaking_is_its_formula() -> None:
@@ -84,7 +88,7 @@ def test_the_record_of_the_shaking_is_its_formula() -> None:
 
 def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:
     """Run the cases of some scenes of the study of creep and judge gates on them."""
-    study, own = creep.STUDY, cases_of(creep.STUDY, gates)
+    study, own = get_study("creep"), cases_of(get_study("creep"), gates)
     assert {case.scene.name.partition("[")[0] for case in own} <= names
     results = Results(directory)
     finished = finish(own, study, results)
@@ -94,7 +98,7 @@ def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Sta
 
 def gates_of(*scenes: str) -> list[Gate]:
     """Return the gates of the study of creep on some scenes."""
-    return [gate for gate in creep.STUDY.gates() if gate.scene.partition("[")[0] in scenes]
+    return [gate for gate in get_study("creep").gates() if gate.scene.partition("[")[0] in scenes]
 
 
 COARSE = "creep-steps[time.step=0.01"
@@ -125,8 +129,10 @@ def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
 def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
     exact = gates_of(creep.EXACT)
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
-    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith(creep.EXACT)]
-    check_kill_matrix(creep.STUDY, own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases)
+    own = [case for case in get_study("creep").cases() if case.scene.name.startswith(creep.EXACT)]
+    check_kill_matrix(
+        get_study("creep"), own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases
+    )
 
 
 def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
@@ -155,17 +161,17 @@ SPRINGS = [
 @pytest.mark.long
 def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
     gates = gates_of(creep.STIFFNESS, creep.DAMPED)
-    own = [case for case in creep.STUDY.cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
-    check_kill_matrix(creep.STUDY, own, gates, SPRINGS, tmp_path, finished_cases)
+    own = [case for case in get_study("creep").cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
+    check_kill_matrix(get_study("creep"), own, gates, SPRINGS, tmp_path, finished_cases)
 
 
 @pytest.mark.long
 def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
     gates = gates_of(creep.STEPS, creep.LAGGED, *creep.REFINED)
     others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
-    own = [case for case in creep.STUDY.cases() if not case.scene.name.startswith(others)]
+    own = [case for case in get_study("creep").cases() if not case.scene.name.startswith(others)]
     soft = next(fault for fault in SPRINGS if fault.name == "springs a thousandth soft")
-    check_kill_matrix(creep.STUDY, own, gates, [*CREEP, soft], tmp_path, finished_cases)
+    check_kill_matrix(get_study("creep"), own, gates, [*CREEP, soft], tmp_path, finished_cases)
 
 
 def test_dda_is_the_plain_program_step_by_step() -> None:

@@ -12,14 +12,14 @@ from faults.fault import Fault, swapped, with_scheme
 from faults.kill_matrix import check_kill_matrix
 from oracles.pages import table
 from typer.testing import CliRunner
+from validation.studies.work import record as work_record
+from validation.studies.work import study as work_study
+from validation.studies.work.study import WORK_PRECISION
 
 from validation.cli.app import app
 from validation.engine.run import finish, run_study
 from validation.errors import InputError
 from validation.runs.results import Results
-from validation.studies.work import record as work_record
-from validation.studies.work import study as work_study
-from validation.studies.work.study import WORK_PRECISION
 
 ROOT = Path(__file__).parents[2]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart

@@ -115,9 +115,9 @@ def known_scenes(incomplete: str) -> list[str]:
 
 def known_targets(incomplete: str) -> list[str]:
     """Return the studies and built-in scenes that a shell may complete a word to."""
-    from validation.studies.catalogue import STUDIES
+    from validation.suite.folders import study_names
 
-    return [name for name in (*STUDIES, "all") if name.startswith(incomplete)] + known_scenes(incomplete)
+    return [name for name in (*study_names(), "all") if name.startswith(incomplete)] + known_scenes(incomplete)
 
 
 SceneArgument = Annotated[str, typer.Argument(help="Built-in scene or scene file.", autocompletion=known_scenes)]

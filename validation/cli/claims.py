@@ -30,13 +30,11 @@ def claims(
     from validation.errors import InputError
     from validation.runs.files import write_atomically
     from validation.runs.results import Results
-    from validation.studies.claims import REGISTER, entries, page
-    from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE
-    from validation.studies.paper.study import CLAIMS_OF_THE_PAPER
+    from validation.suite.claims import REGISTER, entries, page
+    from validation.suite.folders import register_of, studies_with_registers
 
-    registers = {register.study: register for register in (CLAIMS_OF_THE_PAPER, CLAIMS_OF_THE_LITERATURE)}
-    check_choice("--of", of, registers)
-    register = registers[of]
+    check_choice("--of", of, studies_with_registers())
+    register = register_of(of)
     rows = [row for row in Results(results).manifest(of).get("derived", []) if row["scene"] == REGISTER]
     if not rows:
         raise InputError(f"no results of the study {of}", source=results, advice=f"run it first: dda-validate run {of}")

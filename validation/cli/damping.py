@@ -16,12 +16,11 @@ from validation.cli.app import (
     app,
     one_case,
 )
-from validation.cli.printing.output import broken, columns, echo_answer, spread
+from validation.cli.printing.output import broken, columns, echo_answer
 
 if TYPE_CHECKING:
     from validation.advice.across import SchemeAdvice
     from validation.advice.advice import Advice, Solution
-    from validation.advice.engine_settings import EngineAdvice
     from validation.advice.spectra import Damping
     from validation.advice.wave_advice import WaveAdvice
     from validation.scenes.scene import Scene
@@ -79,36 +78,6 @@ def advise(
     phase_error: Annotated[
         float, typer.Option("--phase-error", help="Fraction of a period by which the wave may arrive early or late.")
     ] = 0.05,
-    program: Annotated[
-        str | None,
-        typer.Option(
-            "--for",
-            help="What to set in another program instead: box2d, mujoco, opensees, pybullet, yade; with --penetration, "
-            "--restitution or --hidden-damping.",
-            metavar="PROGRAM",
-        ),
-    ] = None,
-    penetration: Annotated[
-        float | None, typer.Option("--penetration", help="With --for: wanted at rest.", metavar="M")
-    ] = None,
-    restitution: Annotated[
-        float | None, typer.Option("--restitution", help="With --for: rebound over approach speed.")
-    ] = None,
-    hidden: Annotated[
-        float | None,
-        typer.Option("--hidden-damping", help="With --for: damping ratio that the program's steps may add, 0.01."),
-    ] = None,
-    speed: Annotated[
-        float | None, typer.Option("--speed", help="With --for: of the landing, if not the scene's.", metavar="M/S")
-    ] = None,
-    step: Annotated[
-        float | None,
-        typer.Option("--step", help="With --for: of the program, if not the scene's or its own.", metavar="S"),
-    ] = None,
-    points: Annotated[
-        int | None,
-        typer.Option("--points", help="With --for: contact points that share the body, if not those of a box."),
-    ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -121,8 +90,6 @@ def advise(
     Across schemes: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --damping 0.05 --at 5 --no-gain[/bold]
 
     Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
-
-    Another program: [bold]dda-validate advise field-rebound --for mujoco --penetration 1e-4 --restitution 0.5[/bold]
     """
     from dataclasses import asdict
 
@@ -132,26 +99,6 @@ def advise(
     from validation.scenes.features import refuse_nonlinear
 
     case = one_case(scene, assignments)
-    for_program: dict[str, Any] = {
-        "penetration": penetration,
-        "restitution": restitution,
-        "hidden": hidden,
-        "speed": speed,
-        "step": step,
-        "points": points,
-    }
-    of_schemes = {"damping": damping, "at": at, "across": across or None, "no-gain": no_gain, "fmax": fmax}
-    for name, value in (for_program if program is None else of_schemes).items():
-        if value is not None:
-            rule = "goes with --for PROGRAM only" if program is None else "cannot be given with --for"
-            field = "--hidden-damping" if name == "hidden" else f"--{name}"
-            raise InputError(rule, field=field, value=value)
-    if program is not None:
-        from validation.advice.engine_settings import advise_engine
-
-        settings = advise_engine(case, program, **for_program)
-        echo_answer(settings.as_dict(), _settings_lines(settings), as_json)
-        return
     is_across = across or at is not None or no_gain is not None
     if is_across and damping is None:
         raise InputError("must be given with --at, --across and --no-gain", field="--damping", value="nothing")
@@ -176,42 +123,6 @@ def advise(
         echo_answer(wave.as_dict(), _wave_lines(wave), as_json)
     else:
         _advise_damping(case, damping, solve_for, as_json)
-
-
-def _settings_lines(advice: EngineAdvice) -> Iterator[str]:
-    """Yield what to set in another program, what that does, and what the program does as it comes."""
-    from validation.advice.engine_table import PROGRAMS
-
-    program = PROGRAMS[advice.program]
-    meanings = {one.name: one.meaning for one in program.parameters}
-    settings = []
-    for name, value in advice.settings.items():
-        numbers = value if isinstance(value, tuple) else (value,)
-        settings.append((f"  {meanings.get(name, name)}", " ".join(f"{number:.6g}" for number in numbers)))
-    yield f"{program.title}: set"
-    yield columns(settings)
-    at_step = "" if advice.step is None else f", step {advice.step:.6g} s"
-    points = "1 contact point" if advice.points == 1 else f"{advice.points} contact points"
-    facts = [("body", f"{advice.mass:.6g} kg on {points}{at_step}")]
-    if advice.penetration is not None:
-        facts.append(("penetration at rest", _number(advice.penetration, ".6g", 1e3, " mm")))
-    if advice.rebound is not None:
-        facts.append(("restitution", spread(advice.rebound)))
-    if advice.hidden is not None:
-        facts.append(("hidden damping", _percent(advice.hidden)))
-    if advice.omega_step is not None:
-        facts.append(("w h, zeta", f"{advice.omega_step:.4g}, {advice.damping_ratio:.4g}"))
-    if advice.stiffness_ratio is not None:
-        facts.append(("contact over block", f"k h / (E a) = {advice.stiffness_ratio:.4g}"))
-    penetration = _number(advice.defaults["penetration"], ".4g", 1e3, " mm")
-    restitution = _number(advice.defaults["restitution"], ".4g")
-    hidden = _percent(advice.defaults["hidden"], "-")
-    facts.append(("as it comes", f"penetration {penetration}, restitution {restitution}, hidden damping {hidden}"))
-    yield "which gives"
-    yield columns([(f"  {name}", text) for name, text in facts])
-    for note in advice.notes:
-        yield broken(f"note: {note}")
-    yield broken(f"source: {program.source}; checked with {program.title} {program.version}")
 
 
 def _wave_lines(advice: WaveAdvice) -> Iterator[str]:

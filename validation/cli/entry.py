@@ -23,7 +23,6 @@ from validation.cli import (
     report,
     run,
     show,
-    translate,
     verdicts,
     waves,
     work,
@@ -46,7 +45,6 @@ COMMANDS = (
     compare,
     judge,
     field,
-    translate,
     verdicts,
     waves,
     work,
@@ -55,7 +53,7 @@ GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "merge", "solve"),
     "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
     "Your own code or program": ("judge", "field", "compare", "export-pack"),
-    "Time step, springs and damping": ("advise", "damping", "contact", "translate", "response", "rayleigh"),
+    "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (

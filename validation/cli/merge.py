@@ -39,7 +39,7 @@ def merge(
     from validation.runs.files import atomic_directory
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import resolve
+    from validation.suite.folders import resolve
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     before = judging.check()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Solver
-    from validation.studies.declaration import Study
+    from validation.suite.declaration import Study
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -133,7 +133,7 @@ def run(
     from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.studies.catalogue import STUDIES, resolve
+    from validation.suite.folders import resolve, study_names
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     part = None if shard is None else Shard.parse(shard)
@@ -156,7 +156,7 @@ def run(
         }
         raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
     for study in studies:
-        if study.name not in STUDIES:  # the suite's own studies are extreme on purpose
+        if study.name not in study_names():  # the suite's own studies are extreme on purpose
             for scene in study.scenes:
                 if not isinstance(scene, str):
                     print_warnings(scene)
@@ -180,7 +180,7 @@ class Judging:
         from validation.errors import InputError
         from validation.gates.changes import read_verdicts
         from validation.solvers.registry import is_solver, solver_names
-        from validation.studies.field.programs import known
+        from validation.suite.programs import known
 
         output_options = {"--verbose": self.verbose, "--json": self.as_json, "--quiet": self.quiet}
         exclusive = [option for option, is_set in output_options.items() if is_set]
@@ -219,7 +219,7 @@ def answer_and_exit(
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run
     from validation.engine.measured import complaints, missing_gates
-    from validation.studies.catalogue import STUDIES
+    from validation.suite.folders import study_names
 
     names = [judged.study.name for judged in runs]
     records = list(itertools.chain.from_iterable(map(results.verdicts, names)))
@@ -228,7 +228,7 @@ def answer_and_exit(
     messages = [*complaints(runs), *missing_gates(runs, judging.required)]
     verdicts = list(itertools.chain.from_iterable(judged.verdicts for judged in runs))
     status = _status(verdicts, judging.required, any(judged.refused for judged in runs), worse, messages)
-    answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(STUDIES), status)
+    answer = RunAnswer(runs, seconds, results, messages, changes, frozenset(names) - set(study_names()), status)
     with tolerate_closed_pipe():
         if judging.as_json:
             echo_json(as_data(answer))

@@ -101,8 +101,8 @@ def pytest_terminal_summary(
             statements += _statements(report)
     if user is None or not statements:
         return
-    from validation.studies.own_solver.block import block
-    from validation.studies.own_solver.session import GateReport
+    from validation.suite.own_solver.block import block
+    from validation.suite.own_solver.session import GateReport
 
     terminalreporter.write_sep("=", f"{user}: what the gates tell")
     for line in block([GateReport(**json.loads(text)) for text in statements], every=config.getoption("verbose") > 0):

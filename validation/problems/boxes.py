@@ -24,7 +24,6 @@ from validation.theory.boxes import (
     ShakenBox,
     SpringImpact,
     critical_spin,
-    friction_margin,
     greatest_rotation,
     sliding_acceleration,
 )
@@ -157,8 +156,6 @@ class BoxProblem:
         Function of a scene that returns what is measured on its answers.
     variants
         The cases beside the problem's own scene.
-    curve
-        What the case of a curve of error over cost differs by from the scene; None where the problem has no curve.
     forces
         Whether forces are asked for where a program reports them.
     changeable
@@ -168,7 +165,6 @@ class BoxProblem:
     name: str
     quantities: Callable[[Scene], tuple[BoxQuantity, ...]]
     variants: tuple[BoxCase, ...] = ()
-    curve: Mapping[str, Any] | None = None
     forces: bool = False
     changeable: tuple[str, ...] = ()
 
@@ -184,13 +180,6 @@ class BoxProblem:
             return self._with_forces(own_scene)
         changed = own_scene.with_values(dict(case.values))
         return self._with_forces(changed).model_copy(update={"name": f"{PREFIX}{self.name}[{case.label}]"})
-
-    def curve_scene(self, refine: int) -> Scene:
-        """Return the scene of a point of the curve of error over cost."""
-        if self.curve is None:
-            raise ValueError(f"{self.name}: must have a curve, got none")
-        scene = _scene(self.name).with_values({**self.curve, "rigid.refine": refine})
-        return scene.model_copy(update={"name": f"{PREFIX}{self.name}[curve, step halved {refine} times]"})
 
     def _with_forces(self, scene: Scene) -> Scene:
         if not self.forces:
@@ -282,24 +271,6 @@ FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20;
 STANDING_CASES = tuple(
     BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 40}) for friction in FRICTIONS
 )
-
-
-def standing_threshold(scene: Scene) -> BoxQuantity:
-    """Return the least friction with which a box stands, half-way between two of the grid."""
-    slope = boxes_of(scene).slope
-    margin = friction_margin(slope, UNKNOWN)
-    return BoxQuantity(
-        "stands from a friction of",
-        "deg",
-        exact=slope,
-        low=slope - margin,
-        high=slope + margin,
-        scale=slope,
-        of="the slope",
-        reason="it stands where the angle of friction is the slope's or more, and tan(phi) is not known better than to "
-        "one per cent",
-        measure=lambda history: None,
-    )
 
 
 # ---- bounces --------------------------------------------------------------------------------------------------------
@@ -535,21 +506,6 @@ def overturning(scene: Scene) -> tuple[BoxQuantity, ...]:
     )
 
 
-def toppling_threshold(scene: Scene) -> BoxQuantity:
-    """Return the least spin that overturns over the exact one, half-way between two of the grid."""
-    box = rectangle_of(scene)
-    widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
-    return around(
-        "overturns from a spin of",
-        "1",
-        1.0,
-        [critical_spin(changed_box) / critical_spin(box) for changed_box in widths],
-        "one per cent of the width changes the spin that just overturns it by as much",
-        of="the exact one",
-        measure=lambda history: None,
-    )
-
-
 SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
 DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
 
@@ -719,15 +675,15 @@ ASKS = {
 def box_problems() -> Mapping[str, BoxProblem]:
     """Return the problems of rigid boxes by name."""
     problems = (
-        BoxProblem("standing", standing, STANDING_CASES, {"time.steps": 20}, changeable=("friction", "slope")),
-        BoxProblem("restitution", restitution, _restitution_cases(), {}, changeable=("restitution",)),
-        BoxProblem("bouncing", bouncing, curve={"time.steps": 120}),
+        BoxProblem("standing", standing, STANDING_CASES, changeable=("friction", "slope")),
+        BoxProblem("restitution", restitution, _restitution_cases(), changeable=("restitution",)),
+        BoxProblem("bouncing", bouncing),
         BoxProblem("tumbling", tumbling),
         BoxProblem("pile", pile, forces=True),
         BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, forces=True),
-        BoxProblem("toppling", toppling, _toppling_cases(), {}),
-        BoxProblem("shaken", shaken, curve={"time.steps": 60}),
-        BoxProblem("impact", impact, curve={}, forces=True),
+        BoxProblem("toppling", toppling, _toppling_cases()),
+        BoxProblem("shaken", shaken),
+        BoxProblem("impact", impact, forces=True),
     )
     return {box_problem.name: box_problem for box_problem in problems}
 

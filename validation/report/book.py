@@ -8,12 +8,13 @@ from pathlib import Path
 
 from validation.errors import InputError
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, PageBreak, Part
-from validation.report.chapters.registry import CHAPTERS, chapter_of
+from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, escaped, unescaped
 from validation.report.typesetting import png_of, write_document
 from validation.runs.results import Results
 from validation.runs.text import error_text
 from validation.scenes.scene import parse_scene
+from validation.suite.folders import study_names
 
 
 def ordered_studies(results: Results) -> list[str]:
@@ -24,7 +25,7 @@ def ordered_studies(results: Results) -> list[str]:
     InputError
         There is none.
     """
-    order = {name: place for place, name in enumerate(CHAPTERS)}
+    order = {name: place for place, name in enumerate(study_names())}
     studies = sorted(results.studies(), key=lambda name: (order.get(name, len(order)), name))
     if not studies:
         raise InputError("no study's results here", source=results.directory, advice="run a study first")

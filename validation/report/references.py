@@ -20,28 +20,6 @@ PAPER = (
     "Based on Two-Block Model, Mathematical Problems in Engineering 2017, article 7480937, 9 pages, published 18 July "
     "2017 @feng2017"
 )
-SOURCES = {  # study -> what the methods of its chapter rest on
-    "core": "DDA @shi1985, @shi1988; Newmark's scheme @newmark1959, in DDA @doolin2004, @lin2015; elements by "
-    "scikit-fem @gustafsson2020; damping measured by the matrix pencil @hua1990.",
-    "two-codes": "scikit-fem @gustafsson2020.",
-    "paper": "the paper @feng2017; kinetic damping @jiang2013, @hatzor2004.",
-    "literature": "the claims @doolin2001, @doolin2002, @peng2014, @liu2023, @yu2019, @bao2014, @li2015, @peng2020, "
-    "@hatzor2004, @tsesarsky2005, @bao2012; transmitting bases @lysmer1969.",
-    "stiff-contact": "Newmark's scheme @newmark1959, its algorithmic damping in DDA @doolin2004.",
-    "opening": "exact switches in ball arithmetic @johansson2017; the bar by convolution quadrature @lubich1988; the "
-    "states of a step as a complementarity problem @murty1974, which open-close iteration may cycle on "
-    "@bengharbia2012.",
-    "rebound": "implicit contact forces @kane1999; energy-conserving ones @armero1998.",
-    "methods": "generalised-alpha schemes @hilber1977, @wood1980, @chung1993; composite ones @bathe2005, @noh2019; "
-    "impact laws @jean1999; implicit contact forces @kane1999; energy-conserving ones @armero1998.",
-    "impacts": "benchmarks of the dynamic Signorini problem @doyen2011; waves in bars @graff1975.",
-    "slopes": "sliding blocks @newmark1965, in DDA @hatzor2001, @tsesarsky2005, @maclaughlin2006.",
-    "creep": "kinetic damping @hatzor2004, @tsesarsky2005, @jiang2013.",
-    "rocking": "rigid blocks that rock @housner1963.",
-    "toppling": "rigid blocks that rock @housner1963.",
-    "waves": "transmitting bases @lysmer1969; joints of finite stiffness @schoenberg1980.",
-    "columns": "complementarity @murty1974; spalls @graff1975; joints that slip @miller1977, @miller1978.",
-}
 
 
 def references(text: str | None = None) -> dict[str, dict[str, str]]:

@@ -11,7 +11,6 @@ import functools
 import itertools
 import json
 import math
-import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
@@ -24,10 +23,10 @@ from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
 from validation.scenes.kinds import SceneTables
+from validation.scenes.places import scene_files
 from validation.scenes.tables import GateSection, RunSection, TimeSection
 from validation.scenes.unknown import clip, refuse_unknown_keys
 
-SCENE_DIRECTORY = Path(__file__).parent / "library"
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
 NEARLY_A_NUMBER = re.compile(r"[-+]?\d+([.,]\d+)?([eE][-+]?\d+)? ?%|[-+]?\d+,\d+([eE][-+]?\d+)?")
 DECIMAL_COMMA = re.compile(r"^[^#\n\"'\[]*=\s*([-+]?\d+,\d+)", re.MULTILINE)
@@ -341,7 +340,7 @@ def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
 
 def scene_names() -> list[str]:
     """Return the names of the built-in scenes."""
-    return sorted(name.removesuffix(".toml") for name in os.listdir(SCENE_DIRECTORY) if name.endswith(".toml"))
+    return list(scene_files())
 
 
 def load_scene(source: str | Path) -> Scene:
@@ -358,8 +357,8 @@ def load_scene(source: str | Path) -> Scene:
         The file cannot be read, is not TOML, or states something that is not allowed.
     """
     path = Path(source)
-    if path.suffix != ".toml" and str(source) in scene_names():
-        path = SCENE_DIRECTORY / f"{source}.toml"
+    if path.suffix != ".toml":
+        path = scene_files().get(str(source), path)
     data = _read_toml(path)
     refuse_unknown_keys(data, _all_tables(), path.name)
     _beside(path.parent, data)

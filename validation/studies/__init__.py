@@ -1,6 +1,4 @@
-"""The declarations of the suite: scenes, solvers, gates, and what is derived from their rows.
+"""The studies, a folder each; a folder with a ``study.toml`` is one, see `validation.suite.folders`.
 
-Nothing is run or drawn here.
+A folder is imported by nothing outside of it. What two studies share is in `validation.suite` or further below.
 """
-
-from validation.studies.declaration import Study as Study

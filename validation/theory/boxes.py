@@ -29,12 +29,6 @@ def sliding_acceleration(slope: float, friction: float, gravity: float) -> float
     return gravity * math.cos(math.radians(slope)) * max(excess, 0.0)
 
 
-def friction_margin(angle: float, share: float) -> float:
-    """Change of an angle of friction that changes tan(phi) by a share, share sin(phi) cos(phi) [deg]."""
-    phi = math.radians(angle)
-    return math.degrees(share * math.sin(phi) * math.cos(phi))
-
-
 # ---- about a corner -------------------------------------------------------------------------------------------------
 
 

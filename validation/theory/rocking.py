@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.scenes.scene import Scene
+
 Array = NDArray[np.float64]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(80)
 HALVINGS = 60
@@ -112,3 +114,15 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if function(middle) < 0 else (low, middle)
     return (low + high) / 2
+
+
+def rectangle(scene: Scene) -> Rectangle:
+    """Return the rigid rectangle of a scene."""
+    (x0, y0), _, (x2, y2), _ = scene.block.outline
+    return Rectangle(x2 - x0, y2 - y0, scene.load.gravity)
+
+
+def settlement(scene: Scene) -> float:
+    """Return the penetration m g / p of one corner that carries the block at rest [m]."""
+    block = rectangle(scene)
+    return scene.block.density * block.width * block.height * block.gravity / scene.contact.stiffness

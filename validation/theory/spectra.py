@@ -177,3 +177,10 @@ def mesh_error(scene: Scene) -> dict[str, float]:
     exact, shifted = both[:, : len(b)] @ shares, both[:, len(b) :] @ shares
     errors = np.linalg.norm(shifted - exact, axis=0) / np.linalg.norm(exact + (1 - shares.sum(axis=0)), axis=0)
     return dict(zip(quantities, errors.tolist(), strict=True))
+
+
+def rounding(scene: Scene) -> float:
+    """Relative distance of two sound programs' histories for mu = 0."""
+    omega2 = (dda_frequency(scene) * scene.time.step) ** 2
+    soft = 1 + 2 * scene.contact.stiffness / scene.block.young
+    return 10 * EPS * scene.time.steps * soft * max(1.0, 1 / omega2)

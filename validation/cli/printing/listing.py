@@ -10,7 +10,7 @@ from validation.advice.plain import Line
 if TYPE_CHECKING:
     from validation.metrics.catalogue import Metric
     from validation.scenes.scene import Scene
-    from validation.studies.declaration import Study
+    from validation.suite.declaration import Study
 
 BREAK: Line = ()  # an empty line between two groups
 
@@ -88,9 +88,9 @@ def schemes() -> list[Line]:
 
 
 def _studies() -> list[Study]:
-    from validation.studies.catalogue import STUDIES, get_study
+    from validation.suite.folders import get_study, study_names
 
-    return [get_study(name) for name in STUDIES]
+    return [get_study(name) for name in study_names()]
 
 
 def _scenes() -> list[Scene]:

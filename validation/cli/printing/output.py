@@ -61,11 +61,6 @@ def settings_text(settings: Mapping[str, float]) -> str:
     return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())
 
 
-def spread(rebound: Mapping[str, float]) -> str:
-    """Return the range of a rebound over the phase in words."""
-    return f"mean {rebound['mean']:.4g}, from {rebound['low']:.4g} to {rebound['high']:.4g}"
-
-
 @contextmanager
 def tolerate_closed_pipe() -> Iterator[None]:
     """Go on where the reader of the output has gone: what is left to say decides nothing."""

@@ -134,18 +134,15 @@ def derived_rows(manifest: Manifest) -> DerivedRows:
 
 
 def spoken_of(manifest: Manifest) -> list[CaseRecord]:
-    """Return the cases of a study that a page speaks of: all, or those of the scenes of a field's cells.
+    """Return the cases of a study that a page speaks of: all, or those of the scenes of the field's cells.
 
-    A field's data name the `runs` of its cells, or the scenes of its `problems`. The other scenes of such a study are
-    what its bands, checks and curves are computed from, and show nothing by themselves.
+    The field's data name the `runs` of its cells. Its other scenes are what bands and checks are computed from, and
+    show nothing by themselves.
     """
     cases = manifest.get("cases", [])
     data = manifest.get("data", {})
     try:
-        if "runs" not in data and "programs" in data:
-            scenes = {problem["scene"] for problem in data["problems"]}
-        else:
-            scenes = {case[0] for case, _ in data["runs"].values()}
+        scenes = {case[0] for case, _ in data["runs"].values()}
     except (AttributeError, LookupError, TypeError, ValueError):  # no field, or one of another version
         return cases
     return [entry for entry in cases if entry["scene"] in scenes]

@@ -30,7 +30,6 @@ from validation.report.chapters.text import (
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
-from validation.report.references import SOURCES
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -38,6 +37,7 @@ from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
+from validation.suite.folders import sources_of
 
 MOST_PANELS = 10
 FEW = 4  # scenes of a study; of more of them a figure holds the first column alone
@@ -61,7 +61,7 @@ def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark:
     """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
-    sources = SOURCES.get(manifest.get("study", ""), "")
+    sources = sources_of(manifest.get("study", ""))
     rests_on = f"Sources: {sources}" if sources else ""
     paragraphs = (Paragraph(lead, "lead"), Paragraph(text), Paragraph(rests_on, "small"))
     title = manifest.get("title") or manifest["study"]

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure as Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from validation.report.figures.curves import GREY, HAIR, dash_style, style_of, thin
@@ -265,3 +265,12 @@ def _name_beside(axes: Axes, panel: ChartPanel) -> None:
         place = (1 + 2.3 / width, 0.97 - 0.3 * number)
         text = f"{line.name}\n{line.note}"
         axes.text(*place, text, transform=axes.transAxes, color=line.shade, va="top", linespacing=1.4)
+
+
+def name_above(figure: Figure, colors: Mapping[str, str]) -> None:
+    """Write names in their colours above the panels."""
+    x = 0.09
+    with house_style():
+        for name, color in colors.items():
+            figure.text(x, 0.995, name, color=color, va="top")
+            x += 0.04 + 0.009 * len(name)

@@ -40,20 +40,6 @@ COLUMNS = {
 OF_BOXES = {"x": "x", "y": "y", "angle": "Rotation", "force": "Normal force"}  # the columns of each rigid box
 
 _OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
-# Of the field of engines: those of one family, which share a panel, differ for colour-blind readers too.
-_ENGINE_COLORS = {
-    "siconos": "#882255",
-    "lmgc90": "#44aa99",
-    "exudyn": "#8c6d1f",
-    "mujoco": "#009e73",
-    "drake": "#0072b2",
-    "dart": "#cc79a7",
-    "bullet": "#e69f00",
-    "newton-xpbd": "#5d3a9b",
-    "newton-semi-implicit": "#56b4e9",
-    "box2d": "#117733",
-    "pymunk": "#dd6677",
-}
 _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
 
 
@@ -72,9 +58,6 @@ def style_of(name: str) -> LineStyle:
     declared = get_solver(name).line if is_solver(name) else None
     if declared is not None:
         return declared
-    engine = name.removesuffix("-default")
-    if engine in _ENGINE_COLORS:
-        return LineStyle(_ENGINE_COLORS[engine], () if engine == name else _OTHER_DASHES[0], 1.0, 2)
     code = zlib.crc32(name.encode())
     color = _OTHER_COLORS[code % len(_OTHER_COLORS)]
     return LineStyle(color, _OTHER_DASHES[code // len(_OTHER_COLORS) % len(_OTHER_DASHES)], 1.0, 2)

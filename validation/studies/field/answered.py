@@ -8,8 +8,8 @@ from validation.engine.finished import Derived, Finished, NothingToDerive
 from validation.gates.gate import Gate
 from validation.runs.row import Value
 from validation.runs.run import Outcome
-from validation.studies.field.programs import Program
 from validation.studies.field.table import is_absent
+from validation.suite.programs import Program
 
 ANSWERED = "problems answered"
 # How the run of a program may end that answers wrongly: a finding, and no failure of the study.

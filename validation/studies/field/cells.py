@@ -13,7 +13,6 @@ from validation.problems.judge import Judgement, Word, judge
 from validation.problems.problem import PREFIX
 from validation.runs.history import History
 from validation.runs.row import Value
-from validation.studies.field.programs import ELEMENTS, FINE, HABIT, installed
 from validation.studies.field.scenes import (
     EXACT,
     FIELD_PROBLEMS,
@@ -26,6 +25,7 @@ from validation.studies.field.scenes import (
     with_elements,
 )
 from validation.studies.field.table import BESIDE, cell_name
+from validation.suite.programs import ELEMENTS, FINE, HABIT, installed
 
 OF_MODEL = "another model: the block strains from point to point, where DDA's has one strain"
 

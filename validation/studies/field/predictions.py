@@ -19,8 +19,8 @@ from validation.problems.problem import PREFIX
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.studies.field.programs import HABIT
 from validation.studies.field.scenes import scene_of
+from validation.suite.programs import HABIT
 
 APART = "difference from its integrator"
 

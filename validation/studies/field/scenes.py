@@ -9,7 +9,7 @@ from validation.problems.bands import changed_scenes
 from validation.problems.problem import PREFIX, Problem, problem
 from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
-from validation.studies.field.programs import ELEMENTS, HABIT, installed
+from validation.suite.programs import ELEMENTS, HABIT, installed
 
 # Problems of the pack that programs of the field are asked; their adapters state no contacts of columns.
 FIELD_PROBLEMS = ("locked", "opening", "rebound", "sliding", "creep", "rocking", "column")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
@@ -135,21 +135,17 @@ class ProgramLine:
     kind: str  # "suite", "chosen" (for accuracy), "default" (as it comes) or "user"
     installed: bool
     about: Mapping[str, str] = field(default_factory=dict)
-    family: str = "user"  # of contact engines "suite", "mechanics", "robotics", "games" or "user"
-
-
-CellT = TypeVar("CellT")
 
 
 @dataclass(frozen=True)
-class Table(Generic[CellT]):
+class FieldTable:
     """A field: every problem has a cell for every program."""
 
     problems: tuple[ProblemLine, ...]
     programs: tuple[ProgramLine, ...]
-    cells: Mapping[tuple[str, str], CellT]  # by names of problem and program
+    cells: Mapping[tuple[str, str], Cell]  # by names of problem and program
 
-    def cell(self, problem: str, program: str) -> CellT:
+    def cell(self, problem: str, program: str) -> Cell:
         """Return a cell.
 
         Raises
@@ -159,17 +155,14 @@ class Table(Generic[CellT]):
         """
         return self.cells[problem, program]
 
-    def row(self, problem: str) -> tuple[CellT, ...]:
+    def row(self, problem: str) -> tuple[Cell, ...]:
         """Return the cells of a problem in the order of the programs."""
         return tuple(self.cells[problem, program.name] for program in self.programs)
 
 
-FieldTable = Table[Cell]
-
-
 @dataclass(frozen=True)
 class KeptField:
-    """What a results directory holds of a field."""
+    """What a results directory holds of the field."""
 
     problems: tuple[ProblemLine, ...]
     programs: tuple[ProgramLine, ...]
@@ -178,15 +171,15 @@ class KeptField:
     metrics: Mapping[tuple[str, str], Mapping[str, Value]]  # of derived rows, by scene and name
 
 
-def kept_field(results: Results, study: str) -> KeptField | None:
-    """Return what is kept of a field, None where its study was not run.
+def kept_field(results: Results) -> KeptField | None:
+    """Return what is kept of the field, None where its study was not run.
 
     Raises
     ------
     InputError
         The results are damaged.
     """
-    manifest = results.manifest(study)
+    manifest = results.manifest(STUDY)
     data = manifest.get("data", {})
     if "programs" not in data:
         return None
@@ -209,7 +202,7 @@ def read(results: Results) -> FieldTable | None:
     InputError
         The results are damaged.
     """
-    kept = kept_field(results, STUDY)
+    kept = kept_field(results)
     if kept is None:
         return None
     cells = {}
@@ -217,7 +210,7 @@ def read(results: Results) -> FieldTable | None:
         case, name = kept.data["runs"].get(f"{problem.name} {program.name}", (("", ""), ""))
         metrics = kept.metrics.get((problem.scene, name), {})
         cells[problem.name, program.name] = _cell(problem, program, kept.rows.get(tuple(case)), metrics)
-    return Table(kept.problems, kept.programs, cells)
+    return FieldTable(kept.problems, kept.programs, cells)
 
 
 def _cell(problem: ProblemLine, program: ProgramLine, row: Row | None, metrics: Mapping[str, Value]) -> Cell:

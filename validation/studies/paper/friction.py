@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.studies.claims import Evidence, Tests, named
+from validation.suite.claims import Evidence, Tests, named
 from validation.theory import friction
 
 CREEP = named("creep-claim")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_statistics
-from validation.studies.claims import Evidence, Tests, named, whole
+from validation.suite.claims import Evidence, Tests, named, whole
 from validation.theory import landing
 
 CASES = named("open-close")

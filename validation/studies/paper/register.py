@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.studies.claims import Evidence, Tests, named, whole
+from validation.suite.claims import Evidence, Tests, named, whole
 
 A34, A56, A7, A8, A9 = (
     list(named(name)) for name in ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")

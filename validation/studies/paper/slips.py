@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from validation.runs.case_name import scene_of
-from validation.studies.claims import Evidence, Tests, named
 from validation.studies.paper.register import MAP, SOFT
+from validation.suite.claims import Evidence, Tests, named
 
 LATERAL = next(iter(named("poisson-statics")))  # mu = 0.3, p = 1E
 OBLONG = {"block.width": 1.0, "block.height": 2.0}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.studies.claims import Evidence, Tests, named
+from validation.suite.claims import Evidence, Tests, named
 
 CASES = named("viscous")
 CONSTANT, AVERAGE = ([name for name, s in CASES.items() if s.time.delta == delta] for delta in (1, 0.5))

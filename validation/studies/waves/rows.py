@@ -15,8 +15,8 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.bands import about, cases, fitted_order, gate, near, short
 from validation.studies.waves.measure import Guide, joint_parts
+from validation.suite.bands import about, cases, fitted_order, gate, near, short
 from validation.theory import waves
 
 EXACT = 1e-10  # of k: what a measured wavenumber must keep

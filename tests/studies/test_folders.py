@@ -1,0 +1,153 @@
+"""A study is one folder: one that is added is run, judged and told, one that is taken away leaves the others whole."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import typed
+
+import validation.studies
+from validation.engine import run_study
+from validation.errors import InputError
+from validation.gates import Status
+from validation.report.blocks import Paragraph
+from validation.report.book import build
+from validation.report.chapters.registry import chapter_of
+from validation.report.chapters.scene import scene_chapter
+from validation.results import Results
+from validation.runs.case_name import scene_of
+from validation.scenes.places import LIBRARY, scene_files
+from validation.scenes.scene import load_scene
+from validation.suite.folders import get_study, study_folders, study_names
+
+HERE = Path(str(validation.studies.__file__)).parent
+STUDY = """
+[study]
+name = "added-study"
+title = "An added study"
+purpose = "Is it found?"
+phenomenon = "none"
+order = 55
+pairs = [["dda", "bar"]]
+derived = "twice"
+[[gate]]
+scenes = ["added-scene"]
+pairs = [["dda"]]
+metrics = ["displacement.static"]
+band = "settled"
+reason = "closed form"
+[[gate]]
+scene = "added-scene"
+numbers = "numbers.csv"
+by = ["time.step"]
+metrics = ["displacement.static"]
+pairs = [["dda"]]
+
+reason = "printed"
+[[gate]]
+owners = ["added-scene"]
+pairs = [["twice"]]
+metrics = ["static"]
+band = [-1.0, 0.0]
+reason = "downwards"
+"""
+NUMBERS = """# static displacement [m]
+time.step=0.002, time.step=0.001
+-0.0100,         -0.0100
+"""
+SCENE = """
+block = { side = 2.0, density = 2700.0, young = 1e9 }
+contact = { stiffness = 1e9 }
+load = { pressure = 5e6 }
+time = { step = 0.002, steps = 20 }
+run = { solvers = ["dda", "bar"] }
+sweep = { "time.step" = [0.002, 0.001] }
+"""
+FORMULAS = """
+from validation.engine.finished import Derived
+from validation.suite.bands import cases, near
+from validation.theory.statics import static_displacement
+
+def settled(case):
+    return near(static_displacement(case), 1e-9)
+
+def twice():
+    (name, _) = (case.name for case in cases("added-scene"))
+    def compute(finished):
+        return {"static": 2 * finished.rows[name, "dda"].metrics["displacement.static"]}
+    return [Derived("added-scene", "twice", ((name, "dda"),), compute)]
+"""
+CHAPTER = """
+from validation.report.blocks import Heading, Paragraph
+
+def chapter(results, manifest, directory):
+    return [Heading("Added"), Paragraph("Found by its folder.")]
+"""
+
+
+@pytest.fixture
+def added(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A package of studies elsewhere, of one folder, beside those of the suite."""
+    folder = tmp_path / "package" / "added"
+    (folder / "scenes").mkdir(parents=True)
+    files = {"study.toml": STUDY, "numbers.csv": NUMBERS, "formulas.py": FORMULAS, "scenes/added-scene.toml": SCENE}
+    for name, text in (files | {"chapter.py": CHAPTER}).items():
+        (folder / name).write_text(text)
+    monkeypatch.setattr(validation.studies, "__path__", [*validation.studies.__path__, str(folder.parent)])
+    yield folder
+    for name in [name for name in sys.modules if name.startswith("validation.studies.added")]:
+        del sys.modules[name]
+
+
+def test_a_folder_that_is_added_is_run_judged_and_told(
+    added: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = study_names()
+    assert names[names.index("paper") + 1] == "added-study"
+    assert not [name for name in sys.modules if name.startswith("validation.studies.added")]  # nothing is imported
+    assert "added-study" in typed("list", "studies").stdout and "added-scene" in typed("list", "scenes").stdout
+    results = Results(tmp_path / "results")
+    assert [verdict.status for verdict in run_study(get_study("added-study"), results)] == [Status.PASS] * 5
+    blocks = chapter_of("added-study")(results, results.whole("added-study"), tmp_path)
+    assert Paragraph("Found by its folder.") in blocks
+    monkeypatch.setattr(validation.studies, "__path__", [str(HERE)])  # and is taken away: its results tell themselves
+    assert "added-study" not in study_names() and "added-scene" not in scene_files()
+    assert chapter_of("added-study") is scene_chapter
+    assert build(results, tmp_path / "report.pdf").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("folder", sorted(path.parent.name for path in HERE.glob("*/study.toml")))
+def test_a_folder_that_is_taken_away_leaves_the_others_whole(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Contracts of imports hold that no module needs it; here no scene of another study stands in it."""
+    own = {name for name, path in study_folders().items() if path.path.name == folder}
+    files = {name for name, path in scene_files().items() if folder in path.parts}
+    others = set(study_names()) - own
+    for path in HERE.iterdir():
+        if path.name not in (folder, "__pycache__"):
+            (tmp_path / path.name).symlink_to(path)
+    monkeypatch.setattr(validation.studies, "__path__", [str(tmp_path)])
+    assert set(study_names()) == others and not files & set(scene_files())
+    for name in others:
+        for scene in get_study(name).scenes:
+            assert not isinstance(scene, str) or scene_of(scene) in scene_files()
+    assert typed("list", "studies").returncode == 0
+
+
+def test_scenes_of_the_library_are_no_studys_alone() -> None:
+    assert all(path.parent == LIBRARY or path.parent.parent.parent == HERE for path in scene_files().values())
+    assert load_scene("mesh-convergence").title
+
+
+@pytest.mark.parametrize(("file", "old", "new"), [("study.toml", "added-study", "core"), ("scenes", "", "figures-3-4")])
+def test_two_of_one_name_are_refused(file: str, old: str, new: str, added: Path) -> None:
+    if old:
+        (added / file).write_text(STUDY.replace(old, new))
+    else:
+        (added / file / f"{new}.toml").write_text(SCENE)
+    with pytest.raises(InputError, match="must not have the name of the"):
+        [study_names(), scene_files()]

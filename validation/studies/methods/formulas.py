@@ -1,0 +1,466 @@
+"""The study `methods`: time schemes and contact methods on the same scenes, at equal steps and at equal cost.
+
+The block on its locked springs, from rest; the same block where the contact opens; a rigid block that lands on springs;
+a rigid stop; blocks on each other; a block that slides. Each by all methods that apply, held to closed forms of the
+schemes and to the numbers of an independent program (``study.toml``).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.metrics.values import or_nan
+from validation.runs.case_name import scene_of
+from validation.runs.history import Array, History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
+from validation.suite.bands import Band, about, fitted_order
+from validation.theory import friction, rebound, spectra, statics
+from validation.theory.stepping import Stepping
+
+RATIOS = (1.0, 10.0, 100.0)  # p/E
+STEPS = (0.01, 0.002, 0.001)  # s, of the locked block
+LOCKED_TIME = 0.2  # s
+HALVED = 0.0005  # s, half of the last step: average acceleration at the cost of a composite scheme
+STABLE_EXPLICIT = 1.0, 0.001  # p/E and dt [s] of the locked block within the limit of the leapfrog
+UNLOCKED = ((1.0, 1e-3), (1.0, 2e-4), (100.0, 1e-3), (100.0, 2e-4))  # p/E and dt [s]
+UNLOCKED_TIME = 0.1  # s
+ENERGY = 5e4  # W0 = q^2 a h / (2 E), the strain energy under the pressure at rest [J]
+REFINED_TIME = 0.05  # s
+COARSEST = 100  # steps
+LEVELS = 6  # of the refinement, each with twice the steps of the one before
+SLOW_LEVELS = {"constant": 8, "nine-sixteenths": 7, "implicit-euler": 7, "kane": 7}  # the same of first order
+TARGET = 0.01  # relative error of the velocity
+RIGID_COARSEST, RIGID_LEVELS = 800, 5  # steps over `REFINED_TIME` of a rigid stop
+COLUMN_STEPS = (1e-3, 2e-4)  # s
+COLUMN_TIME = 0.06  # s
+SLIDING_STEP = 0.01  # s
+SLIDING_TIME = 0.5  # s
+IMPACT_OMEGAS = (0.3, 4.0, 1000.0)  # w_c dt
+IMPACT_PHASES = (0.1, 0.5, 0.9)
+IMPACT_STEPS = 240  # contact of 11 steps at w_c dt = 0.3, and a flight in which generalised alpha forgets its memory
+RIGID_PHASES = 2000
+ERROR = "displacement error"
+RIGID_MAP = "rebound on a rigid contact"
+COST = "methods-cost"
+ENERGIES = tuple(f"energy.{name}" for name in ("kinetic", "strain", "springs", "load"))
+BLOCK_EVENTS = ("methods-refined-exact", "block-events")
+COLUMN_EVENTS = ("methods-column-exact", "column-events")
+IMPLICIT = tuple(one for one in METHODS if one.group != "explicit")  # what a rigid block's own strain allows
+FRICTIONAL = tuple(one for one in IMPLICIT if one.id != "conserving")  # conserving contact has no friction
+
+# ---- scenes ---------------------------------------------------------------------------------------------------------
+
+
+def varied(one: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]) -> Scene:
+    """Return a built-in scene under a method, whose lists of values are varied together; a key is ``time_step``."""
+    scene = one.scene(load_scene(base), {"run.solvers": ["dda"], **values})
+    sweep = {"mode": "zip"} | {key.replace("_", ".", 1): list(row) for key, row in lists.items()}
+    return scene.model_copy(
+        update={"name": f"methods-{name}-{one.id}", "title": f"{title}: {one.label}", "sweep": sweep}
+    )
+
+
+def over_springs(rows: Sequence[tuple[float, float]], duration: float) -> dict[str, list[float]]:
+    """Return the lists of p/E and dt [s] on the paper's block."""
+    young = load_scene("figures-3-4").block.young
+    return {
+        "contact_stiffness": [ratio * young for ratio, _ in rows],
+        "time_step": [step for _, step in rows],
+        "time_steps": [round(duration / step) for _, step in rows],
+    }
+
+
+def halved(coarsest: int, levels: int) -> dict[str, list[float]]:
+    """Return the lists of steps that are halved."""
+    counts = [coarsest * 2**level for level in range(levels)]
+    return {"time_step": [REFINED_TIME / count for count in counts], "time_steps": counts}
+
+
+@functools.cache
+def locked(one: Method) -> Scene:
+    """Return the locked block from rest, over springs and step."""
+    rows = [(ratio, step) for ratio in RATIOS for step in STEPS]
+    if one.id == "leapfrog":
+        rows = [STABLE_EXPLICIT]
+    if one.id == "average":
+        rows.append((1.0, HALVED))
+    return varied(one, "figures-3-4", "locked", "The locked block from rest", {}, **over_springs(rows, LOCKED_TIME))
+
+
+@functools.cache
+def unlocked(one: Method) -> Scene:
+    """Return the block whose contact opens, over springs and step."""
+    values = {"time.allow_unstable": one.group == "explicit"}
+    lists = over_springs(UNLOCKED, UNLOCKED_TIME)
+    return varied(one, "unlocked-average", "unlocked", "Contact that opens", values, **lists)
+
+
+@functools.cache
+def refined(one: Method) -> Scene:
+    """Return the block whose contact opens, at p = 1E, over halved steps."""
+    lists = halved(COARSEST, SLOW_LEVELS.get(one.id, LEVELS))
+    return varied(one, "unlocked-average", "refined", "Contact that opens, steps refined", {}, **lists)
+
+
+@functools.cache
+def impacts(one: Method) -> Scene:
+    """Return the rigid block that lands on springs, over w_c dt and the phase of the landing."""
+    scene = load_scene("rebound-average")
+    rows = [(omega, phase) for omega in IMPACT_OMEGAS for phase in IMPACT_PHASES]
+    dt = scene.time.step
+    stiffnesses = [(omega / dt) ** 2 * scene.block.mass / 2 for omega, _ in rows]
+    gaps = [(3 - phase) * dt * -scene.block.velocity for _, phase in rows]
+    lists = {"contact_stiffness": stiffnesses, "contact_gap": gaps}
+    title = "A rigid block lands on springs"
+    return varied(one, scene.name, "impact", title, {"time.steps": IMPACT_STEPS}, **lists)
+
+
+@functools.cache
+def column(one: Method) -> Scene:
+    """Return five rigid blocks that are dropped on each other, over two steps."""
+    lists = {"time_step": COLUMN_STEPS, "time_steps": [round(COLUMN_TIME / step) for step in COLUMN_STEPS]}
+    values = {"run.columns": ["displacement"]}
+    return varied(one, "columns-drop-average", "column", "Five rigid blocks dropped", values, **lists)
+
+
+@functools.cache
+def sliding(one: Method) -> Scene:
+    """Return the block that slides down an incline."""
+    steps = {"time.step": SLIDING_STEP, "time.steps": round(SLIDING_TIME / SLIDING_STEP)}
+    values = {"contact.cohesion": 0.0, **steps}
+    return varied(one, "slope-sliding", "sliding", "A block that slides", values, time_step=[SLIDING_STEP])
+
+
+STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
+    "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
+    "impulses": (
+        "Moreau and Jean, e = 0, theta = 1/2",
+        {"contact.rule": "impact", "contact.restitution": 0.0, "time.alpha": 0.25, "time.delta": 0.5},
+    ),
+    "impulses-euler": (
+        "Moreau and Jean, e = 0, theta = 1",
+        {"contact.rule": "impact", "contact.restitution": 0.0, "time.alpha": 1.0, "time.delta": 1.5},
+    ),
+}
+
+
+@functools.cache
+def rigid(stop: str) -> Scene:
+    """Return the block on a rigid stop, over halved steps."""
+    words, values = STOPS[stop]
+    rigid_stop: dict[str, Any] = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
+    lists = halved(RIGID_COARSEST, RIGID_LEVELS)
+    sweep: dict[str, Any] = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
+    update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
+    return base.with_values({**rigid_stop, **values}).model_copy(update=update)
+
+
+def exact(base: str, case: tuple[str, str], title: str, step: float, duration: float, **values: Any) -> Scene:
+    """Return a built-in scene, exact in time."""
+    name, solver = case
+    steps = {"time.step": step, "time.steps": round(duration / step)}
+    scene = method("average").scene(load_scene(base), {"run.solvers": [solver], **steps, **values})
+    return scene.model_copy(update={"name": name, "title": f"{title}, exact in time"})
+
+
+@functools.cache
+def scenes() -> tuple[Scene, ...]:
+    """Return all scenes of the study."""
+    declared = [locked(one) for one in SCHEMES]
+    declared += [unlocked(one) for one in METHODS]
+    declared += [refined(one) for one in METHODS]
+    declared += [impacts(one) for one in IMPLICIT]
+    declared += [rigid(stop) for stop in STOPS]
+    declared += [column(one) for one in SCHEMES]
+    declared += [sliding(one) for one in FRICTIONAL]
+    columns = {"run.columns": ["displacement"]}
+    dropped = exact("columns-drop-average", COLUMN_EVENTS, "Five rigid blocks dropped", 1e-3, COLUMN_TIME, **columns)
+    opened = exact("unlocked-average", BLOCK_EVENTS, "Contact that opens", REFINED_TIME / COARSEST, REFINED_TIME)
+    return (*declared, opened, dropped)
+
+
+@functools.cache
+def cases_by_scene() -> dict[str, tuple[Scene, ...]]:
+    """Return the cases of every scene of the study, by its name."""
+    return {scene.name: scene.expand() for scene in scenes()}
+
+
+def expanded(scene: Scene) -> tuple[Scene, ...]:
+    """Return the cases of a scene of the study."""
+    return cases_by_scene()[scene.name]
+
+
+def locked_cases() -> Iterator[Scene]:
+    """Yield the cases of the locked block."""
+    for one in SCHEMES:
+        yield from expanded(locked(one))
+
+
+def sliding_cases() -> Iterator[Scene]:
+    """Yield the cases of the block that slides."""
+    for one in FRICTIONAL:
+        yield from expanded(sliding(one))
+
+
+# ---- what is derived from the runs ----------------------------------------------------------------------------------
+
+
+def two_unknowns(scene: Scene) -> tuple[Array, Array, Array]:
+    """Return M and K of the block of one strain in (v, ey), and the row b of the gap at its base, for mu = 0."""
+    width, height = statics.size(scene)
+    modulus, _ = statics.moduli(scene)
+    p = scene.contact.stiffness
+    m = scene.block.mass
+    gap = np.array([1.0, -height / 2])
+    mass = np.diag([m, m * height**2 / 12])
+    stiffness = np.diag([0.0, modulus * width * height]) + 2 * p * np.outer(gap, gap)
+    return mass, stiffness, gap
+
+
+def exact_locked(scene: Scene, time: Array) -> Array:
+    """Return the displacement of the centroid of the locked block under a suddenly applied pressure, from rest [m]."""
+    mass, stiffness, _ = two_unknowns(scene)
+    width, height = statics.size(scene)
+    load = scene.load.pressure * width * np.array([-1.0, -height / 2])
+    root = np.sqrt(np.diag(mass))
+    squares, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
+    shapes = vectors / root[:, None]
+    static = (shapes.T @ load) / squares
+    swings = static * (1 - np.cos(np.multiply.outer(time, np.sqrt(squares))))
+    return np.asarray(swings @ shapes.T[:, 0], dtype=np.float64)
+
+
+# ---- a free mass under a sine ---------------------------------------------------------------------------------------
+
+
+def locked_error(case: Scene, history: History) -> Mapping[str, Value]:
+    """Return the largest displacement error over the largest exact displacement."""
+    expected = exact_locked(case, history.time)
+    return {"largest": float(np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected)))}
+
+
+def final_energy(case: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the energy at the last step over W0, that of the start being zero."""
+    metrics = finished.rows[case.name, "dda"].metrics
+    return {"share": sum(or_nan(metrics.get(name)) for name in ENERGIES) / ENERGY}
+
+
+def relative_error(values: Array, expected: Array) -> float:
+    """Return the relative L2 error of a displacement."""
+    return float(np.linalg.norm(values - expected) / np.linalg.norm(expected))
+
+
+def order(one: Method, finished: Finished) -> Mapping[str, Value]:
+    """Return the order of the last halving, and the steps times solves that reach the target."""
+    expected = finished.needed_history(*BLOCK_EVENTS).displacement
+    errors = {}
+    for case in expanded(refined(one)):
+        stride = case.time.steps // COARSEST
+        displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
+        errors[case.time.steps] = relative_error(displacement, expected)
+    *_, coarse, fine = errors.values()
+    reached = [count for count, error in errors.items() if error <= TARGET]
+    values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
+    values["solves to 1 %"] = float(min(reached) * one.solves) if reached else "undefined"
+    return values | {f"error of {count} steps": error for count, error in errors.items()}
+
+
+def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
+    """Return how many times as many steps DDA's own scheme needs for 1 % of the motion as CH 0."""
+    counts = [order(method(name), finished)["solves to 1 %"] for name in ("constant", "ch-0")]
+    return {"constant over ch-0": or_nan(counts[0]) / or_nan(counts[1])}
+
+
+# Displacement of the block that stops dead at a rigid stop, by an independent program [s], [m].
+PLASTIC = {0.01: -0.00350963748, 0.02: -0.00744841152, 0.05: -0.00275254957}
+
+
+def approach(stop: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the orders in the step of the distance from the plastic motion and of the peak pressure."""
+    steps = []
+    errors = []
+    peaks = []
+    for case in expanded(rigid(stop)):
+        history = finished.needed_history(case.name, "dda")
+        instants = [round(time / case.time.step) - 1 for time in PLASTIC]
+        steps.append(case.time.step)
+        errors.append(relative_error(history.displacement[instants], np.array([*PLASTIC.values()])))
+        peaks.append(float(np.max(history.contact_pressure)))
+    return {
+        "order": fitted_order(steps, errors),
+        "finest error": errors[-1],
+        "order of the peak": fitted_order(steps, peaks),
+        "finest peak": peaks[-1],
+    }
+
+
+def column_error(case: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the relative L2 error of the mean displacement at the coarser steps."""
+    stride = round(COLUMN_STEPS[0] / case.time.step)
+    displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
+    return {"l2": relative_error(displacement, finished.needed_history(*COLUMN_EVENTS).displacement)}
+
+
+def slid_distance(case: Scene, history: History) -> Mapping[str, Value]:
+    """Return the relative error of the distance slid, a t^2 / 2 with a = g (sin b - tan(phi) cos b)."""
+    distance = float(history.columns["horizontal_displacement"][-1])
+    return {"error": abs(distance) / friction.run_out(case, case.time.duration) - 1}
+
+
+def compared_map(one: Method, finished: Finished) -> Mapping[str, Value]:
+    """Return the largest difference of DDA's restitution from the map, and the greatest restitution."""
+    differences = []
+    restitutions = []
+    for case in expanded(impacts(one)):
+        history = finished.needed_history(case.name, "dda").displacement
+        restitution = float(history[-1] - history[-2]) / case.time.step / -case.block.velocity
+        omega = math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step
+        steps = case.contact.gap / (-case.block.velocity * case.time.step)
+        phase = math.ceil(steps) - steps
+        differences.append(abs(restitution - float(rebound.rebounds(one.step_of_impact(omega), [phase])[0])))
+        restitutions.append(restitution)
+    return {"largest difference": max(differences), "greatest": max(restitutions)}
+
+
+@functools.cache
+def rigid_statistics(one: Method) -> rebound.ReboundStatistics:
+    """Return the statistics of the restitution on a rigid contact over many phases."""
+    return rebound.rebound_statistics(one.step_of_impact(math.inf), count=RIGID_PHASES)
+
+
+def rigid_map(one: Method, finished: Finished) -> Mapping[str, Value]:
+    """Return mean, least, greatest and mean square of the restitution on a rigid contact."""
+    return dict(rigid_statistics(one)._asdict())
+
+
+def cost_cases() -> dict[str, Scene]:
+    """Return composite schemes at p = 1E and 1 ms, and average acceleration at half the step, by method."""
+    compared = {one.id: expanded(locked(one))[2] for one in SCHEMES if one.group == "composite"}
+    return compared | {"average": expanded(locked(method("average")))[-1]}
+
+
+def equal_cost(finished: Finished) -> Mapping[str, Value]:
+    """Return the errors of composite schemes over that of average acceleration at equal cost."""
+    errors = {}
+    for name, case in cost_cases().items():
+        errors[name] = or_nan(locked_error(case, finished.needed_history(case.name, "dda"))["largest"])
+    least = errors.pop("average")
+    return {"average": least} | {name: error / least for name, error in errors.items()}
+
+
+def row(
+    owner: Scene | str, name: str, cases: Sequence[Scene], compute: Callable[..., Any], *first: Any, **options: Any
+) -> Derived:
+    """Return a row that is computed from runs of DDA by a function, whose first arguments are given."""
+    needs = tuple((case.name, "dda") for case in cases) + options.pop("exact", ())
+    scene = owner if isinstance(owner, str) else owner.name
+    return Derived(scene, name, needs, functools.partial(compute, *first), **options)
+
+
+@functools.cache
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    declared = [row(COST, ERROR, [*cost_cases().values()], equal_cost)]
+    slow_cases = [*expanded(refined(method("constant"))), *expanded(refined(method("ch-0")))]
+    declared.append(row(COST, "order", slow_cases, slow_and_fast, exact=(BLOCK_EVENTS,)))
+    for one in METHODS:
+        for case in expanded(unlocked(one)):
+            declared.append(row(case, "energy at the end", [case], final_energy, case, reads=ENERGIES))
+        declared.append(row(refined(one), "order", expanded(refined(one)), order, one, exact=(BLOCK_EVENTS,)))
+    for one in IMPLICIT:
+        declared.append(row(impacts(one), "rebound map", expanded(impacts(one)), compared_map, one))
+        if one.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
+            declared.append(row(impacts(one), RIGID_MAP, (), rigid_map, one))
+    for stop in STOPS:
+        declared.append(row(rigid(stop), "approach", expanded(rigid(stop)), approach, stop))
+    for one in SCHEMES:
+        for case in expanded(column(one)):
+            declared.append(row(case, "column error", [case], column_error, case, exact=(COLUMN_EVENTS,)))
+    return tuple(declared)
+
+
+CURVES = ("constant", "average", "ch-0.8", "ch-0.5", "ch-0", "hht-0.1", "bathe-half", "tr-bdf2", "leapfrog")
+DAMPED_OMEGAS = np.geomspace(0.03, 100.0, 71)  # w dt of the curves of damping ratios
+MAP_CURVES = ("constant", "ch-0", "ch-0.8", "hht-0.1", "bathe-half")
+MAP_OMEGAS = np.geomspace(0.3, 300.0, 19)  # w_c dt of those of restitutions
+MAP_PHASES = 40
+
+
+@functools.cache
+def data() -> Mapping[str, Any]:
+    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt."""
+    curves: dict[str, dict[str, list[float | None]]] = {}
+    for name in CURVES:
+        one = method(name)
+        ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
+        curves[name] = {"damping": [_short(ratio) for ratio in ratios]}
+        if name not in MAP_CURVES:
+            continue
+        rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
+        for part in ("mean", "least", "most"):
+            curves[name][part] = [_short(getattr(row, part)) for row in rows]
+    omegas = {"damping": [_short(x) for x in DAMPED_OMEGAS], "impact": [_short(x) for x in MAP_OMEGAS]}
+    return {"omega": omegas, "methods": curves, "labels": {one.id: one.label for one in METHODS}}
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.5g}") if math.isfinite(value) else None
+
+
+# ---- bands ----------------------------------------------------------------------------------------------------------
+
+
+def damping_ratios(case: Scene) -> dict[str, Band]:
+    """Return the damping ratios of both modes of the locked block, where the scheme's roots swing."""
+    stepping = Stepping.of(case)
+    ratios = {}
+    for mode, frequency in (("mode1", spectra.dda_frequency(case)), ("contact", spectra.contact_frequency(case))):
+        if stepping.oscillates(frequency * case.time.step):
+            value = stepping.damping_ratio(frequency * case.time.step)
+            ratios[f"{mode}.damping"] = about(value, 1e-10 * abs(value) + 1e-12)
+    return ratios
+
+
+def column_cases() -> Iterator[Scene]:
+    """Yield the cases of five blocks that are dropped on each other."""
+    for one in SCHEMES:
+        yield from expanded(column(one))
+
+
+def solves_of_a_step(case: Scene) -> Band:
+    """Return the solves of a scheme's stages, and what the few steps in which a contact switches add to their mean."""
+    (one,) = (one for one in SCHEMES if column(one).name == scene_of(case.name))
+    return float(one.solves), one.solves + 0.25
+
+
+def settled(case: Scene) -> float:
+    """Return twice the settlement under the weight, as the friction's part of it, over the distance slid."""
+    tangent = math.tan(math.radians(case.contact.friction or 0.0))
+    return 2 * tangent * friction.settlement(case) / friction.run_out(case, case.time.duration)
+
+
+def slid(case: Scene) -> Band | None:
+    """Return the error of the distance slid by all methods but two."""
+    others = [sliding(method(name)).name for name in ("average", "implicit-euler")]
+    return None if case.name.startswith(tuple(others)) else about(0.0, settled(case))
+
+
+def slid_by_the_average(case: Scene) -> Band | None:
+    """Return that by average acceleration, which rings on."""
+    return (-0.02, -2 * settled(case)) if case.name.startswith(sliding(method("average")).name) else None
+
+
+def slid_by_implicit_euler(case: Scene) -> Band | None:
+    """Return that by implicit Euler, which is a step ahead."""
+    if not case.name.startswith(sliding(method("implicit-euler")).name):
+        return None
+    return about(case.time.step / case.time.duration, settled(case))

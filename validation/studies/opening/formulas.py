@@ -1,0 +1,46 @@
+"""The paper's block unlocked: exact motions against an independent program's numbers, DDA and elements against them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from validation.engine.finished import Derived
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.suite.bands import order_row
+
+SCENE = "unlocked"
+INSTANTS = (3, 6, 9)  # wave transits a / c
+BLOCK = ("dda", "block-events")
+REFINED = {  # scene -> what converges to what, the step or mesh width that is refined
+    "unlocked-constant": (BLOCK, "time.step"),
+    "unlocked-average": (BLOCK, "time.step"),
+    "unlocked-average-zero": (BLOCK, "time.step"),
+    "unlocked-mesh": (("fem", "bar"), "fem.elements"),
+}
+
+
+def samples(case: Scene, history: History) -> Mapping[str, Value]:
+    """Return displacement and contact pressure at the instants."""
+    values: dict[str, Value] = {}
+    for n in INSTANTS:
+        values[f"displacement.{n}"] = float(history.displacement[n - 1])
+        values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
+    return values
+
+
+def front(case: Scene) -> float:
+    """Return the pressure that a front can bring in a few ulps of the last instant [Pa].
+
+    The contact pressure changes by at most 2 q in a time 1 / kappa, kappa = 2 p / (a rho c) [1/s].
+    """
+    b = case.block
+    kappa = 2 * case.contact.stiffness / (b.base_length * math.sqrt(b.young * b.density))
+    return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
+
+
+def orders() -> tuple[Derived, ...]:
+    """Return the rows of orders."""
+    return tuple(order_row(name, *refined) for name, refined in REFINED.items())

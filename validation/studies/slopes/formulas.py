@@ -1,0 +1,145 @@
+"""The study `slopes`: trajectories on inclines against closed forms.
+
+While every corner slips one way or is open, u_t + tan(phi) u_n of the centroid moves freely under
+a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.theory.friction`). So the run-out, what
+a discount takes of it and the slope at which a block begins to slide are known to rounding.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
+from validation.suite.bands import APART, Band, about, cases, near
+from validation.theory import friction
+from validation.theory.statics import moduli, size
+
+SLIDING = "slope-sliding"
+AVERAGE = "slope-average"
+DRAG = "slope-drag"
+THRESHOLD = "slope-threshold"
+MANUAL = "slope-manual"
+SHAKEN = "slope-base"
+QUAKE = "slope-quake"
+SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
+RIGID = "sliding block"
+# The shaking
+CYCLES = 4
+RATE = 2.0  # Hz
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are computed from finished cases."""
+    pair = tuple(cases(THRESHOLD))
+    needs = tuple((case.name, "dda") for case in pair)
+    return (Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)),)
+
+
+def sliding(scene: Scene, history: History) -> np.ndarray:
+    """Return u_t + tan(phi) u_n of the centroid [m]."""
+    along = history.columns["horizontal_displacement"]
+    across = history.displacement
+    return np.asarray(along + friction.coefficient(scene) * across)
+
+
+def acceleration(scene: Scene, history: History) -> float:
+    """Return the acceleration of u_t + tan(phi) u_n over the second half of a run [m/s2].
+
+    The scheme of constant acceleration keeps D = D0 + V0 t + a t^2 / 2 at any three instants.
+    """
+    z = sliding(scene, history)
+    n = len(history.time)
+    quarter = n // 4
+    middle = n - 1 - quarter
+    gained = z[n - 1] - 2 * z[middle] + z[middle - quarter]
+    return float(gained / (quarter * scene.time.step) ** 2)
+
+
+def identity(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return what the sliding identity leaves, and how far the block is ahead [m]."""
+    if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
+        return {"acceleration": acceleration(scene, history)}
+    free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
+    difference = np.max(np.abs(sliding(scene, history) - free)) / friction.run_out(scene, scene.time.duration)
+    offset = history.columns["horizontal_displacement"][-1] - free[-1]
+    return {"largest difference": float(difference), "offset": float(offset)}
+
+
+def against_rigid(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
+    slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
+    rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
+    return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
+
+
+def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+    """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
+    below, above = (acceleration(case, finished.needed_history(case.name, "dda")) for case in pair)
+    low, high = (case.load.slope for case in pair)
+    return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
+
+
+def offset(case: Scene) -> Band:
+    """Return the way by which springs that give put a sliding block ahead [m]."""
+    return near(friction.penalty_offset(case), SETTLED)
+
+
+def dragged(case: Scene) -> Band:
+    """Return the way that a block slides under a discount [m]."""
+    free_displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+    ahead = friction.penalty_offset(case)
+    return about(float(free_displacement[-1]) + ahead, SETTLED * ahead)
+
+
+def sliding_rate(case: Scene) -> Band:
+    """Return the acceleration of a block that slides [m/s2]."""
+    return about(friction.sliding_acceleration(case), 1e-6 * friction.along(case))
+
+
+def lost_energy(case: Scene) -> Band:
+    """Return what friction and cohesion take over the run-out [J]."""
+    normal_force = case.block.mass * friction.across(case)
+    sliding_resistance = friction.coefficient(case) * normal_force + case.block.mass * friction.adhesion(case)
+    return near(sliding_resistance * friction.run_out(case, case.time.duration), 1e-3)
+
+
+def late_waves(case: Scene) -> Band:
+    """Return by how much points of a base that begin to slip late change the run-out."""
+    return about(0.0, 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration)
+
+
+def shaken(case: Scene) -> dict[str, Band]:
+    """Return the slide on a base that shakes, and its distance from that of a rigid mass [m]."""
+    resisted = friction.coefficient(case) * friction.across(case)
+    stretch = case.block.mass * resisted / (2 * case.contact.shear)
+    late = resisted * case.time.step / (2 * RATE)  # a phase that begins a step late, until the next one
+    rigid = rigid_motion(case)
+    return _beside(rigid.at([rigid.end])[0][0], 2 * CYCLES * stretch + late)
+
+
+def in_an_earthquake(case: Scene) -> dict[str, Band]:
+    """Return the same on a base that follows a record of several frequencies [m]."""
+    rigid = rigid_motion(case, smooth=True)
+    ends = [*(t for t, _ in rigid.switches[1:]), case.time.duration]
+    durations = [end - t for (t, direction), end in zip(rigid.switches, ends, strict=True) if direction]
+    resisted = friction.coefficient(case) * friction.across(case)
+    shear_frequency = math.sqrt(2 * case.contact.shear / case.block.mass)
+    late = math.fsum(durations) * (1 / shear_frequency + case.time.step)
+    return _beside(rigid.at([rigid.end])[0][0], resisted * (late + 2 * len(durations) / shear_frequency**2))
+
+
+def lag(case: Scene) -> Band:
+    """Return how far DDA lags behind the exact block."""
+    return APART, friction.lag(case)
+
+
+def _beside(slide: float, allowed: float) -> dict[str, Band]:
+    return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}

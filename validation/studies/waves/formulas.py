@@ -1,0 +1,63 @@
+"""The study of waves: columns as wave guides, joints, a transmitting base, and a site under a record."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+
+from validation.engine.finished import Derived
+from validation.gates.gate import Gate
+from validation.scenes.scene import Scene, load_scene
+from validation.studies.waves import rows
+from validation.studies.waves.rows import curves as curves
+from validation.suite.bands import APART, gate
+
+SITE = "waves-site"
+USUAL = {"time.alpha": 0.5, "time.delta": 1.0, "time.step": 0.01, "time.steps": 900}
+CONVERGED = 0.005  # of the surface's maximum and of the whole history
+
+
+def usual_site() -> Scene:
+    """Return the site under the usual scheme of DDA at a usual step."""
+    return load_scene(SITE).with_values(USUAL).model_copy(update={"name": f"{SITE}-usual"})
+
+
+def scenes() -> tuple[str | Scene, ...]:
+    """Return the scenes: those of the library, joints for every resolution, the site twice."""
+    joints = {wave.scene.name: wave.scene for wave in rows.jointed()}
+    return "waves-blocks", *rows.OTHERS, *joints.values(), "waves-base", SITE, usual_site()
+
+
+@functools.cache
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that are measured on histories."""
+    needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
+    return (
+        *(wave.row(rows.travelled) for wave in rows.travelling()),
+        *(wave.row(rows.parted) for wave in rows.jointed()),
+        *(wave.row(rows.sent_back) for wave in rows.returned()),
+        Derived(needs[-1][0], "order", needs, rows.joint_order),
+    )
+
+
+def gates() -> tuple[Gate, ...]:
+    """Return all gates of the study."""
+    return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *site())
+
+
+def site() -> Iterator[Gate]:
+    """Yield the gates on the site against the exact layers."""
+    why = (
+        "40 blocks a wavelength of 8 Hz in the softest layer, c dt/h at most 0.7, average acceleration: closed forms "
+        "give a phase error below 1e-3 a wavelength at 8 Hz and far below at what carries the motion"
+    )
+    for solver in ("dda", "fem"):
+        for metric in ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max"):
+            yield gate(SITE, (solver, "layers"), metric, (APART, CONVERGED), why, uncertainty=1e-4)
+
+
+def fem_too() -> tuple[tuple[str, str], ...]:
+    """Return the cases that line elements run beside the blocks."""
+    return tuple(
+        dict.fromkeys((w.scene.name, w.solver) for w in (*rows.travelling(), *rows.jointed()) if w.solver == "fem")
+    )

@@ -1,0 +1,255 @@
+"""A register of claims: what somebody says, how that is tested, what comes out.
+
+A claim is data of a file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
+*confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that
+carry the condition, and *refuted* otherwise. The expected verdict is a gate of the register's study. There are two
+registers: of the paper (`studies.paper`) and of other publications (`studies.literature`).
+"""
+
+from __future__ import annotations
+
+import enum
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.engine.judge import HORIZON
+from validation.gates.gate import Gate, value_text
+from validation.metrics.catalogue import SOLO
+from validation.metrics.columns import settling_step
+from validation.metrics.values import QUANTITIES
+from validation.runs.history import Array
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
+from validation.suite.bands import about, cases, gate
+
+REGISTER = "claims"  # the name under which gates find the register's rows
+READ = tuple(metric for metric in SOLO if metric != HORIZON)  # what claims may read: no two codes are compared
+Needs = tuple[tuple[str, str], ...]
+
+
+class Finding(enum.IntEnum):
+    """What comes out of a test of a claim."""
+
+    REFUTED = 0
+    CONDITIONAL = 1
+    CONFIRMED = 2
+
+    @property
+    def words(self) -> str:
+        """The verdict in words."""
+        return ("refuted", "confirmed under a condition", "confirmed")[self]
+
+
+@dataclass(frozen=True)
+class Band:
+    """A band for a measured number, both edges inside."""
+
+    number: str
+    low: float
+    high: float
+
+    def holds(self, numbers: Mapping[str, float]) -> bool:
+        """Whether the number was measured and lies inside."""
+        return self.low <= numbers.get(self.number, np.nan) <= self.high
+
+
+class Evidence:
+    """The finished cases, as the measures of claims read them."""
+
+    def __init__(self, finished: Finished) -> None:
+        self.finished = finished
+
+    def number(self, case: str, metric: str, solver: str = "dda") -> float:
+        """Return a metric of a case; NaN where it is no number."""
+        value = self.finished.rows[case, solver].metrics.get(metric)
+        return float(value) if isinstance(value, float | int) else np.nan
+
+    def scaled(self, case: str, quantity: str, solver: str = "dda") -> Array:
+        """Return a history over its static value."""
+        history = self.finished.history(case, solver)
+        if history is None:
+            return np.zeros(0)
+        return history.columns[QUANTITIES[quantity]] / self.number(case, f"{quantity}.static", solver)
+
+    def settles(self, case: str, quantity: str, tolerance: float = 0.01) -> float:
+        """Return the first step from which a quantity stays within a tolerance of static; NaN if never."""
+        step = settling_step(self.scaled(case, quantity), 1.0, tolerance)
+        return step if isinstance(step, float) else np.nan
+
+
+Measure = Callable[[Evidence], dict[str, float]]
+Tests = dict[str, tuple[Iterable[str | tuple[str, str]], Measure]]
+"""By a claim's id: the cases that it needs, of DDA where no solver is named, and what it measures."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement, in our words, and its test.
+
+    Attributes
+    ----------
+    id, place, says
+        Stable id, place in the paper or who says it, the statement.
+    needs
+        The (case, solver) pairs that it is tested on.
+    measure
+        Function of the evidence that returns named numbers.
+    expected, why
+        The verdict that is expected, and why in one sentence.
+    printed
+        Bands that hold if the statement holds as printed.
+    condition, conditional
+        The condition under which it holds, and the bands that hold then.
+    numbers
+        What an independent program gives: number, value, and half a unit of its last digit.
+    sources, read, tested
+        Of a claim of other publications: keys of the bibliography, how much of them was read, and how it is tested.
+    """
+
+    id: str
+    place: str
+    says: str
+    needs: Needs
+    measure: Measure
+    expected: Finding
+    why: str
+    printed: tuple[Band, ...]
+    condition: str = ""
+    conditional: tuple[Band, ...] = ()
+    numbers: tuple[tuple[str, float, float], ...] = ()
+    sources: tuple[str, ...] = ()
+    read: str = ""
+    tested: str = ""
+
+    def finding(self, numbers: Mapping[str, float]) -> Finding:
+        """Return the verdict on measured numbers."""
+        if all(band.holds(numbers) for band in self.printed):
+            return Finding.CONFIRMED
+        holds = bool(self.conditional) and all(band.holds(numbers) for band in self.conditional)
+        return Finding.CONDITIONAL if holds else Finding.REFUTED
+
+    def row(self) -> Derived:
+        """Return the derived row that holds the verdict and the measured numbers."""
+        return Derived(REGISTER, self.id, self.needs, self._compute, READ)
+
+    def _compute(self, finished: Finished) -> Mapping[str, Value]:
+        numbers = self.measure(Evidence(finished))
+        values: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
+        return {"verdict": float(self.finding(numbers))} | values
+
+    def gate(self) -> Gate:
+        """Return the gate that holds the verdict to the expected one."""
+        reason = f"expected verdict: {self.expected.words}, since {self.why}"
+        return Gate(REGISTER, (self.id,), "verdict", float(self.expected), float(self.expected), reason)
+
+
+def _plain(number: float) -> Value:
+    """Return a number as JSON keeps it; a count stays an integer, whose zero is no rounding."""
+    if not np.isfinite(number):
+        return "undefined"
+    return number if isinstance(number, int) else float(number)
+
+
+def whole(number: float) -> float:
+    """Return a count of steps as an integer; NaN, where there is none, as it is."""
+    return int(number) if np.isfinite(number) else number
+
+
+def named(*scenes: str) -> dict[str, Scene]:
+    """Return the cases of built-in scenes by name."""
+    return {case.name: case for case in cases(*scenes)}
+
+
+def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
+    """Return the claims of a file with their tests."""
+    findings = {finding.words: finding for finding in Finding}
+    claims = []
+    for entry in tomllib.loads(path.read_text(encoding="utf-8"))["claim"]:
+        names, measure = tests[entry["id"]]
+        claim = entry | {
+            "needs": tuple((need, "dda") if isinstance(need, str) else need for need in names),
+            "measure": measure,
+            "expected": findings[entry["expected"]],
+            "printed": tuple(Band(*band) for band in entry["printed"]),
+            "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
+            "numbers": tuple(entry.get("numbers", ())),
+            "sources": tuple(entry.get("sources", ())),
+        }
+        claims.append(Claim(**claim))
+    return tuple(claims)
+
+
+# ---- the page -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Register:
+    """A register of claims, as its study, the command and the documentation have it."""
+
+    study: str
+    title: str
+    page: str  # in the documentation
+    speaker: str  # who says what it lists
+    introduction: str
+    claims: tuple[Claim, ...]
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gates on the verdicts of all claims, and on numbers that an independent program gives."""
+        gates = [claim.gate() for claim in self.claims]
+        for claim in self.claims:
+            for number, value, half in claim.numbers:
+                reason = f"independent program: {'half a unit of its last digit' if half else 'whole number'}"
+                gates.append(gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half))
+        return tuple(gates)
+
+    def rows(self) -> tuple[Derived, ...]:
+        """Return the rows of the register."""
+        return tuple(claim.row() for claim in self.claims)
+
+    def data(self, *fields: str) -> dict[str, Any]:
+        """Return fields of the claims, for the chapter."""
+        return {"claims": [{name: getattr(claim, name) for name in fields} for claim in self.claims]}
+
+
+def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the claims with their verdicts and measured numbers as plain data."""
+    measured = {row["name"]: row["metrics"] for row in rows}
+    listed = []
+    for claim in register.claims:
+        numbers = dict(measured.get(claim.id, {}))
+        verdict = numbers.pop("verdict", None)
+        fields = {name: getattr(claim, name) for name in ("id", "says", "place", "sources", "read", "tested")}
+        outcome = {
+            "verdict": None if verdict is None else Finding(int(verdict)).words,
+            "expected": claim.expected.words,
+            "condition": claim.condition,
+            "why": claim.why,
+            "numbers": numbers,
+        }
+        listed.append(fields | outcome)
+    return listed
+
+
+def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return a register as a Markdown page, from the derived rows of its study."""
+    parts = [f"# {register.title}", register.introduction]
+    for entry in entries(register, rows):
+        listed = "; ".join(f"{k} {value_text(v)}" for k, v in entry["numbers"].items())
+        condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
+        parts += [
+            f"## {entry['id']}: {entry['verdict']}{condition}",
+            f"**{register.speaker}** ({entry['place']}): {entry['says']}",
+        ]
+        if entry["sources"]:
+            links = ", ".join(f"[{key}](references.md#{key})" for key in entry["sources"])
+            parts.append(f"**Source:** {links}; {entry['read']}.")
+        if entry["tested"]:
+            parts.append(f"**Tested:** {entry['tested']}.")
+        parts += [f"**Measured:** {listed}.", f"**Why:** {entry['why']}."]
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,200 @@
+"""The gates that a user's solver goes through, what each of them tells, and what a history shows in place of a report.
+
+A solver that is one function reports no modes and no static solution. Its history shows them all the same: where a
+damped motion ends, and with which root of the step it gets there (`history`).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from validation.engine.case import Case
+from validation.engine.finished import Derived
+from validation.engine.judge import reads
+from validation.engine.study import Study
+from validation.gates.gate import Gate
+from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
+from validation.scenes.scene import Scene, load_scene
+from validation.suite.bands import about, near
+from validation.suite.folders import get_study, judged_studies
+from validation.suite.own_solver import block_data
+from validation.suite.own_solver.history import FREQUENCY, PENCIL
+from validation.theory import spectra
+from validation.theory.spectra import rounding
+
+JUDGED = "dda"  # whose place a user's solver takes
+GROUPS = {  # in the order in which a person looks: a fault in one shows in those after it
+    "statics": "displacement at rest: load, springs, Young's modulus, size",
+    "frequency": "natural frequency, whatever damps it: mass, springs, alpha",
+    "damping": "damping ratio: delta, gg",
+    "start": "first step: initial acceleration, first row",
+    "digits": "displacement, step by step",
+    "pressure": "contact pressure: its formula, its time",
+}
+# Gates on scenes with another datum each, which no slip of the scheme reaches: they are judged by themselves.
+BLOCK_DATA = "block data"
+BLOCK_DATA_WORDS = "width and height, Poisson's ratio, plane strain, shear springs, place of the load"
+REPORTABLE = frozenset({HISTORY, STATIC, MODES, REFERENCE})  # what a user's solver, or a reference, can report
+FIRST = 1e-3  # relative: what a file of few digits may lose in the first row
+SHOWN = ("displacement.static", "mode1.frequency", "mode1.damping", "mode1.measured_damping")  # by a history
+
+
+def _start() -> Iterator[Gate]:
+    """Yield the gates on the first step and on what follows from it, from zero and from consistent acceleration."""
+    first = "the first step from rest, to three digits: a wrong initial acceleration changes it by half or by all of it"
+    history = "matrix pencil on the displacement, which holds the ratio and, with alpha and gg, the natural frequency"
+    same = "same equations, rounding apart (see the core study)"
+    for scene in starts():
+        high, pair, frequency = rounding(scene), (JUDGED, "dda-textbook"), spectra.dda_frequency(scene)
+        ratio = spectra.damping_ratio(scene, frequency)
+        yield Gate(scene.name, pair, "displacement.max", 0, FIRST, first, until=scene.time.step)
+        if scene.time.discount == 1:  # a slip in gg changes the root, and is one of damping
+            yield Gate(scene.name, (JUDGED,), "mode1.frequency", *near(frequency, FREQUENCY), history)
+        yield Gate(scene.name, (JUDGED,), "mode1.measured_damping", *about(ratio, PENCIL), history)
+        for metric in ("displacement.max", "pressure.max"):
+            yield Gate(scene.name, pair, metric, 0, high, same)
+
+
+# what gates may see of a solver: a kind of scene in words, and whether a scene is of it
+KINDS: dict[str, Callable[[Scene], bool]] = {
+    "a rectangle that is no square": lambda s: math.dist(*s.block.outline[:2]) != math.dist(*s.block.outline[1:3]),
+    "Poisson's ratio": lambda s: s.block.poisson != 0,
+    "plane strain": lambda s: s.block.hypothesis == "plane strain" and s.block.poisson != 0,
+    "shear springs of their own stiffness": lambda s: s.contact.shear != s.contact.stiffness,
+    "an off-centre load": lambda s: s.load.eccentricity != 0,
+    "an outline that is no rectangle": lambda s: s.block.vertices is not None,
+    "a shear load": lambda s: s.load.traction != 0,
+    "gravity": lambda s: s.load.gravity != 0,
+    "contact that opens": lambda s: s.contact.law == "unilateral",
+    "friction": lambda s: s.contact.friction is not None,
+    "a base that moves": lambda s: s.load.base_motion is not None,
+    "a gap or a velocity at the start": lambda s: s.contact.gap != 0 or s.block.velocity != 0,
+    "viscous damping": lambda s: s.damping.present,
+}
+
+
+def unseen(scenes: Iterable[Scene]) -> list[str]:
+    """Return the kinds of scenes that none of some scenes is."""
+    every = list(scenes)
+    return [kind for kind, is_one in KINDS.items() if not any(is_one(scene) for scene in every)]
+
+
+@functools.cache
+def starts() -> tuple[Scene, ...]:
+    """Return the scenes in which the initial acceleration counts: average acceleration, with and without discount."""
+    plain = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    undiscounted = [plain.with_values({"time.start": start}, label=True) for start in ("zero", "consistent")]
+    return (*undiscounted, plain.with_values({"time.start": "consistent", "time.gg": 0.95}, label=True))
+
+
+START = Study(
+    "own-solver",
+    "Your own solver",
+    "Initial accelerations, of which the paper's scenes have one only, and data of the block that they never change.",
+    (*starts(), *block_data.scenes()),
+    (JUDGED, "dda-textbook"),
+    gates=lambda: (*_start(), *block_data.gates(JUDGED)),
+)
+
+
+# ---- which gates ----------------------------------------------------------------------------------------------------
+
+
+@functools.cache
+def study_of(name: str) -> Study:
+    """Return a study whose gates the tests judge, by name; without the repeats of timings, of which no gate speaks."""
+    return START if name == START.name else replace(get_study(name), timed=False)
+
+
+@functools.cache
+def gates() -> Mapping[str, tuple[str, Gate]]:
+    """Return every gate of the suite that the tests judge: id to study and gate."""
+    return {gate.id: (study, gate) for study in judged_studies() for gate in get_study(study).gates()}
+
+
+@functools.cache
+def applying() -> Mapping[str, tuple[str, Gate]]:
+    """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone."""
+    on_start = {gate.id: (START.name, gate) for gate in START.gates()}
+    return {name: study_and_gate for name, study_and_gate in gates().items() if applies(*study_and_gate)} | on_start
+
+
+@functools.cache
+def cases(study: str) -> Mapping[tuple[str, str], Case]:
+    """Return the cases of a study by scene and solver."""
+    return {(case.scene.name, case.solver): case for case in study_of(study).cases()}
+
+
+@functools.cache
+def asked() -> Mapping[tuple[str, str], frozenset[str]]:
+    """Return the metrics that the gates read of each case, by scene and solver."""
+    metrics_by_case: dict[tuple[str, str], set[str]] = {}
+    for study, gate in gates().values():
+        for case, metric in reads(gate, recipes(study)):
+            metrics_by_case.setdefault(case, set()).add(metric)
+    return {case: frozenset(metrics) for case, metrics in metrics_by_case.items()}
+
+
+@functools.cache
+def recipes(study: str) -> Mapping[tuple[str, str], Derived]:
+    """Return the derived rows of a study."""
+    return study_of(study).recipes()
+
+
+def applies(study: str, gate: Gate) -> bool:
+    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history.
+
+    What a user's solver has no way to report, such as the solves of a step, is not asked of it.
+    """
+    if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
+        return False
+    case = cases(study)[gate.cases[0]]
+    if case.scene.column is not None:
+        return False
+    return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
+
+
+def group(gate: Gate, scene: Scene) -> str:
+    """Return which of `GROUPS` a gate belongs to, or `BLOCK_DATA`."""
+    if scene.name in block_data.datum_of():
+        return BLOCK_DATA
+    if gate.metric.startswith("pressure."):
+        return "pressure"
+    if gate.metric in ("displacement.static", "displacement.final"):
+        return "statics"
+    if gate.metric.startswith("mode1.") and "frequency" in gate.metric:
+        return "frequency"
+    if gate.metric.startswith(("mode1.", "contact.", "energy.")):
+        return "damping"
+    return "start" if gate.until == scene.time.step else "digits"
+
+
+# ---- what a solver does not report ----------------------------------------------------------------------------------
+
+
+def lacking(gate: Gate, scene: Scene, parts: Collection[str]) -> str | None:
+    """Return the part of the contract without which a gate measures nothing, None where a solver has what it takes.
+
+    Parameters
+    ----------
+    gate, scene
+        A gate and the scene of its judged side.
+    parts
+        What the solver reports beside its history, among "modes" and "static".
+    """
+    if shown_by_history(gate, scene):
+        return None
+    if gate.metric.endswith(".static"):
+        return None if "static" in parts else "static"
+    return "modes" if MODES in CATALOGUE[gate.metric].needs and "modes" not in parts else None
+
+
+def shown_by_history(gate: Gate, scene: Scene) -> bool:
+    """Whether the history shows what a gate of one solver asks for."""
+    if len(gate.pair) != 1 or gate.metric not in SHOWN:
+        return False
+    rests = gate.metric == "displacement.static" and scene.name in block_data.datum_of()
+    return rests or (scene.block.poisson == 0 and scene.block.vertices is None)

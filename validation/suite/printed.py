@@ -1,0 +1,79 @@
+"""Numbers that somebody printed, as a table of comma-separated values in the folder of a study.
+
+Its entry ``[[gate]]`` says where they are, of which scene a line is, and by which of its keys::
+
+    numbers = "errors.csv"
+    scene = "methods-locked-{scheme}"
+    by = ["contact.stiffness", "time.step"]
+
+The first lines of such a table::
+
+    scheme,    contact.stiffness, time.step=0.01, time.step=0.002
+    constant,  1e9,               0.557273246,    0.507955225
+
+A column that the scene's pattern names fills it in; a key, or a key and its value, picks the case. What stands under a
+key and its value is a number of the entry's only metric, under any other name one of the metric of that name, as far as
+the entry's ``metrics``, where it has some, name it. An empty place is no number. Lines that begin with # are remarks.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from validation.scenes.scene import Scene
+
+
+def printed_numbers(
+    path: Path, entry: dict[str, Any], cases_of: Callable[[str], Sequence[Scene]]
+) -> Mapping[str, Mapping[str, str]]:
+    """Return the numbers of a table as their texts, by case and metric.
+
+    Parameters
+    ----------
+    path
+        The table.
+    entry
+        That of the gates; ``scene``, ``by`` and ``metrics`` are taken out of it.
+    cases_of
+        Function of a scene's name that returns its cases.
+
+    Raises
+    ------
+    ValueError
+        A line is of no case or of several.
+    """
+    pattern = entry.pop("scene")
+    keys = entry.pop("by", ())
+    metrics = entry.pop("metrics", ())
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    numbers: dict[str, dict[str, str]] = {}
+    for line in csv.DictReader(lines, skipinitialspace=True):
+        words = {column: text.strip() for column, text in line.items() if text and text.strip()}
+        name = pattern.format(**words)
+        values = {key: float(words[key]) for key in keys if key in words}
+        for column, text in words.items():
+            key, equals, value = column.partition("=")
+            unpicked = metrics and not equals and column not in metrics
+            if unpicked or column in keys or f"{{{column}}}" in pattern:
+                continue
+            picked = values | {key: float(value)} if equals else values
+            (metric,) = metrics if equals else (column,)
+            subject = _case(path, cases_of(name), picked) if picked else name
+            numbers.setdefault(subject, {})[metric] = text
+    return numbers
+
+
+def _case(path: Path, cases: Sequence[Scene], values: Mapping[str, float]) -> str:
+    """Return the name of the one case that has these values."""
+    matching = []
+    for case in cases:
+        if all(math.isclose(operator.attrgetter(key)(case), value) for key, value in values.items()):
+            matching.append(case.name)
+    if len(matching) != 1:
+        raise ValueError(f"{path}: {dict(values)} must be of one case, got {', '.join(matching) or 'none'}")
+    return matching[0]
