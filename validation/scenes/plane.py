@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import cached_property
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -29,36 +30,6 @@ class PlaneBlockSection(Section):
     def _check(self) -> Self:
         check_polygon(self.vertices, 0, 1)
         return self
-
-
-class GridSection(Section):
-    """An upright rectangle with its lower left corner at the origin, cut into equal blocks."""
-
-    width: Annotated[Positive, Key("m", "in x", "W")]
-    height: Annotated[Positive, Key("m", "in y", "H")]
-    blocks: Annotated[tuple[Count, Count], Key("", "in x and in y", "n")]
-    pattern: Annotated[
-        Literal["squares", "triangles"], Key("", "triangles: each cell cut from lower left to upper right", "")
-    ] = "squares"
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        count = math.prod(self.blocks) * (2 if self.pattern == "triangles" else 1)
-        if count > MOST_BLOCKS:
-            raise ValueError(f"blocks must be at most {MOST_BLOCKS} in all, got {count}")
-        return self
-
-    @property
-    def polygons(self) -> tuple[Polygon, ...]:
-        """Corners of every block, row by row from below."""
-        along, up = self.blocks
-        xs = [self.width * i / along for i in range(along + 1)]
-        ys = [self.height * j / up for j in range(up + 1)]
-        polygons: list[Polygon] = []
-        for (low, high), (left, right) in itertools.product(itertools.pairwise(ys), itertools.pairwise(xs)):
-            a, b, c, d = (left, low), (right, low), (right, high), (left, high)
-            polygons += [(a, b, c, d)] if self.pattern == "squares" else [(a, b, c), (a, c, d)]
-        return tuple(polygons)
 
 
 class ClampSection(Section):
@@ -101,7 +72,8 @@ class ObserveSection(Section):
 class PlaneSection(Section):
     """Blocks of one strain in the plane, glued along all edges that they share, and the elastic body of their outline.
 
-    The blocks are stated one by one (`[[plane.block]]`) or by `[plane.grid]`. At each end of a shared edge stand a
+    The blocks are stated one by one (`[[plane.block]]`), or as an upright rectangle with its lower left corner at the
+    origin that is cut into equal blocks (`width`, `height`, `subdivide`). At each end of a shared edge stand a
     normal and a shear spring of `glue` times Young's modulus, for unit thickness.
     """
 
@@ -115,16 +87,28 @@ class PlaneSection(Section):
         tuple[Real, Real, Real], Key("Pa", "s_xx, s_yy, s_xy, whose tractions act on all of the outline", "σ")
     ] = (0.0, 0.0, 0.0)
     gravity: Annotated[tuple[Real, Real], Key("m/s2", "acceleration in x and y", "g")] = (0.0, 0.0)
+    width: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "W")] = None
+    height: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "H")] = None
+    subdivide: Annotated[tuple[Count, Count] | None, Key("blocks", "of it in x and in y", "")] = None
+    pattern: Annotated[
+        Literal["squares", "triangles"],
+        Key("", "of its blocks; triangles: each cell cut from lower left to upper right", "", ("subdivide",)),
+    ] = "squares"
     block: Annotated[tuple[PlaneBlockSection, ...], Field(max_length=MOST_BLOCKS)] = ()
-    grid: GridSection | None = None
     clamp: tuple[ClampSection, ...] = ()
     load: tuple[EdgeLoadSection, ...] = ()
     observe: ObserveSection
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if bool(self.block) == (self.grid is not None):
-            raise ValueError(f"needs blocks or a grid, got {'both' if self.block else 'neither'}")
+        stated = [name for name in ("width", "height", "subdivide") if getattr(self, name) is not None]
+        if self.block and stated:
+            raise ValueError(f"block and {stated[0]} exclude each other, got both")
+        if not self.block and len(stated) < 3:
+            raise ValueError(f"needs blocks, or width, height and subdivide, got {' and '.join(stated) or 'none'}")
+        count = math.prod(self.subdivide or (1,)) * (2 if self.pattern == "triangles" else 1)
+        if count > MOST_BLOCKS:
+            raise ValueError(f"subdivide must make at most {MOST_BLOCKS} blocks, got {count}")
         if not self.load and not any(self.stress) and not any(self.gravity):
             raise ValueError("needs a load: stress, gravity or [[plane.load]], got none")
         return self
@@ -135,14 +119,29 @@ class PlaneSection(Section):
         return True
 
     @property
+    def rectangle(self) -> tuple[float, float] | None:
+        """Width and height of the rectangle that is cut [m], None where blocks are stated one by one."""
+        return None if self.width is None or self.height is None else (self.width, self.height)
+
+    @cached_property
     def polygons(self) -> tuple[Polygon, ...]:
-        """Corners of every block."""
-        return tuple(block.vertices for block in self.block) if self.grid is None else self.grid.polygons
+        """Corners of every block, of a rectangle row by row from below."""
+        if self.rectangle is None or self.subdivide is None:
+            return tuple(block.vertices for block in self.block)
+        width, height = self.rectangle
+        along, up = self.subdivide
+        xs = [width * i / along for i in range(along + 1)]
+        ys = [height * j / up for j in range(up + 1)]
+        polygons: list[Polygon] = []
+        for (low, high), (left, right) in itertools.product(itertools.pairwise(ys), itertools.pairwise(xs)):
+            a, b, c, d = (left, low), (right, low), (right, high), (left, high)
+            polygons += [(a, b, c, d)] if self.pattern == "squares" else [(a, b, c), (a, c, d)]
+        return tuple(polygons)
 
     @property
     def outline_polygons(self) -> tuple[Polygon, ...]:
-        """Polygons that tile the body, as few as there are: the rectangle of a grid, or the blocks."""
-        if self.grid is None:
+        """Polygons that tile the body, as few as there are: the rectangle, or the blocks."""
+        if self.rectangle is None:
             return self.polygons
-        width, height = self.grid.width, self.grid.height
+        width, height = self.rectangle
         return (((0.0, 0.0), (width, 0.0), (width, height), (0.0, height)),)

@@ -125,7 +125,7 @@ def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:
         young=plane.young,
         poisson=plane.poisson,
         hypothesis=plane.hypothesis,
-        rectangle=plane.grid is not None,
+        rectangle=plane.rectangle is not None,
         clamps=tuple(clamp.edge for clamp in plane.clamp),
         tractions=tuple((load.edge, load.traction) for load in plane.load),
         stress=plane.stress,
