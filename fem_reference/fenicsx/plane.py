@@ -26,8 +26,9 @@ class PlaneBody(Block):
         self.request = request
         points = np.asarray(request["points"], float)
         self.size = float(np.ptp(points))
-        self.outline = SimpleNamespace(origin=np.zeros(2), size=self.size, centroid=np.zeros(2))
-        self.mesh = make_mesh(request, self.outline)
+        outline: Any = SimpleNamespace(origin=np.zeros(2), size=self.size, centroid=np.zeros(2))
+        self.outline = outline
+        self.mesh = make_mesh(request, outline)
         self.mesh.topology.create_connectivity(1, 2)
         self.space = vector_space(self.mesh, request["degree"])
         self._edges()
@@ -134,12 +135,12 @@ class PlaneBody(Block):
         motions[1::2, 1] = 1.0
         motions[0::2, 2] = -x[:, 1]
         motions[1::2, 2] = x[:, 0]
-        momenta = []
+        rows = []
         for motion in motions.T:
             vector = self.K.createVecRight()
             vector.array[:] = motion
-            momenta.append((self.M * vector).array.copy())
-        momenta = np.array(momenta)
+            rows.append((self.M * vector).array.copy())
+        momenta = np.array(rows)
         D.array[:] -= motions @ np.linalg.solve(momenta @ motions, momenta @ D.array)
         return D
 
@@ -152,7 +153,8 @@ class PlaneBody(Block):
         s_xx, s_yy, s_xy = r["stress"]
         error = lam * ufl.div(u) * ufl.Identity(2) + 2 * shear * strain(u)
         error = error - ufl.as_matrix([[s_xx, s_xy], [s_xy, s_yy]])
-        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])  # of the reference cell, where a linear stress is largest
+        # The corners of the reference cell, where a linear stress is largest.
+        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
         expression = dolfinx.fem.Expression(error, corners)
         cells = np.arange(self.mesh.topology.index_map(2).size_local, dtype=np.int32)
         try:

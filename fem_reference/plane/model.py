@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
-from skfem import Basis, FacetBasis, LinearForm
+from skfem import FacetBasis, LinearForm
 
 from fem_reference.mesh import elasticity
 from fem_reference.plane.body import PlaneBody, Point, facets_between, mesh_of
@@ -34,7 +34,7 @@ def _push_y(v, w):  # type: ignore[no-untyped-def]
 
 @LinearForm
 def _traction(v, w):  # type: ignore[no-untyped-def]
-    """s n . v of a constant stress."""
+    """S n . v of a constant stress."""
     s_xx, s_yy, s_xy = w.stress
     return (s_xx * w.n[0] + s_xy * w.n[1]) * v[0] + (s_xy * w.n[0] + s_yy * w.n[1]) * v[1]
 
@@ -55,10 +55,14 @@ class PlaneModel:
         fixed = [self.basis.get_dofs(self._facets(*clamp)).all() for clamp in body.clamps]
         self.free = np.setdiff1d(np.arange(self.basis.N), np.concatenate([*fixed, np.empty(0, int)]).astype(int))
         mass = elasticity.mass(self.basis, body.density)
-        stiffness = elasticity.stiffness(self.basis, body)  # type: ignore[arg-type]  # which reads its moduli alone
+        stiffness = self.elastic()
         self.M = csr_array(mass[self.free][:, self.free])
         self.K = csr_array(stiffness[self.free][:, self.free])
         self.F = self._load(mass)[self.free]
+
+    def elastic(self) -> csr_array:
+        """Return the stiffness of all unknowns [N/m]."""
+        return elasticity.stiffness(self.basis, self.body)  # type: ignore[arg-type]  # which reads its moduli alone
 
     def _facets(self, start: Point, end: Point) -> NDArray[np.int64]:
         return facets_between(self.mesh, start, end, self.body.slack)
@@ -89,10 +93,11 @@ class PlaneModel:
         """
         if start == end:
             u, v, _ = elasticity.point_values(self.basis, np.array(start))
-            return np.array([u, v])[:, self.free]
+            return np.array([u, v], dtype=float)[:, self.free]
         edge = self._edge(start, end)
         length = float(np.hypot(*np.subtract(end, start)))
-        return np.array([_push_x.assemble(edge), _push_y.assemble(edge)])[:, self.free] / length
+        rows: Array = np.array([_push_x.assemble(edge), _push_y.assemble(edge)])[:, self.free] / length
+        return rows
 
     @cached_property
     def motions(self) -> Array:

@@ -33,7 +33,8 @@ TAKE_COLUMNS = {
     "unilateral": ("dda", "column-events"),
     "frictional": ("dda", "column-events"),
 }
-TAKE_PLANE = {"solvers": ["dda", "fem"], "columns": ["displacement"]}  # of a scene of blocks in the plane, unless it says
+# what runs a scene of blocks in the plane that does not say, and what is kept
+TAKE_PLANE = {"solvers": ["dda", "fem"], "columns": ["displacement"]}
 TAKE_RIGID = ("rigid-exact",)  # the solvers that run a scene of rigid boxes which names none
 
 

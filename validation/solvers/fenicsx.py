@@ -29,8 +29,15 @@ from validation.scenes.plane import PlaneSection
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_CUTS, OF_SUB_BLOCKS, locked_frequency, opening_frequency, problem_of
-from validation.solvers.plane import body_of
+from validation.solvers.fem import (
+    MESH_SECTIONS,
+    OF_CUTS,
+    OF_SUB_BLOCKS,
+    locked_frequency,
+    opening_frequency,
+    problem_of,
+)
+from validation.solvers.plane import body_of, elastic_model, points_and_cells
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 
@@ -137,8 +144,12 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.SLOPE, features.FRICTION}) | features.LOADS | {
-        features.PLANE
+    handles = features.LOADS | {
+        features.SUB_BLOCKS,
+        features.UNILATERAL,
+        features.SLOPE,
+        features.FRICTION,
+        features.PLANE,
     }
     sections = (*MESH_SECTIONS, "plane")
     unread = (*OF_SUB_BLOCKS, *OF_CUTS)
@@ -208,9 +219,7 @@ class RemoteMesh(Prepared):
     def highest_frequency(self) -> float:
         """Return the largest frequency of the same mesh, every point of its base closed [rad/s]."""
         if self.scene.plane is not None:
-            from fem_reference.plane.model import PlaneModel
-
-            return PlaneModel(body_of(self.scene, self.scene.plane)).highest_frequency()
+            return elastic_model(self.scene, self.scene.plane).highest_frequency()
         problem = problem_of(self.scene)
         if features.UNILATERAL in features.of(self.scene):
             return opening_frequency(problem, full=True)
@@ -304,16 +313,14 @@ def request(scene: Scene) -> dict[str, Any]:
 
 def request_of_plane(scene: Scene, plane: PlaneSection) -> dict[str, Any]:
     """Return blocks in the plane as the worker takes them: the elastic body of their outline on the mesh of `fem`."""
-    from fem_reference.plane.body import mesh_of
-
     body = body_of(scene, plane)
-    mesh = mesh_of(body)
+    points, cells = points_and_cells(body)
     names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
     observe = plane.observe
     return {
         **{name: getattr(body, name) for name in names},
-        "points": mesh.p.T.tolist(),
-        "cells": mesh.t.T.tolist(),
+        "points": points,
+        "cells": cells,
         "observe": {"place": observe.place, "direction": observe.direction, "less": observe.less},
         "moved": None,
     }

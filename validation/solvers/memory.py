@@ -54,7 +54,8 @@ def _plane(plane: PlaneSection, elements: int) -> tuple[float, str]:
     blocks = len(plane.polygons)
     if not elements:
         unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
-        return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "plane.block" if plane.rectangle is None else "plane.subdivide"
+        field = "plane.block" if plane.rectangle is None else "plane.subdivide"
+        return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), field
     sides = plane.rectangle or (1.0, 1.0)
     cells = elements**2 * max(sides) / min(sides) * len(plane.outline_polygons)
     unknowns = 8.0 * cells

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import dda
     import fem_reference
     from fem_reference.plane.body import PlaneBody
+    from fem_reference.plane.model import PlaneModel
 
 MODES = 4  # that are reported
 ELEMENTS = 8  # along the shorter side, if the scene does not say: a slender cantilever's tip to 2e-6
@@ -82,13 +83,11 @@ class PlaneMesh(Prepared):
     """The elastic body of the blocks' outline, by `fem`."""
 
     def __init__(self, scene: Scene, plane: PlaneSection, scheme: fem_reference.Scheme) -> None:
-        from fem_reference.plane.model import PlaneModel
-
         self.scene = scene
         self.plane = plane
         self.scheme = scheme
         with naming(scene):
-            self.model = PlaneModel(body_of(scene, plane))
+            self.model = elastic_model(scene, plane)
             self.row = observed_row(plane, self.model.observer)
 
     def highest_frequency(self) -> float:
@@ -110,9 +109,11 @@ class PlaneMesh(Prepared):
 
     def modes(self) -> tuple[Mode, ...]:
         """Return the lowest modes, the one with the largest share of the static response first."""
-        from validation.solvers.fem import to_modes
-
-        return to_modes(sorted(self.model.modes(self.scheme, MODES), key=lambda mode: -mode.share))
+        modes = sorted(self.model.modes(self.scheme, MODES), key=lambda mode: -mode.share)
+        return tuple(
+            Mode(mode.frequency, mode.share, (complex(mode.eigenvalues[0]), complex(mode.eigenvalues[1])))
+            for mode in modes
+        )
 
 
 def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:
@@ -133,6 +134,21 @@ def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:
         elements=ELEMENTS if scene.fem.elements is None else scene.fem.elements,
         degree=scene.fem.degree,
     )
+
+
+def elastic_model(scene: Scene, plane: PlaneSection) -> PlaneModel:
+    """Return the elements of a scene's body."""
+    from fem_reference.plane.model import PlaneModel
+
+    return PlaneModel(body_of(scene, plane))
+
+
+def points_and_cells(body: PlaneBody) -> tuple[list[list[float]], list[list[int]]]:
+    """Return the points [m] and the cells of a body's mesh, for another program."""
+    from fem_reference.plane.body import mesh_of
+
+    mesh = mesh_of(body)
+    return mesh.p.T.tolist(), mesh.t.T.tolist()
 
 
 def observed_row(plane: PlaneSection, observer: Callable[[Point, Point], Array]) -> Array:

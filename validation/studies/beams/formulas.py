@@ -1,8 +1,8 @@
 r"""Closed forms and derived rows of beams that are cut into blocks.
 
-Squares of side w/n, glued by springs of g E at each end of a shared edge (E the modulus, unit thickness). In bending each
-row of squares turns as a rigid body, and the square at x_i (in sides, from the middle) takes the axial strain e_i that
-minimises, for unit curvature and modulus,
+Squares of side w/n, glued by springs of g E at each end of a shared edge (E the modulus, unit thickness). In bending
+each row of squares turns as a rigid body, and the square at x_i (in sides, from the middle) takes the axial strain e_i
+that minimises, for unit curvature and modulus,
 
     U = sum [ e_i^2/2 + g (x_i - e_i)^2 + g/4 ] + (g/4) sum (e_{i+1} - e_i)^2,      EI(g, n) / EI = 24 U / n^3.
 
@@ -44,11 +44,12 @@ def over_elements() -> tuple[Derived, ...]:
             for solver in ("dda", "fenicsx"):
                 if solver in case.run.solvers:
                     needs = ((case.name, solver), (case.name, "fem"))
-                    rows.append(Derived(case.name, f"{solver} over fem", needs, partial(_ratios, case.name, solver), READ))
+                    compute = partial(_ratios, case.name, solver)
+                    rows.append(Derived(case.name, f"{solver} over fem", needs, compute, READ))
     for name in CONVERGING:
         names = [case.name for case in cases(name)]
-        needs = tuple((case, solver) for case in names for solver in ("dda", "fem"))
-        rows.append(Derived(name, ORDER, needs, partial(_orders, names), READ))
+        of_order = tuple((case, solver) for case in names for solver in ("dda", "fem"))
+        rows.append(Derived(name, ORDER, of_order, partial(_orders, names), READ))
     return tuple(rows)
 
 
@@ -98,8 +99,8 @@ def bending_ratio(squares: int, glue: float) -> float:
 def tip_of_squares(case: Scene) -> Band:
     """Return bounds of the end's displacement of a cantilever of squares that are glued with finite stiffness [m].
 
-    Rows turn against each other in their joints, which lie at j h: the integral of (L - z)^2 is a sum, without the clamp
-    from below and with it from above.
+    Rows turn against each other in their joints, which lie at j h: the integral of (L - z)^2 is a sum, without the
+    clamp from below and with it from above.
     """
     shear, bending, rows = _parts(case)
     places = np.arange(rows + 1) / rows
