@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.runs.history import History
 from validation.metrics.values import or_nan
+from validation.runs.history import History
 from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
