@@ -11,7 +11,7 @@ export OMP_NUM_THREADS ?= 1
 # Compiled files are kept: to compile the tests and the packages in every process takes longer than most tests.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
-.PHONY: report report-all field gallery test test-all gates lint portable docs api bench mutants dist clean
+.PHONY: report report-all field gallery test test-all gates lint portable docs bench mutants dist clean
 
 report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
@@ -49,8 +49,6 @@ docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the resu
 	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery --docs ..; \
 	else echo "no results for the gallery: make report, then make docs again"; fi
 	@echo site/index.html
-
-api: docs  ## the former name: the reference is a part of the site
 
 bench: $(READY)  ## speed, as ratios in one run against named rivals
 	$(BIN)/python reports/bench.py

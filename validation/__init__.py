@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from validation.advice.spectra import damping as damping
     from validation.errors import InputError as InputError
     from validation.errors import PlausibilityWarning as PlausibilityWarning
-    from validation.errors import SceneError as SceneError
     from validation.runs.history import History as History
     from validation.runs.modes import Mode as Mode
     from validation.runs.run import Outcome as Outcome
@@ -39,7 +38,6 @@ _NAMES = {
     "PlausibilityWarning": "errors",
     "Run": "runs.run",
     "Scene": "scenes.scene",
-    "SceneError": "errors",  # the name of InputError in version 0.1
     "Solution": "solution",
     "Solver": "solvers.contract",
     "advise": "advice.advice",
@@ -51,7 +49,7 @@ _NAMES = {
     "solve": "solution",
 }
 # They warn of values that were probably not meant.
-_OF_A_SCENE = ("advise", "advise_across", "advise_engine", "damping", "response", "solve")
+_OF_A_SCENE = ("advise", "advise_across", "damping", "response", "solve")
 __all__ = sorted(_NAMES)
 
 

@@ -48,4 +48,3 @@ class PlausibilityWarning(UserWarning):
     """A value of a scene that no rock, soil or concrete has, most often one in another unit."""
 
 
-SceneError = InputError  # its name in version 0.1

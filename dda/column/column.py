@@ -217,8 +217,8 @@ class Column:
             If the height is outside the column.
         """
         total = float(self.faces[-1])
-        if not 0 <= height <= total:
+        if not 0 <= height <= total * (1 + NEAR):  # a sum of layers in another order is not the same in its last digit
             raise ValueError(f"height: must be between 0 and {total:g} m, got {height!r}")
         below = self.faces + NEAR * total
-        block = max(int(np.searchsorted(below, height, side="left")) - 1, 0)
-        return block, (height - float(self.faces[block])) / float(self.heights[block])
+        block = max(int(np.searchsorted(below, min(height, total), side="left")) - 1, 0)
+        return block, (min(height, total) - float(self.faces[block])) / float(self.heights[block])

@@ -87,6 +87,11 @@ def highest_frequency(column: Column) -> float:
 
     Rigid contacts that may open or slip are left out: they only lower it. So is the dashpot of a half-space, which
     leaves the foot of a column free.
+
+    Raises
+    ------
+    OverflowError
+        If mass or stiffness leave the range of double precision.
     """
     from scipy.linalg import eigh
 
@@ -103,6 +108,8 @@ def highest_frequency(column: Column) -> float:
     last = len(M) - 1
     if last < 0:  # nothing moves
         return 0.0
+    if not (np.isfinite(M).all() and np.isfinite(K).all()):
+        raise OverflowError("mass or stiffness of the column is out of range")
     return math.sqrt(max(float(eigh(K, M, eigvals_only=True, subset_by_index=[last, last])[0]), 0.0))
 
 

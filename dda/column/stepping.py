@@ -261,6 +261,8 @@ def _factorised(matrix: Bands) -> Callable[[Array], Array]:
     from scipy.linalg import cholesky_banded
     from scipy.linalg.lapack import dpbtrs
 
+    if not np.isfinite(matrix.rows).all():
+        raise OverflowError("the matrix of the step is out of range")
     factor = np.asfortranarray(cholesky_banded(matrix.rows, lower=True))
 
     def solve(right: Array) -> Array:

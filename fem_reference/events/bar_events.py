@@ -20,13 +20,10 @@ from fem_reference.events.bars_events import BarsMotion
 from fem_reference.events.bars_march import CLOSED, OPEN, JointPiece
 from fem_reference.events.bars_model import Bar, BarJoint, BarsProblem
 from fem_reference.events.column_drive import constant
-from fem_reference.events.switches import Switch
+from fem_reference.events.switches import Switch, Work
 from fem_reference.problem.bar import BarProblem
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
-
-ADVANCES = 12_000
-"""Times that the base or the top goes on at most; so many, of granite on stiff springs, took a minute."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +68,7 @@ class BarMotion:
         )
 
 
-def solve(problem: BarProblem, end: float, limit: int = 10_000) -> BarMotion:
+def solve(problem: BarProblem, end: float, limit: int = 10_000, work: Work | None = None) -> BarMotion:
     """The exact motion of a bar from t = 0 to `end` [s].
 
     Parameters
@@ -82,6 +79,8 @@ def solve(problem: BarProblem, end: float, limit: int = 10_000) -> BarMotion:
         Last instant [s].
     limit
         Greatest number of switches.
+    work
+        Counts the terms of series, and bounds them; None: without a bound.
 
     Raises
     ------
@@ -93,7 +92,7 @@ def solve(problem: BarProblem, end: float, limit: int = 10_000) -> BarMotion:
     bar = Bar(problem.height, problem.density, problem.young, problem.velocity)
     spring = BarJoint("unilateral", problem.base_stiffness / problem.width, problem.gap)
     one_bar = BarsProblem((bar,), (spring,), problem.gravity, top=constant(problem.pressure))
-    bars = bars_events.solve(one_bar, end, limit=limit, advances=ADVANCES)
+    bars = bars_events.solve(one_bar, end, limit=limit, work=work)
     base = bars.joints[0]
     pieces = [] if base is None else base.pieces
     closed_at_start, switches = _from_rest(pieces, bars.switches)

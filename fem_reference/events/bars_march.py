@@ -22,6 +22,7 @@ from flint import arb, ctx
 from fem_reference.events.bars_model import BarJoint, BarsProblem, function_of
 from fem_reference.events.column_drive import Drive
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
+from fem_reference.events.switches import Work
 
 OPEN = "open"
 CLOSED = "closed"
@@ -159,6 +160,8 @@ class Joint:
         unilateral = self.law.law == "unilateral"
         state = self._contact_state(relative) if unilateral else self._friction_state(relative)
         piece = self._piece(state, relative)
+        for function in (relative, piece.force, piece.opening):
+            function.count_terms()
         before = self.pieces[-1].state if self.pieces else None
         if any(arrived) or state != before:
             self.pieces.append(piece)
@@ -278,9 +281,9 @@ def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> 
     return Arrival(Wave(pieces, arb("inf")), arb(0))
 
 
-def nodes_of(problem: BarsProblem, end: float) -> tuple[list[Node | Joint], list[Wave], list[Wave]]:
+def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | Joint], list[Wave], list[Wave]]:
     """Nodes from the base upwards, and the waves that leave foot and top of each bar."""
-    rates = problem.rates(end)
+    rates = problem.rates(end, work)
     bars = problem.bars
     up: list[Wave] = []
     down: list[Wave] = []

@@ -10,6 +10,7 @@ from flint import acb, acb_poly, arb
 
 from fem_reference.events.column_drive import Drive, Piece, Polynomial, Ricker, Sine, still
 from fem_reference.events.exponential_sum import ExponentialSum, Rate, Rates, distinct
+from fem_reference.events.switches import Work
 from fem_reference.problem.checks import require, require_numbers
 
 
@@ -164,8 +165,8 @@ class BarsProblem:
             below = 1 / arb(self.base_impedance)
         return 1 / self.bars[joint].impedance + below
 
-    def rates(self, end: float) -> Rates:
-        """The rates of the motion, and the sizes of its numbers."""
+    def rates(self, end: float, work: Work) -> Rates:
+        """The rates of the motion, and the sizes of its numbers; its work is counted."""
         values: list[Rate] = []
         for number, joint in enumerate(self.joints):
             if joint is not None and math.isfinite(joint.stiffness):
@@ -178,4 +179,4 @@ class BarsProblem:
         sizes += [float(self.static_force(0)) / z]
         sizes += [size_of(piece) for piece in base] + [size_of(piece) / z for piece in top]
         travel = arb(min(float(bar.travel) for bar in self.bars))
-        return Rates(distinct(values), arb(max(sizes) or 1.0), travel, arb(end))
+        return Rates(distinct(values), arb(max(sizes) or 1.0), travel, arb(end), work)

@@ -22,11 +22,13 @@ import numpy as np
 from flint import arb, arb_poly
 from numpy.typing import ArrayLike
 
-from fem_reference.events.column_flow import ANGLE, OPEN, SLIPS, expand, step_length
+from fem_reference.events.block_flow import term_count
+from fem_reference.events.column_drive import ANGLE
+from fem_reference.events.column_flow import OPEN, SLIPS, expand, rate_of, step_length
 from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import bits_of, check_request, precision
-from fem_reference.events.switches import ProvenMotion, with_enough_digits
+from fem_reference.events.switches import ProvenMotion, Work, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -269,7 +271,22 @@ def _evaluated(series: Sequence[arb_poly], shares: Array, length: float, angle: 
     return results[0], results[1], results[2]
 
 
-def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> ColumnMotion:
+def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
+    """Return how many terms of series a motion takes with its contacts open throughout, and closed throughout.
+
+    Those of switches, and of computations in more digits, come on top.
+    """
+    with precision(bits_of(DIGITS)):
+        model = ColumnModel(problem)
+        rate = model.bounds.rate
+        open_rate = max(rate_of(model, [OPEN] * len(model.contacts)), model.bounds.soft)
+        terms = term_count(1.0) * model.size
+    return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
+
+
+def solve(
+    problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000, work: Work | None = None
+) -> ColumnMotion:
     """The exact motion of a column from t = 0 to `end` [s].
 
     Parameters
@@ -283,6 +300,8 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
         the switches are not enclosed to `PROMISED`.
     limit
         Greatest number of switches.
+    work
+        Counts the terms of series, and bounds them; None: without a bound.
 
     Raises
     ------
@@ -291,18 +310,19 @@ def solve(problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int =
     TooManySwitchesError
         If there are more switches than `limit`.
     TooMuchWorkError
-        If the motion takes more steps than are allowed; the column oscillates too fast for its length.
+        If the motion takes more work than is allowed.
     LostDigitsError
         If switches amplify what the motion may be off until nothing can be decided.
     NoContactStateError
         If no state of the joints agrees with the motion that follows from it.
     """
     check_request(end, digits)
+    work = Work() if work is None else work
 
     def motion_in(digits: int) -> ColumnMotion:
         with precision(bits_of(digits)):
             model = ColumnModel(problem)
-            march = March(model, problem.base_motion(), problem.pressure(), float(end), limit)
+            march = March(model, problem.base_motion(), problem.pressure(), float(end), limit, work)
             march.run()
         return ColumnMotion(
             problem,

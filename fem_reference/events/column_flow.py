@@ -16,7 +16,7 @@ import numpy as np
 from flint import arb, arb_poly
 
 from fem_reference.events.block_flow import FLOAT_TERMS, ROUNDING, first_doubt, term_count
-from fem_reference.events.column_drive import TAIL_SUM, Piece
+from fem_reference.events.column_drive import ANGLE, Piece, tail_sum
 from fem_reference.events.column_model import BASE, ColumnModel
 from fem_reference.events.enclosure import Fall, Local, ball, first_fall
 from fem_reference.events.switches import LostDigitsError
@@ -27,8 +27,6 @@ CLOSED = 1
 STICKS = 1
 SLIPS = 2
 """States of a contact; `SLIPS` towards +, -`SLIPS` towards -."""
-ANGLE = 6.0
-"""Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
 MOST_LOOKS = 5000
 """Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more."""
 
@@ -79,8 +77,8 @@ def rate_of(model: ColumnModel, states: Sequence[int]) -> float:
 def step_length(model: ColumnModel, states: Sequence[int], forces: Forces) -> float:
     """Return the longest step; infinite where nothing bounds it [s]."""
     # A column in flight has no rate; the metric of the error, which grows with `soft`, bounds its steps.
-    rate = max(rate_of(model, states), model.bounds.soft, forces.base.frequency, forces.pressure.frequency)
-    return ANGLE / rate
+    rate = max(rate_of(model, states), model.bounds.soft)
+    return min(ANGLE / rate, forces.base.longest_step(), forces.pressure.longest_step())
 
 
 def expand(
@@ -100,7 +98,8 @@ def expand(
     angle = rate_of(model, states) * length
     full = count is None
     if count is None:
-        count = max(28, term_count(min(max(angle, 1.0), 2 * ANGLE)) + 6)
+        of_motion = term_count(min(max(angle, 1.0), 2 * ANGLE)) + 6
+        count = max(28, of_motion, *(piece.term_count(length) + 2 for piece in forces))
     zero = arb(0)
     # The last two terms of a drive belong to its tail, so that further terms of the motion follow from the last two.
     known = count - 2 if full else count
@@ -149,12 +148,14 @@ def expand(
     if not full:
         return Segment(length, terms, stretches, base, pressure, arb("inf"), (arb("inf"), arb("inf")))
     tails = [piece.tail(start.time, length, count - 2) for piece in forces]
-    # From here on the drives add nothing: |C_(k+2)| <= (x^2 |C_k| + x (k+1) |C_(k+1)|) / ((k+1)(k+2)), x the angle.
+    # From here on the drives add nothing. With w of the springs and d of the half-space, x = (w + d) length = angle,
+    # |C_(k+2)| <= (w^2 |C_k| + d (k+1) |C_(k+1)|) length^2 / ((k+1)(k+2)): terms below M x^k / k! stay so, for
+    # w^2 + d (w + d) <= (w + d)^2. M is that of the last two.
     ratio = arb(angle) / count
     last = max((abs(c).upper() for c in terms[-1]), default=zero)
     before = max((abs(c).upper() for c in terms[-2]), default=zero)
     largest = max((last * ratio).upper(), (before * ratio * ratio * 1.1).upper())
-    tail = (TAIL_SUM * arb(count) ** 3 * largest).upper()
+    tail = (tail_sum(ratio) * arb(count) ** 3 * largest).upper()
     return Segment(length, terms, stretches, base, pressure, tail, (tails[0].upper(), tails[1].upper()))
 
 

@@ -41,11 +41,9 @@ from fem_reference.events.switches import (
     NoContactStateError,
     Switch,
     TooManySwitchesError,
-    TooMuchWorkError,
+    Work,
 )
 
-STEPS = 50_000
-"""Greatest number of steps of a motion."""
 FEW = 4
 """Terms that are looked at first where contacts begin at zero: most show at once where they go."""
 
@@ -72,8 +70,9 @@ class Node:
 class March:
     """The motion of a column from t = 0 on, node by node."""
 
-    def __init__(self, model: ColumnModel, base: Course, pressure: Course, end: float, limit: int) -> None:
+    def __init__(self, model: ColumnModel, base: Course, pressure: Course, end: float, limit: int, work: Work) -> None:
         self.model = model
+        self.work = work
         self.courses = base, pressure
         self.end = end
         self.limit = limit
@@ -115,8 +114,6 @@ class March:
         for border in [*breaks, self.end]:
             limit = arb(border)
             while self.start.time < limit:
-                if len(self.nodes) >= STEPS:
-                    raise TooMuchWorkError(self._now, f"{STEPS} steps are the limit")
                 self._step(limit)
             if border < self.end:
                 before = self.forces.base
@@ -158,6 +155,8 @@ class March:
         remaining = (limit - start.time).upper()
         length = min(step_length(model, self.states, self.forces), float(remaining) * (1 + 1e-9))
         segment = expand(model, self.states, start, self.forces, length)
+        self.work.reach(self._now)
+        self.work.add(len(segment.terms) * model.size)
         self.nodes.append(Node(start, tuple(self.states), self.forces, self.error, tuple(self._travels_now())))
         self._measure(segment)
         self._grow(segment)
@@ -181,6 +180,7 @@ class March:
         touches: list[arb] = []
         falling = None
         if high > share:
+            self.work.add(len(segment.terms) * len(doubtful))
             falling = watched.first_fall(share, high, doubtful, touches)
         self.touches += [float(start.time + (arb(share) + touch) * arb(length)) for touch in touches]
         if falling is None:
@@ -357,6 +357,7 @@ class March:
                 trial[c] = SLIPS * sign if sign else OPEN
             length = 1.0 / (model.bounds.rate or 1.0)
             segment = expand(model, trial, self.start, self.forces, length, count)
+            self.work.add(count * model.size)
             decided = self._directions(segment, undecided)
             if decided:
                 for c, (order, sign) in decided.items():

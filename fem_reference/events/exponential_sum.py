@@ -18,6 +18,7 @@ from typing import Any
 from flint import acb, acb_poly, arb, arb_poly
 
 from fem_reference.events.enclosure import first_fall, polynomial
+from fem_reference.events.switches import Work
 
 Rate = Any
 """arb, or acb of a sine; python-flint's stubs know no arithmetic of either."""
@@ -44,6 +45,7 @@ class Rates:
     velocity: arb  # size of the velocities [m/s]
     travel: arb  # shortest time of a wave along a bar [s]
     end: arb  # last instant [s]
+    work: Work = field(default_factory=Work, compare=False)
 
     def index(self, rate: Rate) -> int:
         """Number of a rate in the table.
@@ -208,6 +210,7 @@ class ExponentialSum:
         flat = bool(abs(self(start)) < floor)
         while start < end:
             here = self.shifted(start).without_noise(integrated)
+            here.count_terms()
             rates = [abs(self.rates.values[number]) for number in here.terms if number]
             length = (end - start).mid()
             if rates:
@@ -220,6 +223,16 @@ class ExponentialSum:
                 return self._polished((start + fall.at).mid())
             start = (start + length).mid()
         return None
+
+    def count_terms(self) -> None:
+        """Count the products of which the power series is made.
+
+        Raises
+        ------
+        TooMuchWorkError
+            If the motion takes more than it is allowed.
+        """
+        self.rates.work.add(ORDER * sum(Q.length() for Q in self.terms.values()))
 
     def series(self) -> list[arb]:
         """Coefficients of the power series about zero, as many as `ORDER` and those of polynomials."""

@@ -86,7 +86,37 @@ class TooManySwitchesError(HorizonError):
 
 
 class TooMuchWorkError(HorizonError):
-    """The motion takes more steps or pieces than was allowed."""
+    """The motion takes more work than was allowed."""
+
+
+@dataclass
+class Work:
+    """What the search of a motion has cost, counted in terms of series, so that its bound is no processor's."""
+
+    limit: float = math.inf  # terms
+    report: Callable[[float], None] | None = None  # takes the instant that has been reached [s]
+    part: float = 1.0  # of the limit that the present computation may reach, so that one after it has as much
+    terms: float = 0.0  # so far, those of computations in fewer digits included
+    reached: float = 0.0  # instant [s]
+
+    def reach(self, time: float) -> None:
+        """Take note of the instant that the motion has reached [s]."""
+        self.reached = time
+        if self.report is not None:
+            self.report(time)
+
+    def add(self, terms: float) -> None:
+        """Count further terms.
+
+        Raises
+        ------
+        TooMuchWorkError
+            If they are more than the limit in all.
+        """
+        self.terms += terms
+        most = self.limit * self.part
+        if self.terms > most:
+            raise TooMuchWorkError(self.reached, f"its series have more than {most:.3g} terms")
 
 
 class AccumulationError(HorizonError):

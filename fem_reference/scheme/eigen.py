@@ -104,8 +104,16 @@ def highest_frequency(problem: Problem, full: bool = False, model: Model | None 
 
 
 def largest_frequency(K: csr_array, M: csr_array) -> float:
-    """Largest natural frequency of M D'' + K D = 0 [rad/s]."""
+    """Largest natural frequency of M D'' + K D = 0 [rad/s].
+
+    Raises
+    ------
+    OverflowError
+        If mass or stiffness leave the range of double precision.
+    """
     size = K.shape[0]
+    if not (np.isfinite(K.data).all() and np.isfinite(M.data).all()):
+        raise OverflowError("mass or stiffness of the elements is out of range")
     if size <= DENSE:
         return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
     largest = eigsh(csc_array(K), 1, csc_array(M), which="LA", v0=_start_vector(size), return_eigenvectors=False)

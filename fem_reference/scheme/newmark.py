@@ -35,9 +35,19 @@ class Work:
     nonzeros: int = 0  # stored entries of the last matrix factorised [-]
 
     def factor(self, matrix: csr_array) -> Callable[[Array], Array]:
-        """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides."""
+        """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides.
+
+        Raises
+        ------
+        FloatingPointError
+            If rounding has made it singular.
+        """
         # Positive definite: pivots on the diagonal are safe and keep the symmetric fill-in.
-        lu = splu(csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        options = {"SymmetricMode": True}
+        try:
+            lu = splu(csc_array(matrix), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+        except RuntimeError as error:
+            raise FloatingPointError(f"the matrix of the step is singular in double precision: {error}") from None
         self.factorisations += 1
         self.nonzeros = int(matrix.nnz)
 

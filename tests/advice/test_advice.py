@@ -121,15 +121,34 @@ def test_two_steps_solve_it_where_gg_is_below_one() -> None:
     assert "does not converge" in advise(scene, damping=0.05).sentence
 
 
-def test_settling_is_that_of_the_history() -> None:
+LOADS = {
+    "pressure": {"load.pressure": 2e6},
+    "pull": {"load.pressure": -2e6},
+    "weight": {"load.gravity": 9.81},
+    "both": {"load.pressure": 2e6, "load.gravity": 9.81},
+    "opposed": {"load.pressure": -1e4, "load.gravity": 9.81},
+    "ramp": {"load.pressure": 2e6, "load.gravity": 9.81, "load.ramp": 0.2},
+}
+
+
+@pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
+def test_settling_is_that_of_the_history_under_the_loads_of_the_scene(load: dict[str, float]) -> None:
     from validation.engine.case import Case
     from validation.engine.measure import execute
 
-    solution = advise(BASE, damping=0.2).solutions[0]
-    case = BASE.with_values(solution.settings | {"time.steps": 500})
+    scene = BASE.with_values({"load.pressure": 0.0} | load)
+    solution = advise(scene, damping=0.2).solutions[0]
+    case = scene.with_values(solution.settings | {"time.steps": 500})
     row, _ = execute(Case(case, "dda"), "key", "test")
     assert solution.settling_steps == row.metrics["displacement.settling_step"]
     assert solution.settling_seconds == pytest.approx(solution.settling_steps * solution.value)
+
+
+def test_loads_without_a_static_displacement_settle_nowhere() -> None:
+    from validation.advice.advice import NO_STATIC
+
+    solution = advise(BASE.with_values({"load.pressure": 0.0, "load.traction": 1e5}), damping=0.2).solutions[0]
+    assert (solution.settling_steps, solution.settling_from) == (None, NO_STATIC)
 
 
 def test_a_long_settling_is_the_envelope_of_the_history() -> None:
@@ -176,6 +195,13 @@ def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
         advise(BASE, damping=wanted, solve_for=solve_for)
     with pytest.raises(InputError, match="one value must be picked"):
         damping(load_scene("figures-3-4"))
+
+
+def test_a_contact_that_opens_is_what_is_blamed() -> None:
+    with pytest.raises(InputError) as error:
+        advise(BASE.with_values({"load.gravity": 9.81, "contact.law": "unilateral"}), damping=0.05)
+    assert error.value.value == "one with unilateral contact"
+    assert "dda-validate contact" in str(error.value.advice)
 
 
 def test_damping_tells_parts_and_the_mode_that_flips() -> None:

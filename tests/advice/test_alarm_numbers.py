@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import made_case, made_group, made_history, made_row
+from oracles.made_cases import made_case, made_group, made_row
 
 from validation.advice import budget
-from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, fixed_discount, removed_motion
+from validation.advice.alarms import RINGING, TENSION, Alarm, alarms, fixed_discount
 from validation.report.appendix import alarms as appendix_alarms
 from validation.report.chapters import budget as chapters_budget
 from validation.report.chapters.text import case_label
@@ -30,46 +30,6 @@ def raised(scene: Scene, rows: dict[str, dict[str, Any]], histories: dict[str, H
     kept = {(scene.name, solver): made_row(solver, metrics, scene.name) for solver, metrics in rows.items()}
     finished = SimpleNamespace(rows=kept, history=lambda _, solver: (histories or {}).get(solver))
     return {alarm.kind: alarm for alarm in alarms([scene], finished)}
-
-
-# ---- what damping removed -----------------------------------------------------------------------------------------
-
-
-def test_the_kinetic_part_of_the_damping_is_the_root_of_gg_a_step() -> None:
-    """At gg = 0.81 each step keeps 0.9 by kinetic damping; of |lambda| = 0.45 half is left for the algorithm."""
-    scene = SCENE.with_values({"time.gg": 0.81})
-    squares = [0.25, 0.25**2, 0.25**3, 0.25**4]
-    assert removed_motion(scene, 0.45) == pytest.approx(1 - math.sqrt(sum(squares) / 4), rel=1e-12)
-    assert removed_motion(scene, 0.0) == removed_motion(SCENE.with_values({"time.gg": 0.0}), 0.5) == 1.0
-
-
-def agreeing() -> dict[str, History]:
-    """DDA is 2 % from the bar; the bar is 50 % and DDA 53 % from the continuum, in relative L2."""
-    return {name: made_history(0.002, factor * REST) for name, factor in
-            {"dda": 1.53, "bar": 1.5, "fem": 1.2, "continuum": 1.0}.items()}  # fmt: skip
-
-
-def test_agreement_is_with_the_bar_and_the_time_error_is_the_bars() -> None:
-    rows = {"dda": {"mode1.spectral_radius": 0.1}, "bar": {}, "fem": {}, "continuum": {}}
-    alarm = raised(SCENE, rows, agreeing())[AGREEMENT]
-    removed = 1 - math.sqrt((1e-2 + 1e-4 + 1e-6 + 1e-8) / 4)
-    assert dict(alarm.values) == pytest.approx({"agreement": 0.02, "removed": removed, "time error": 0.5})
-    assert alarm.sentence == (
-        "DDA agrees with the elastic block to 2 % because both are damped: damping removed 95 % of the first mode's "
-        "motion, and the time error is 50 %"
-    )
-    assert alarm.record()["values"]["removed"] == float(f"{removed:.4g}") != round(removed, 2)
-
-
-def test_agreement_is_with_the_elements_where_no_bar_ran_and_is_told_from_the_time_error_alone() -> None:
-    histories = agreeing()
-    del histories["bar"]
-    rows = {"dda": {"mode1.spectral_radius": 0.1}, "fem": {}, "continuum": {}}
-    assert AGREEMENT not in raised(SCENE, rows, histories)  # 27.5 % from the elements, which are 20 % from the truth
-    histories["fem"] = made_history(0.002, 1.4 * REST)
-    assert raised(SCENE, rows, histories)[AGREEMENT].values["agreement"] == pytest.approx(0.13 / 1.4)
-    rows["dda"]["mode1.spectral_radius"] = 0.99  # takes 2 % of the motion: no alarm
-    assert AGREEMENT not in raised(SCENE, rows, histories)
 
 
 # ---- tension and ringing ------------------------------------------------------------------------------------------

@@ -3,11 +3,11 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from conftest import beside
 
-from validation.advice.alarms import AGREEMENT, RINGING, TENSION, Alarm, alarms, removed_motion
+from validation.advice.alarms import RINGING, TENSION, Alarm, alarms
+from validation.advice.coarse import AGREEMENT, SAMPLED
 from validation.engine.run import finish, run_study
 from validation.gates.gate import Gate
 from validation.scenes.scene import Scene, load_scene
@@ -24,22 +24,14 @@ def raised(scene: Scene, finished_cases: Path, directory: Path, *solvers: str) -
     }
 
 
-def test_agreement_by_damping_is_agreement_beside_what_it_cost(tmp_path: Path, finished_cases: Path) -> None:
-    coarse = STEPS.expand()[0]
-    alarm = raised(coarse, finished_cases, tmp_path)[AGREEMENT]
-    assert alarm.values["agreement"] == pytest.approx(0.0081, abs=5e-5)
-    assert alarm.values["removed"] > 0.9 and alarm.values["time error"] > 0.5
-    light = load_scene("figure-9").expand()[3]  # damped by gg, which the continuum has as well
+def test_agreement_by_damping_is_told_beside_what_agrees(tmp_path: Path, finished_cases: Path) -> None:
+    coarse, *_, fine = sorted(STEPS.expand(), key=lambda scene: -scene.time.step)
+    alarms_of_coarse = raised(coarse, finished_cases, tmp_path)
+    assert alarms_of_coarse[AGREEMENT].values["damping"] == pytest.approx(0.3722, abs=1e-4)
+    assert "0.81 %" in alarms_of_coarse[AGREEMENT].sentence and SAMPLED in alarms_of_coarse
+    assert not {AGREEMENT, SAMPLED} & raised(fine, finished_cases, tmp_path).keys()
+    light = load_scene("figure-9").expand()[3]  # damped by gg, which is meant
     assert AGREEMENT not in raised(light, finished_cases, tmp_path)
-
-
-def test_what_damping_removes_is_algorithmic() -> None:
-    scene = STEPS.expand()[1]
-    n = np.arange(1, 101)
-    assert removed_motion(scene, 0.9) == pytest.approx(1 - np.sqrt(np.mean(0.9 ** (2 * n))))
-    assert removed_motion(scene, 1.0) == 0.0
-    kinetic = scene.with_values({"time.gg": 0.81})
-    assert removed_motion(kinetic, 0.9) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path, finished_cases: Path) -> None:

@@ -103,3 +103,20 @@ def test_ringing_that_a_step_hides_is_told_by_its_period() -> None:
     period = 2 * math.pi / friction.normal_frequency(STANDS)
     assert f"of the period {period:.3g} s" in told.sentence
     assert told.values["phase"] == pytest.approx(2 * math.pi * STANDS.time.step / period)
+
+
+@pytest.mark.parametrize(
+    ("slope", "friction_angle", "shear", "speed"),
+    [(10.0, 30.0, 1e9, 0.0), (20.0, 60.0, 1e9, 0.0), (10.0, 30.0, 4e8, 0.25), (20.0, 30.0, 1e9, 0.89)],
+)
+def test_a_slip_is_hidden_only_where_the_exact_block_slips(
+    slope: float, friction_angle: float, shear: float, speed: float
+) -> None:
+    """Speeds over g / w_n in the second half of a second, by average acceleration at w_n dt = 0.09."""
+    values = {"load.slope": slope, "contact.friction": friction_angle, "contact.shear_stiffness": shear}
+    case = STANDS.with_values(values)
+    raised_kinds = {alarm.kind for alarm in advice.friction_alarms(case, {"dda": made_row("dda")})}
+    assert (advice.HIDES in raised_kinds) == (speed > 0)
+    exact = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "time.step": 2e-4, "time.steps": 5000}
+    slide = solve(case.with_values(exact), "dda").history.columns["slide_m"]
+    assert (slide[-1] - slide[2499]) / 0.5 / friction.creep_scale(case) == pytest.approx(speed, abs=0.06)

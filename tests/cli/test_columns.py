@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import typed
 
+from validation.cli import run
 from validation.cli.app import NUMERICAL_FAILURE
 
 STACK = """
@@ -60,3 +61,13 @@ def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
     assert done.returncode == NUMERICAL_FAILURE
     assert "needs more solves than its limit" in done.stdout
     assert "ALARM solve limit" in done.stdout
+
+
+def test_solve_says_how_long_an_exact_motion_takes_where_that_is_long(
+    stack: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert typed("solve", stack, "--solver", "column-events").stderr.count("takes at least") == 0
+    monkeypatch.setattr(run, "LONG_RUN", 0.0)
+    ended = typed("solve", stack, "--solver", "column-events")
+    assert ended.returncode == 0
+    assert ended.stderr.startswith("column-events: takes at least about ")

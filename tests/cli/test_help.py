@@ -61,9 +61,8 @@ def test_examples_run_as_they_stand(
     run = solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
     table = np.column_stack([run.time, -1000 * run.displacement])  # millimetres, downwards
     np.savetxt(tmp_path / "theirs.csv", table, delimiter=",", header="t,uy", comments="", fmt="%.17g")
-    shards = [["run", "my-scene.toml", "--shard", f"{i}/3", "--results", f"part-{i}"] for i in (1, 2, 3)]
     figures = [["run", "figures-3-4"]]
-    first = {"report": figures, "diff": figures, "merge": shards}
+    first = {"report": figures, "diff": figures}
     for words in (*first.get(name, []), *examples(name)):
         if words[0] == "diff":
             (tmp_path / "main").mkdir()
@@ -79,13 +78,7 @@ def test_every_command_stands_in_one_group_of_the_help() -> None:
         assert group in page
 
 
-@pytest.mark.parametrize(
-    ("work_of", "words"),
-    [("studies.pack.write_pack", ["export-pack", "pack"]), ("engine.run.finish", ["record", "--results", "results"])],
-)
-def test_what_takes_long_shows_a_bar(
-    work_of: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_takes_long_shows_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The bar starts while the first piece of work is still busy."""
     started = threading.Event()
 
@@ -94,5 +87,5 @@ def test_what_takes_long_shows_a_bar(
 
     monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
     monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
-    monkeypatch.setattr(f"validation.{work_of}", work)
-    assert typed(*words, cwd=tmp_path).stderr == "error: the bar is there\n"
+    monkeypatch.setattr("validation.problems.pack.write_pack", work)
+    assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: the bar is there\n"

@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import typer
-from conftest import typed
 from rich.console import Console
-from validation.studies.contact import pack as contact_pack
-from validation.studies.contact import slipping_pack
 
 from validation import load_scene, response
 from validation.advice import rayleigh
@@ -21,11 +18,8 @@ from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
 from validation.cli.printing import numbers, tables
 from validation.gates.changes import changes
-from validation.problems import pack as problems_pack
 from validation.report.figures import response as figures
 from validation.runs.run import Outcome, Run
-from validation.studies import pack
-from validation.studies.waves import pack as waves_pack
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 SITE = load_scene("waves-site").with_values({"time.steps": 10})
@@ -46,21 +40,6 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
 
 
 # ---- counts and colours -------------------------------------------------------------------------------------------
-
-
-def test_a_pack_counts_each_of_its_parts_under_its_own_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    for module, name, count in (
-        (pack, "write_pack", pack.Written(scenes=1, histories=2, bands=3)),
-        (contact_pack, "write_contact_pack", 4),
-        (slipping_pack, "write_slipping_pack", 5),
-        (waves_pack, "write_waves_pack", 6),
-        (problems_pack, "write_problems", 7),
-    ):
-        monkeypatch.setattr(module, name, lambda *_, count=count: count)
-    assert typed("export-pack", tmp_path / "p").stdout == (
-        f"wrote {tmp_path / 'p'}: 1 scenes, 2 histories, 3 bands; of contact that opens 4 exact numbers, "
-        "of contact that slips 5, of waves 6; 7 problems for any program\n"
-    )
 
 
 def test_what_got_worse_is_red_and_what_got_better_green(monkeypatch: pytest.MonkeyPatch) -> None:

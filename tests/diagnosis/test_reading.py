@@ -126,19 +126,6 @@ def test_times_in_milliseconds_are_a_slip_of_units() -> None:
     np.testing.assert_allclose(found.steps, 0.002)
 
 
-def test_the_names_of_the_former_room_still_work() -> None:
-    from validation import compare as room
-    from validation.compare import causes, diagnosis, reading
-    from validation.diagnosis import answer, judgement
-    from validation.diagnosis import causes as table
-    from validation.diagnosis import reading as files
-
-    assert room.compare is diagnosis.compare is judgement.compare
-    assert diagnosis.Answer is answer.Answer
-    assert causes.CAUSES is table.CAUSES
-    assert (reading.Foreign, reading.read) == (files.Foreign, files.read)
-
-
 # ---- histories that would take hours to judge -----------------------------------------------------------------------
 
 STEP = 0.002  # s

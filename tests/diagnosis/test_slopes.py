@@ -129,7 +129,6 @@ def test_noise_hides_no_model() -> None:
     assert wrong.values["friction-factor"] == pytest.approx(1.02567, rel=2e-3)
 
 
-HEAVIER = (1.1 * LOAD * math.sin(SLOPE), -1.1 * LOAD * math.cos(SLOPE))
 LIGHT: dict[str, object] = {"force": (0.0, 0.0), "gravity": 9.81}
 LIGHT_SCENE: dict[str, object] = {"load__gravity": 9.81, "load__slope": 15.2, "contact__friction": 15.0}
 

@@ -1,8 +1,7 @@
-"""Rows, windows, comparisons and the reference pack: each number is of its own case, steps and static value."""
+"""Rows, windows and comparisons: each number is of its own case, steps and static value."""
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 from faults import seams
 from oracles.made_cases import made_history, made_row
-from oracles.pages import table
 
 from validation.engine import measure, origin
 from validation.engine.case import Case
@@ -25,14 +23,12 @@ from validation.metrics import poles as pencil
 from validation.metrics.catalogue import pair, solo
 from validation.metrics.measurable import Measurable
 from validation.runs import provenance
-from validation.runs.files import read_csv
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
-from validation.studies import pack
 
 # ---- windows ------------------------------------------------------------------------------------------------------
 
@@ -213,69 +209,6 @@ def test_a_verdict_is_kept_with_its_gate_and_four_digits() -> None:
         "reference_uncertainty": 0.125,
         "alarms": [],
     }
-
-
-# ---- the reference pack -------------------------------------------------------------------------------------------
-
-ONE = load_scene("figures-3-4").with_values({"time.steps": 12, "fem.elements": 2})
-NAMES = {step: f"mine[time.step={step}]" for step in (0.01, 0.002)}
-
-
-def small_study() -> Study:
-    scene = ONE.model_copy(update={"name": "mine", "sweep": {"time.step": [0.01, 0.002]}})
-    gates = (
-        Gate(NAMES[0.01], ("dda", "bar"), "displacement.l2", 0.1, 0.2, "one"),
-        Gate(NAMES[0.002], ("dda", "bar"), "pressure.l2", 0.3, 0.4, "two", until=0.016),
-        Gate(NAMES[0.002], ("dda", "dda"), "displacement.final", -0.5, 0.5, "three", against=NAMES[0.01]),
-        Gate(NAMES[0.002], ("dda",), "displacement.static", -0.6, 0.6, "four", "own last value"),
-        Gate(NAMES[0.002], ("dda", "dda-textbook"), "displacement.l2", 0.0, 1.0, "not for others"),
-        Gate(NAMES[0.002], ("fem", "bar"), "displacement.l2", 0.0, 1.0, "no code of others"),
-    )
-    return Study("core", "", "", [scene], ("dda", "fem", "bar"), gates=lambda: gates)
-
-
-@pytest.fixture(scope="module")
-def packed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    directory = tmp_path_factory.mktemp("pack")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pack, "get_study", lambda name: small_study())
-        assert pack.write_pack(directory) == pack.Written(2, 4, 8)
-    return directory
-
-
-def test_each_history_of_a_pack_is_that_of_its_own_scene_and_solver(packed: Path) -> None:
-    paths = {path.name: path for path in (packed / "histories").iterdir()}
-    wanted = {f"mine_time.step_{step}.{solver}.csv": (step, solver)
-              for step in (0.01, 0.002) for solver in ("dda", "bar")}  # fmt: skip
-    assert paths.keys() == wanted.keys()
-    for name, (step, solver) in wanted.items():
-        scene = load_scene(packed / "scenes" / f"mine_time.step_{step}.toml")
-        exact = get_solver(solver).solve(ONE.with_values({"time.step": step})).history
-        found = read_csv(paths[name])
-        assert exact is not None and scene.time.step == step and np.array_equal(found.time, exact.time)
-        for column in ("displacement", "contact_pressure"):
-            assert np.array_equal(found.columns[column], exact.columns[column]), (name, column)
-    assert paths[min(wanted)].read_text().startswith("time,displacement,contact_pressure\n")
-
-
-def test_each_band_of_a_pack_says_what_its_gate_says(packed: Path) -> None:
-    bands = json.loads((packed / "bands.json").read_text())
-    slug = {step: f"mine_time.step_{step}" for step in NAMES}
-    own = [(slug[step], metric, 0.0, 1e-6, f"{slug[step]}.dda.csv", None)
-           for step in (0.01, 0.002) for metric in ("displacement.max", "pressure.max")]  # fmt: skip
-    fields = ("scene", "metric", "low", "high", "reference", "until")
-    assert [tuple(band[field] for field in fields) for band in bands] == [
-        *own,
-        (slug[0.01], "displacement.l2", 0.1, 0.2, f"{slug[0.01]}.bar.csv", None),
-        (slug[0.002], "pressure.l2", 0.3, 0.4, f"{slug[0.002]}.bar.csv", 0.016),
-        (slug[0.002], "displacement.final", -0.5, 0.5, f"{slug[0.01]}.dda.csv", None),
-        (slug[0.002], "displacement.static", -0.6, 0.6, None, None),
-    ]
-    assert [band["reason"] for band in bands[4:]] == ["one", "two", "three", "four"]
-    assert [band["reference_kind"] for band in bands[-2:]] == ["exact", "own last value"]
-    assert table(packed / "bands.csv") == [
-        {name: "" if value is None else str(value) for name, value in band.items()} for band in bands
-    ]
 
 
 # ---- provenance ---------------------------------------------------------------------------------------------------

@@ -1,8 +1,7 @@
-"""Runs beyond one process: one pool over all studies, killed workers, memory, shards and their merge."""
+"""Runs beyond one process: one pool over all studies, killed workers, memory, a cluster."""
 
 from __future__ import annotations
 
-import itertools
 import json
 import multiprocessing
 import os
@@ -14,14 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import SCENE, typed
 
-from validation.engine import cluster, executor, shards
+from validation.engine import cluster, executor
 from validation.engine.case import Case
 from validation.engine.run import run_cases, study_cases
-from validation.engine.shards import Shard
 from validation.engine.study import Study
-from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
@@ -175,115 +171,3 @@ def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(
     rows = {group.study.name: list(group.rows.values()) for group in ended}
     assert {row.outcome for row in rows["sweep"]} == {Outcome.COMPLETED}, [row.notes for row in rows["sweep"]]
     assert rows["large"][0].outcome is Outcome.REFUSED and "0.3 GB are available" in rows["large"][0].notes[-1]
-
-
-# ---- shards ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 7, 20])
-def test_every_case_is_in_one_shard_and_shards_are_alike(count: int, scene: Scene) -> None:
-    groups = [study_cases(sweep(scene, name, size, ("dda", "bar"))) for name, size in (("a", 3), ("b", 5))]
-    parts = [Shard(number, count).part(groups) for number in range(1, count + 1)]
-    keys = [list(shards.all_keys(part)) for part in parts]
-    assert sorted(itertools.chain.from_iterable(keys)) == sorted(set(shards.all_keys(groups)))
-    assert max(map(len, keys)) - min(map(len, keys)) <= 1
-    shared = {key for _, key in groups[0].keyed}
-    assert all(shared.isdisjoint(part[1].rows) and len(part) == 2 for part in parts)
-
-
-@pytest.fixture(scope="module")
-def sharded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with a scene file, its whole run and its run in three parts; some gates fail."""
-    place = tmp_path_factory.mktemp("sharded")
-    (place / "scene.toml").write_text(SCENE + SWEEP + GATE.format(0.05))
-    runs = [("whole", []), *((f"part-{n}", ["--shard", f"{n}/3"]) for n in (1, 2, 3))]
-    for name, options in runs:
-        done = typed("run", place / "scene.toml", "--results", place / name, "--jobs", "1", *options)
-        assert done.returncode == (1 if name == "whole" else 0), done.stderr
-        assert name == "whole" or not (place / name / "verdicts.json").exists()
-    return place
-
-
-def test_merged_shards_are_the_whole_run(sharded: Path, tmp_path: Path) -> None:
-    parts = [sharded / f"part-{n}" for n in (3, 1, 2)]
-    done = typed("merge", *parts, "--out", tmp_path / "all", "--json")
-    assert done.returncode == 1 and json.loads(done.stdout)["status"] == 1
-    whole, merged = Results(sharded / "whole"), Results(tmp_path / "all")
-    assert (merged.directory / "verdicts.json").read_bytes() == (whole.directory / "verdicts.json").read_bytes()
-    manifest = merged.whole("scene", histories=True)
-    assert {key: manifest[key] for key in ("cases", "comparisons", "alarms")} == {
-        key: whole.manifest("scene")[key] for key in ("cases", "comparisons", "alarms")
-    }
-    assert set(merged.rows()) == set(whole.rows())
-    passing = typed("merge", *parts, "--out", tmp_path / "again", "--baseline", sharded / "whole", "--quiet")
-    assert (passing.returncode, passing.stdout) == (0, "")
-
-
-def changed(sharded: Path, place: Path, **values: object) -> Path:
-    """Copy the record of the third part, which says something else."""
-    record = json.loads((sharded / "part-3" / "shards" / "3-of-3.json").read_text())
-    Results(place).write_json("shards/3-of-3.json", record | values)
-    return place
-
-
-def test_parts_that_are_not_those_of_one_run_are_refused_by_name(sharded: Path, tmp_path: Path) -> None:
-    one, two, three = (sharded / f"part-{number}" for number in (1, 2, 3))
-    record = shards.read_shards([one, two, three])[0].record
-    numpy = record["versions"] | {"numpy": "0.1"}
-    cases: list[tuple[list[Path], str]] = [
-        ([one], "not found: 2/3, 3/3"),
-        ([one, two, three, two], "shard 2/3: is there twice"),
-        ([one, sharded / "whole"], "whole: holds no finished shard"),
-        ([one, two, changed(sharded, tmp_path / "a", versions=numpy)], "version of numpy"),
-        ([one, two, changed(sharded, tmp_path / "b", studies={"scene": "0"})], "cases of scene"),
-        ([one, two, changed(sharded, tmp_path / "c", options=record["options"] | {"full": True})], "full"),
-        ([one, two, changed(sharded, tmp_path / "d", count=4)], "count: must be of as many parts"),
-        ([one, two, changed(sharded, tmp_path / "e", number="x")], "must be what a run writes: number"),
-        ([one, two, changed(sharded, tmp_path / "f")], "the row of scene[time.gg=0.99] dda is missing"),
-    ]
-    for directories, words in cases:
-        done = typed("merge", *directories, "--out", tmp_path / "out")
-        assert done.returncode == 2 and words in done.stderr and len(done.stderr.splitlines()) == 1, done.stderr
-        assert not (tmp_path / "out").exists()
-    done = typed("merge", one, two, three, "--out", one)
-    assert done.returncode == 2 and "--out: must be a new or empty directory" in done.stderr
-
-
-def test_another_version_of_the_suite_does_not_merge(
-    sharded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(shards, "version", lambda name: "0.0")
-    done = typed("merge", *(sharded / f"part-{n}" for n in (1, 2, 3)), "--out", tmp_path / "out")
-    assert done.returncode == 2 and "this installation: version of dda-validation: must be" in done.stderr
-
-
-@pytest.mark.parametrize("text", ["0/3", "4/3", "1", "a/b", "1/0", "-1/2", "1/2/3", "01/2"])
-def test_what_is_no_part_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match=r"^--shard: must be i/n") as error:
-        Shard.parse(text)
-    assert error.value.value == repr(text)
-
-
-def test_a_part_without_cases_is_none_and_options_of_judging_are_those_of_merge(tmp_path: Path) -> None:
-    (tmp_path / "scene.toml").write_text(SCENE.replace("steps = 50", "steps = 10") + '[run]\nsolvers = ["dda"]\n')
-    statuses = []
-    for part in ("1/2", "2/2"):
-        done = typed("run", tmp_path / "scene.toml", "--shard", part, "--results", tmp_path / "r", "--json")
-        statuses.append((done.returncode, json.loads(done.stdout)["cases"]))
-    assert statuses == [(0, 1), (0, 0)]
-    done = typed("merge", tmp_path / "r", "--out", tmp_path / "all", "--quiet")
-    assert done.returncode == 0 and len(Results(tmp_path / "all").rows()) == 1
-    done = typed("run", tmp_path / "scene.toml", "--shard", "1/2", "--require", "dda")
-    assert done.returncode == 2 and "--shard: goes without --require" in done.stderr
-
-
-@pytest.mark.parametrize(("solver", "memory_left", "status"), [("nowhere:solve", 1e12, 1), ("dda", 0.0, 2)])
-def test_a_shard_ends_as_its_cases_do(
-    solver: str, memory_left: float, status: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "scene.toml").write_text(SCENE + f'[run]\nsolvers = ["{solver}"]\n')
-    monkeypatch.setattr(memory, "available", lambda: memory_left)
-    done = typed("run", tmp_path / "scene.toml", "--shard", "1/1", "--results", tmp_path / "r")
-    assert done.returncode == status
-    merged = typed("merge", tmp_path / "r", "--out", tmp_path / "all")
-    assert merged.returncode == status, merged.stderr

@@ -13,7 +13,7 @@ from flint import arb
 from oracles.bars_by_grid import bars_on_grid
 
 from fem_reference.events import bars_events
-from fem_reference.events.bars_events import BarsMotion, solve
+from fem_reference.events.bars_events import BarsMotion, least_terms, solve
 from fem_reference.events.bars_model import (
     BONDED,
     Bar,
@@ -21,7 +21,7 @@ from fem_reference.events.bars_model import (
     BarsProblem,
 )
 from fem_reference.events.column_drive import Drive, half_sine, recorded, ricker, sine, triangle
-from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError
+from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
 
@@ -292,7 +292,11 @@ def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.Monk
         with pytest.raises(LostDigitsError) as lost:
             solve(B5, 4.0)
         assert lost.value.time == pytest.approx(2.0896018911888, rel=1e-13)
-    monkeypatch.setattr(bars_events, "ADVANCES", 40)
+    reached: list[float] = []
+    work = Work(4.5e4, reached.append)
     with pytest.raises(TooMuchWorkError) as error:
-        solve(B11, 0.04)
-    assert 0.001 < error.value.time < 0.04
+        solve(B11, 0.04, work=work)
+    assert 0.001 < error.value.time == reached[-1] == work.reached < 0.04
+    free = Work()
+    solve(B11, 0.04, work=free)
+    assert free.terms > least_terms(B11, 0.04) > 0

@@ -16,6 +16,7 @@ from fem_reference.events import column_drive as drives
 from fem_reference.events import column_events, column_flow, column_march
 from fem_reference.events.column_events import ColumnMotion, solve
 from fem_reference.events.column_model import BASE, ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
+from fem_reference.events.enclosure import precision
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
 MOTIONS: dict[str, ColumnMotion] = {}
@@ -208,8 +209,6 @@ def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field:
 
 
 def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
-    from fem_reference.events.enclosure import precision
-
     pairs = [
         (drives.half_sine(2.0, 0.7), drives.half_sine(2.0, 0.7, integral=True)),
         (drives.sine(1.5, 3.0), drives.sine(1.5, 3.0, integral=True)),
@@ -230,6 +229,45 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
             for k in range(39):
                 derived = series[1][k + 1] * (k + 1) / arb(0.05)
                 assert abs(derived - series[0][k]) < 1e-50
+
+
+@pytest.mark.parametrize("modulus", [math.inf, 1e9])
+@pytest.mark.parametrize("stiffness", [1e5, 1e10])
+@pytest.mark.parametrize(
+    ("drive", "size"),  # the greatest value
+    [
+        (drives.ricker(0.3, 60.0, integral=True), 0.3 / (math.pi * 60)),
+        (drives.ricker(2e5, 60.0), 2e5),
+        (drives.sine(0.1, 60.0), 0.1),
+        (drives.still, 0.0),
+    ],
+)
+def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
+    drive: drives.Drive, size: float, stiffness: float, modulus: float
+) -> None:
+    column = tuple(ColumnBlock(1.0, 2500.0, modulus, 0.1) for _ in range(2))
+    problem = ColumnProblem(column, (ColumnJoint(stiffness),) * 2, law="frictional", base_motion=drive)
+    further = 40
+    for bits in (100, 223):
+        with precision(bits):
+            model = ColumnModel(problem)
+            states = [column_flow.STICKS] * 2
+            base, _ = drive().piece_at(0.0)
+            pressure, _ = drives.still().piece_at(0.0)
+            forces = column_flow.Forces(base, pressure)
+            length = column_flow.step_length(model, states, forces)
+            for moment in (0.0, 0.02, 0.0331, 0.1):
+                speeds = [arb(0.1)] * model.size
+                start = column_flow.Start(arb(moment), [arb(0)] * model.size, speeds, [arb(0)] * 2)
+                segment = column_flow.expand(model, states, start, forces, length)
+                count = len(segment.terms)
+                series = base.series(start.time, length, count + further)
+                left_out = sum(abs(c) * k**3 for k, c in enumerate(series) if k >= count - 2)
+                assert left_out <= segment.drive_tails[0] <= size * count**4 * arb(2) ** (8 - bits)
+                if not size:
+                    terms = column_flow.expand(model, states, start, forces, length, count + further).terms
+                    left_out = sum(max(abs(c).upper() for c in terms[k]) * k**3 for k in range(count, count + further))
+                    assert left_out <= segment.tail
 
 
 # ---- seeded faults ---------------------------------------------------------------------------------------------------

@@ -8,8 +8,7 @@ import pytest
 from conftest import thinned
 from scipy.integrate import solve_ivp
 
-from fem_reference.exact.sliding_block import Segment, SlidingBlock, SlidingMotion, harmonic, moved, recorded, solve
-from validation.solvers.rigid.sliding import harmonic_slide
+from fem_reference.exact.sliding_block import Segment, SlidingBlock, harmonic, moved, recorded, solve
 
 G = 9.81
 LEVEL = SlidingBlock(0.0, math.degrees(math.atan(0.1)))
@@ -88,14 +87,6 @@ def test_the_mirrored_slope_and_one_way() -> None:
     assert ways == {False: {1, -1, 0}, True: {1, 0}}
     assert -1 in {way for _, way in one.switches}
     assert -1 not in {way for _, way in down.switches}
-
-
-def test_harmonic_slide_in_plain_numbers() -> None:
-    t = np.linspace(0.1, 3.0, 30)
-    found = harmonic_slide(20.0, 30.0, 6.0, 10.0, 3.0, t)
-    motion: SlidingMotion = solve(SLOPE, harmonic(6.0, 10.0, 3.0), 3.0)
-    assert np.array_equal(found.slide, motion.at(t)[0])
-    assert found.slip == motion.slip > 0
 
 
 def test_bad_input_is_refused_by_name() -> None:

@@ -206,3 +206,16 @@ def test_bad_requests_are_refused_by_name():
     for angle, cohesion, field in ((-1.0, 0.0, "friction"), (90.0, 0.0, "friction"), (30.0, -1.0, "cohesion")):
         with pytest.raises(ValueError, match=f"^{field}: "):
             Friction(angle, cohesion)
+
+
+@pytest.mark.parametrize(("velocity", "turns"), [(1e3, True), (0.1, False)])
+def test_what_rounding_turns_a_block_by_in_a_long_flight_is_noted(velocity, turns):
+    scheme = replace(AVERAGE, step=0.25)
+    block = replace(make(elements=2), poisson=0.2, young=4e10, pressure=0.0, gravity=0.0)
+    run = solve_unilateral(block, scheme, 400, Unilateral(velocity=velocity), columns=("displacement", "rotation"))
+    noted = [
+        float(note.split(" by about ")[1].split()[0]) for note in run.notes if note.startswith("rounding may turn")
+    ]
+    assert len(noted) == turns
+    if turns:
+        assert np.abs(run.columns["rotation"]).max() < 10 * noted[0]

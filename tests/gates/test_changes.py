@@ -1,20 +1,13 @@
-"""What other people's CI uses: summaries, baselines, differences, the reference pack."""
+"""What other people's CI uses: summaries, baselines, differences."""
 
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from conftest import SCENE, refused, typed
-from oracles.pages import table
-from validation.studies.pack import write_pack
 
-from validation import solve
 from validation.errors import InputError
 from validation.gates.changes import changes, markdown, read_verdicts
-from validation.metrics.catalogue import pair
-from validation.runs.files import read_csv
-from validation.scenes.scene import load_scene
 
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 
@@ -126,50 +119,3 @@ def test_unreadable_verdicts_are_named(tmp_path: Path) -> None:
     (tmp_path / "verdicts.json").write_text("[")
     with pytest.raises(InputError, match="must be JSON"):
         read_verdicts(tmp_path)
-
-
-@pytest.fixture(scope="module")
-def pack(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    directory = tmp_path_factory.mktemp("pack")
-    written = write_pack(directory)
-    assert written.histories == len(list((directory / "histories").iterdir())) and written.scenes > 20
-    return directory
-
-
-@pytest.mark.long
-def test_a_pack_is_complete(pack: Path) -> None:
-    bands = table(pack / "bands.csv")
-    assert bands and len(bands) == len(json.loads((pack / "bands.json").read_text()))
-    for band in bands:
-        assert (pack / "scenes" / f"{band['scene']}.toml").is_file()
-        assert not band["reference"] or (pack / "histories" / band["reference"]).is_file()
-        assert float(band["low"]) <= float(band["high"]) and band["reason"]
-    readme = (pack / "README.md").read_text()
-    named = {band["metric"].partition(".")[2] for band in bands}
-    assert all(f".{name}`" in readme for name in named), "every metric of a band is explained"
-
-
-@pytest.mark.long
-def test_scenes_of_a_pack_give_its_histories(pack: Path) -> None:
-    for path in sorted((pack / "scenes").glob("*.toml")):
-        history = solve(load_scene(path), "dda").history
-        kept = read_csv(pack / "histories" / f"{path.stem}.dda.csv")
-        assert history is not None and np.array_equal(history.displacement, kept.displacement)
-        assert np.array_equal(history.contact_pressure, kept.contact_pressure)
-
-
-@pytest.mark.long
-def test_another_code_of_the_same_model_is_inside_every_band(pack: Path) -> None:
-    bands = json.loads((pack / "bands.json").read_text())
-    judged = [band for band in bands if band["reference"] and band["metric"].endswith((".max", ".l2"))]
-    assert len(judged) > 40
-    for band in judged:
-        scene = load_scene(pack / "scenes" / f"{band['scene']}.toml")
-        # The printed recursion lacks a term that counts with lateral strain, and Figure 7 takes long.
-        if scene.block.poisson != 0 or scene.name.startswith("figure-7"):
-            continue
-        run = solve(scene, "dda-textbook").history
-        reference = read_csv(pack / "histories" / band["reference"])
-        until = band["until"] or np.inf
-        value = pair(band["metric"], run.until(until), reference.until(until))
-        assert isinstance(value, float) and band["low"] <= value <= band["high"], band

@@ -138,7 +138,7 @@ MISTAKES: dict[str, tuple[str, Callable[[str], str], str]] = {
     "another pack": (
         FILE,
         lambda text: text.replace(f'"{PACK}"', '"99.0"'),
-        f"{FILE}:3:10: pack: must be '{PACK}', the version of this pack, or an earlier one",
+        f"{FILE}:3:10: pack: must be one of {PACK}, this pack and earlier ones",
     ),
     "a comma after the last entry": (
         FILE,

@@ -18,7 +18,6 @@ from validation.problems.judge import judge
 from validation.problems.problem import PROBLEMS
 from validation.problems.questions import box_questions, names
 from validation.problems.submission import read_submission
-from validation.studies import pack as studies_pack
 
 QUICK = ("locked", "rocking", "column", "stack", "joint")
 OF_COLUMNS = ("column", "stack", "joint")
@@ -31,8 +30,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pack, "PROBLEMS", QUICK)
-        assert pack.write_problems(directory) == len(QUICK) + len(box_questions())
-    return directory / "problems"
+        assert pack.write_pack(directory) == len(QUICK) + len(box_questions())
+    return directory
 
 
 def answered(problems: Path, name: str, place: Path) -> str:
@@ -77,25 +76,18 @@ def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
 @pytest.fixture
 def short_pack(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let export-pack write its first page only."""
-    monkeypatch.setattr(studies_pack, "write_pack", lambda place: write_readme(place))
-    for name in (
-        "contact.pack.write_contact_pack",
-        "contact.slipping_pack.write_slipping_pack",
-        "waves.pack.write_waves_pack",
-    ):
-        monkeypatch.setattr(f"validation.studies.{name}", lambda place: 0)
-    monkeypatch.setattr("validation.problems.pack.write_problems", lambda place, progress: 0)
 
+    def write_page(place: Path, progress: object) -> int:
+        (place / "README.md").write_text(pack.PAGE.read_text())
+        return 7
 
-def write_readme(place: Path) -> studies_pack.Written:
-    (place / "README.md").write_text(studies_pack.readme_of(studies_pack.__file__))
-    return studies_pack.Written(1, 1, 1)
+    monkeypatch.setattr(pack, "write_pack", write_page)
 
 
 @pytest.mark.usefixtures("short_pack")
 def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path: Path) -> None:
     place = tmp_path / "pack"
-    assert typed("export-pack", place).returncode == 0
+    assert typed("export-pack", place).stdout == f"wrote {place}: 7 problems for any program\n"
     (place / "old.csv").write_text("1")
     assert typed("export-pack", place).returncode == 0
     assert [path.name for path in place.iterdir()] == ["README.md"]
@@ -117,7 +109,7 @@ def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path: Path, monkeypatch:
 
     place = tmp_path / "pack"
     typed("export-pack", place)
-    monkeypatch.setattr("validation.problems.pack.write_problems", interrupt)
+    monkeypatch.setattr("validation.problems.pack.write_pack", interrupt)
     (place / "mark").touch()
     refused("export-pack", place)
     refused("export-pack", tmp_path / "new")
@@ -131,7 +123,7 @@ def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert f"{len(names())} problems for any program" in done.stdout
     for name in PROBLEMS:
-        assert answered(tmp_path / "pack" / "problems", name, tmp_path / name) == "PASS"
+        assert answered(tmp_path / "pack", name, tmp_path / name) == "PASS"
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path, tmp_path: Path) -> None:

@@ -57,7 +57,6 @@ def test_a_sound_submission_is_read(tmp_path: Path, one: Problem, motion: Histor
     assert found.problem.name == "locked" and found.data.program == STATED["program"]
     for name, values in motion.columns.items():
         np.testing.assert_array_equal(found.history.columns[name], values)
-    assert read_submission(submitted(tmp_path, table, pack="2.0")).problem.name == "locked"  # the same question
     swapped = [[row[1], row[2], row[0]] for row in rows_of(table)]  # columns go by their names
     found = read_submission(submitted(tmp_path, text_of(swapped)))
     np.testing.assert_array_equal(found.history.displacement, motion.displacement)
@@ -73,8 +72,8 @@ def test_what_a_program_cannot_report_is_left_out_by_name(tmp_path: Path, motion
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"pack": "99.0"}, f"pack: must be {PACK!r}, the version of this pack, or an earlier one (2.0, 3.0"),
-        ({"pack": 3.0}, f"pack: must be {PACK!r}, the version of this pack, or an earlier one (2.0, 3.0"),
+        ({"pack": "99.0"}, f"pack: must be one of {PACK}, this pack and earlier ones"),
+        ({"pack": 3.0}, f"pack: must be one of {PACK}, this pack and earlier ones"),
         ({"pack": ...}, "pack: is required, got nothing"),
         ({"format": "other"}, "format: must be 'dda-validation submission', got 'other'"),
         ({"problem": "lokced"}, "problem: must be among locked, opening,"),

@@ -88,6 +88,9 @@ def test_lines_on_one_another_are_one_line_with_all_names() -> None:
     }  # fmt: skip
     alone = panel(dda=base, bar=base + 1)
     assert "textbook" in motion.twins([some, alone], ["displacement"])["dda"]
+    repeated = panel(**{"dda": base, "dda-textbook": base + 1e-9})
+    assert motion.twins([repeated], ["displacement"]) == {"dda": {}}  # on dda, which it repeats
+    assert "dda-textbook" in motion.twins([panel(**{"dda": base, "dda-textbook": base + 0.1})], ["displacement"])
     other = panel(dda=base, textbook=base + 1)
     assert motion.twins([some, other], ["displacement"])["dda"] == {}  # on one another in one case only
     figure = motion.history_figure([some], "displacement")

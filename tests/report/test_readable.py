@@ -22,7 +22,7 @@ from validation.suite.folders import get_study, judged_studies
 pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests
 
 ROOT = Path(__file__).parents[2]
-# pages: 37, five of `methods` with its parameters, three of `literature`; the long study `stability` is not run here
+# pages: 34, five of `methods` with its parameters; the long study `stability` is not run here
 SHORT, WHOLE = 14, 45
 SCENES = ("figures-3-4", "figures-5-6", "model-form")
 ANSWERS = {  # question -> what is read on which page

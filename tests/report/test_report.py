@@ -13,6 +13,7 @@ from oracles.made_cases import kept_study, made_row
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report import typesetting
+from validation.report.appendix.pages import appendix
 from validation.report.blocks import (
     Beside,
     Callout,
@@ -124,6 +125,12 @@ def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path, no_solv
     assert out.stat().st_size > 10_000  # pages with figures, not empty ones
     assert [p.name for p in out.parent.iterdir()] == ["report.pdf"]
     assert sorted(p.name for p in results.directory.rglob("*")) == before
+
+
+def test_gates_that_passed_are_listed_where_they_are_asked_for(results):
+    for asked in (False, True):
+        parts = appendix(results, {}, results.verdicts(), [], asked)
+        assert (Heading("Gates", 2) in parts) is asked
 
 
 def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, drawn):

@@ -41,6 +41,31 @@ CASES = [
         "damping ratio",
         "write damping_ratio = 0.05",
     ),
+    ({"load.gravity": -9.81}, "load.gravity", "gravity", "write gravity = 9.81"),
+    ({"load.gravity": 1.0}, "load.gravity", "gravity", "write gravity = 9.81"),
+    ({"load.gravity": 9810.0}, "load.gravity", "gravity", "write gravity = 9.81"),
+    ({"time.gg": 0.02}, "time.gg", "gg", "write gg = 0.98"),
+    ({"time.gg_rate": 5e3}, "time.gg_rate", "gg", "2 w1 xi"),
+    ({"time.alpha": 1.0, "time.delta": 0.5}, "time.alpha", "scheme", "write alpha = 0.5 and delta = 1"),
+    ({"contact.stiffness": 50.0}, "contact.stiffness", "stiffness", "such as 3e+10 to 3e+11"),
+    ({"contact.stiffness": 1e-3, "load.pressure": 0.0}, "contact.stiffness", "stiffness", "such as 3e+10"),
+    ({"load.pressure": 1.0}, "load.pressure", "pressure", "write pressure = 1e6"),
+    ({"contact": SLIDING | {"friction": 30.0, "cohesion": 0.5}}, "contact.cohesion", "pressure", "cohesion = 0.5e6"),
+    ({"load.pressure": -5e6}, "load.pressure", "pressure", "write pressure = 5e+06"),
+    ({"contact.stiffness": 1e25}, "contact.stiffness", "stiffness", "or inf where contact opens"),
+    ({"time.delta": 5.0}, "time.delta", "scheme", "write alpha = 0.5, delta = 1"),
+    ({"contact": SLIDING | {"friction": 89.9}}, "contact.friction", "friction", "leave friction out"),
+    ({"contact": SLIDING | {"band": [5.0, 5.0]}}, "contact.band", "gap", "0.001 for 1 mm"),
+    ({"contact": SLIDING | {"shear_stiffness": 1e-3}}, "contact.shear_stiffness", "stiffness", "= 1e+09"),
+    ({"block.subdivide": [2, 2], "block.glue_ratio": 1e-5}, "block.glue_ratio", "stiffness", "1 to 1e6"),
+    ({"block.side": 1200.0}, "block.side", "size", "write side = 1.2"),
+    ({"block.density": 26500.0}, "block.density", "density", "write density = 2701"),
+    ({"block.poisson": -0.25}, "block.poisson", "poisson", "write poisson = 0.25"),
+    ({"time.step": 2.0}, "time.step", "step", "write step in s"),
+    ({"load.ramp": 50.0}, "load.ramp", "ramp", "write ramp in s"),
+    ({"damping.stiffness": 0.05}, "damping.stiffness", "damping ratio", "a1 = 2 xi / w"),
+    ({"contact": SLIDING | {"gap": 25.0}}, "contact.gap", "gap", "0.001 for 1 mm"),
+    ({"block.velocity": 500.0, "contact": SLIDING}, "block.velocity", "velocity", "in m/s"),
     ({"contact": SLIDING | {"friction": 4.9}}, "contact.friction", "friction", "write the angle in degrees"),
 ]
 PLAUSIBLE = [
@@ -51,7 +76,11 @@ PLAUSIBLE = [
     {"block.density": 100.0, "block.young": 9.9e9},
     {"block.young": 2.7e7 * 1.0001, "load.pressure": 1e5},  # 100 m/s
     {"block.young": 2.7e11 * 0.9999},  # 10 km/s
-    {"load.pressure": 2.99e9},
+    {"load.pressure": 2.99e9, "contact.stiffness": 1e11},
+    {"time.gg": 0.0},
+    {"time.gg": 0.5},
+    {"load.pressure": 101.0},
+    {"time.alpha": 1.0, "time.delta": 1.0},
 ]
 
 
@@ -95,6 +124,32 @@ def test_columns_are_looked_at_layer_by_layer() -> None:
     slipping = {"motion": "shear", "law": "frictional", "gravity": 9.81, "stiffness": 1e9, "friction": 0.5}
     slips = parse_scene(COLUMN | {"column": COLUMN["column"] | slipping}, "x.toml")
     assert [value.field for value in implausible_values(slips)] == ["column.friction"]
+
+
+STACK = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81}
+BOXES = {"rigid": {"box": [{"width": 1.0, "height": 2.0, "density": 2500.0}]}, "time": {"step": 1e-3, "steps": 10}}
+
+
+@pytest.mark.parametrize(
+    ("data", "values", "field"),
+    [
+        (COLUMN, {"time.gg": 0.02}, "time.gg"),
+        (COLUMN, {"time.step": 10.0}, "time.step"),
+        (COLUMN, {"column.glue": 1.0}, "column.glue"),
+        (COLUMN, {"input.frequency": 1e-3}, "input.frequency"),
+        (COLUMN | {"column": COLUMN["column"] | STACK}, {"column.stiffness": 1.0}, "column.stiffness"),
+        (COLUMN | {"column": COLUMN["column"] | STACK}, {"column.gravity": 9810.0}, "column.gravity"),
+        (COLUMN | {"column": COLUMN["column"] | STACK}, {"column.gap": 25.0}, "column.gap"),
+        (BOXES, {"rigid.gravity": 9810.0}, "rigid.gravity"),
+        (BOXES, {"rigid.stiffness": 1.0}, "rigid.stiffness"),
+        (BOXES, {"time.step": 100.0}, "time.step"),
+        (BOXES, {"rigid.base_amplitude": 1000.0}, "rigid.base_amplitude"),
+    ],
+)
+def test_columns_and_boxes_out_of_proportion(data: dict[str, Any], values: dict[str, Any], field: str) -> None:
+    scene = parse_scene({"name": "x"} | data, "x.toml")
+    assert [value.field for value in implausible_values(scene)] in ([], ["input.frequency"])
+    assert field in [value.field for value in implausible_values(scene.with_values(values))]
 
 
 def test_a_rigid_layer_has_no_wave() -> None:

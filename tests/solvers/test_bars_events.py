@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from fem_reference.events import bars_events
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.solvers.columns.bars import BarsOfColumn
 from validation.solvers.registry import get_solver, solve
 
 LAYERS = [
@@ -168,9 +168,13 @@ def test_switches_carry_the_height_of_their_contact() -> None:
 
 
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bars_events, "ADVANCES", 30)
-    run = solve(scene_of(OPENS, ["displacement"], input=PULSE), "bars-events")
+    scene = scene_of(OPENS, ["displacement"], input=PULSE)
+    monkeypatch.setattr(BarsOfColumn, "most_terms", 2e4)
+    run = solve(scene, "bars-events")
     assert run.outcome is Outcome.HORIZON and "the scene may have" in run.notes[0]
+    assert solve(scene, "bars-events", full=True).outcome is Outcome.COMPLETED
+    monkeypatch.setattr(BarsOfColumn, "most_terms", 10.0)  # less than it takes for certain
+    assert "would have at least" in solve(scene, "bars-events").notes[0]
 
 
 def test_the_elements_count_their_solves_and_end_at_their_limit() -> None:

@@ -12,7 +12,8 @@ from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.columns.events import drive_of
+from validation.solvers.columns.events import ColumnEventMotion, drive_of
+from validation.solvers.events import TERMS_A_SECOND
 from validation.solvers.registry import get_solver, solve
 
 LAYERS = [
@@ -98,6 +99,39 @@ def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
 
 
+RIGID = [{"thickness": 2.0, "density": 2400.0, "young": math.inf, "blocks": 2}]
+STANDS = {"motion": "pressure", "law": "unilateral", "gravity": 9.81, "settled": True, "heights": []}
+LEANS = {"motion": "shear", "law": "frictional", "stiffness": 1e7, "strength": 2e3, "heights": []}
+
+
+@pytest.mark.parametrize(
+    ("column", "frequency"),
+    [
+        (STANDS | {"layer": RIGID, "stiffness": 1e6}, 20.0),
+        (STANDS | {"layer": RIGID, "stiffness": 1e8}, 20.0),
+        (LEANS | {"layer": RIGID}, 2.0),
+        (STANDS | {"layer": [RIGID[0] | {"young": 1e9}], "stiffness": 1e6}, 20.0),
+    ],
+    ids=["soft", "opens", "slips", "elastic"],
+)
+def test_a_column_shaken_by_a_ricker_pulse_is_the_limit_of_dda(column: dict[str, Any], frequency: float) -> None:
+    drive = {"at": "base", "shape": "ricker", "velocity": 0.3, "frequency": frequency}
+    columns = ["displacement", "contact_pressure"]
+    step = 0.03 / frequency
+    exact = history(scene_of(column, columns, 100, input=drive, time={"step": step}))
+    errors = {}
+    for refined in (20, 80):
+        stepped = history(scene_of(column, columns, 100 * refined, input=drive, time={"step": step / refined}), "dda")
+        of_columns = []
+        for name in columns:
+            off = np.abs(stepped[name][refined - 1 :: refined] - exact[name]).max()
+            of_columns.append(off / np.abs(exact[name]).max())
+        errors[refined] = max(of_columns)
+    coarse = errors[20]
+    fine = errors[80]
+    assert fine < coarse / 8  # order 2 divides by 16, less what the steps in which a contact changes add
+
+
 def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains() -> None:
     columns = ["displacement", "contact_pressure", *names("displacement", "stress"), "force_1", "force_3", "force_4"]
     columns += ["gap_1", "gap_3"]
@@ -154,6 +188,22 @@ def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch)
     run = solve(scene_of(OPENS, ["displacement"]), "column-events")
     assert run.outcome is Outcome.HORIZON
     assert "exact up to" in run.notes[0]
+
+
+def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_of(OPENS, ["displacement"])
+    shares: list[float] = []
+    for limit, predicted in ((6e3, False), (10.0, True)):
+        monkeypatch.setattr(ColumnEventMotion, "most_terms", limit)
+        prepared = get_solver("column-events").prepare(scene)
+        assert 0 < prepared.expected_seconds() <= limit / TERMS_A_SECOND
+        prepared.progress = shares.append
+        run = prepared.run()
+        assert run.outcome is Outcome.HORIZON
+        assert ("would have at least" in run.notes[0]) is predicted
+        assert "column-events:full" in run.notes[0]
+    assert shares == sorted(shares) and 0 < shares[-1] < 1
+    assert solve(scene, "column-events", full=True).outcome is Outcome.COMPLETED
 
 
 @pytest.mark.long

@@ -206,3 +206,25 @@ def test_key_of_a_column_reads_its_record_and_not_another_solvers_glue(site: Sce
         scene = parse_scene(site.definition() | {"input": {"record": str(tmp_path / "record.csv")}}, "site")
         keys.append(Case(scene, "dda").key())
     assert keys[0] != keys[1]
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem", "layers", "column-events", "bars-events"])
+@pytest.mark.parametrize("top", [0.3, (0.1 + 0.2) * (1 + 5e-10)])
+def test_a_height_that_is_the_top_but_for_rounding_is_the_top(solver: str, top: float) -> None:
+    layers = [{"thickness": 0.1, "density": 2000.0, "young": 1e8}, {"thickness": 0.2, "density": 2000.0, "young": 1e8}]
+    column = {"motion": "pressure", "layer": layers, "heights": [top]}
+    if solver.endswith("events"):
+        column |= {"law": "unilateral", "stiffness": 1e9}
+    scene = parse_scene(
+        {
+            "column": column,
+            "input": {"shape": "half-sine", "velocity": 0.1, "duration": 1e-3},
+            "time": {"step": 1e-5, "steps": 100, "alpha": 0.25, "delta": 0.5},
+            "run": {"solvers": [solver], "columns": ["displacement", "displacement_1"]},
+        },
+        "top",
+    )
+    history = solve(scene, solver).history
+    assert history is not None
+    columns = history.columns
+    np.testing.assert_allclose(columns["displacement_1"], columns["displacement"], atol=1e-15)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from validation import plugin
+from validation.entry import plugin
 from validation.suite.own_solver import block
 from validation.suite.own_solver.session import GateReport
 

@@ -1,5 +1,7 @@
 """Frequency responses: moving bases, large systems, limits, refusals, and that no step is run."""
 
+import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -14,7 +16,9 @@ import fem_reference.history.response
 from validation import Solver, load_scene, response, solve
 from validation.advice.response import Response
 from validation.errors import InputError
+from validation.runs.history import Array, Complex
 from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002, "run.columns": ["displacement", "contact_pressure"]})
 COLUMNS = ("displacement", "contact_pressure")
@@ -150,10 +154,57 @@ def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
         assert abs(found.displacement[1]) < 1e-12  # (1/2, 1): W2 has no bound at half the sampling frequency
 
 
-def test_peaks_are_the_local_maxima_the_highest_first() -> None:
-    size = np.array([9.0, 1.0, 3.0, 2.0, 5.0, 4.0, 8.0])
-    found = Response("s", "dda", True, False, np.arange(1.0, 8.0), {"displacement": size * 1j})
-    assert found.peaks("displacement") == [(5.0, 5.0), (3.0, 3.0)]  # the ends of the range are none
+def rational(poles: list[tuple[float, float, float]]) -> Callable[[Array], dict[str, Complex]]:
+    """Return the response sum r / (f0^2 - f^2 + 2 i zeta f0 f) of poles (r, f0, zeta)."""
+
+    def answer(f: Array) -> dict[str, Complex]:
+        parts = [r / (f0**2 - f**2 + 2j * zeta * f0 * f) for r, f0, zeta in poles]
+        return {"displacement": np.asarray(sum(parts), complex)}
+
+    return answer
+
+
+PEAKS = {  # poles, range and its points, peaks
+    "undamped": ([(1.0, 50.3, 0.0)], (1.0, 200.0, 50), [(50.3, math.inf)]),
+    "undamped, few points": ([(1.0, 50.3, 0.0)], (1.0, 200.0, 5), [(50.3, math.inf)]),
+    "undamped, next to an end": ([(1.0, 50.3, 0.0)], (50.0, 60.0, 5), [(50.3, math.inf)]),
+    "two, with a zero between": (
+        [(1.0, 50.3, 0.0), (2.0, 80.7, 0.0)],
+        (1.0, 90.0, 40),
+        [(50.3, math.inf), (80.7, math.inf)],
+    ),
+    "a zero alone": ([(1.0, 50.3, 0.0), (2.0, 80.7, 0.0)], (55.0, 75.0, 40), []),
+    "damped": (
+        [(1.0, 50.0, 0.05)],
+        (1.0, 200.0, 40),
+        [(50 * math.sqrt(1 - 2 * 0.05**2), 1 / (2 * 0.05 * 2500 * math.sqrt(1 - 0.05**2)))],
+    ),
+    "no peak": ([(1.0, 50.3, 0.0)], (60.0, 200.0, 40), []),
+}
+
+
+@pytest.mark.parametrize(("poles", "span", "expected"), PEAKS.values(), ids=PEAKS)
+def test_peaks_are_those_of_the_model_between_the_listed_frequencies(
+    poles: list[tuple[float, float, float]], span: tuple[float, float, int], expected: list[tuple[float, float]]
+) -> None:
+    answer = rational(poles)
+    frequency = np.linspace(*span)
+    peaks = Response("s", "dda", True, False, frequency, answer(frequency), answer).peaks("displacement")
+    assert np.allclose(np.array(peaks).reshape(-1, 2), np.array(expected).reshape(-1, 2), rtol=1e-6)
+
+
+@pytest.mark.parametrize("points", [8, 500, 2000])
+@pytest.mark.parametrize(("weights", "exact"), [({}, True), ({"time.alpha": 0.25, "time.delta": 0.5}, False)])
+def test_what_nothing_damps_is_unbounded_at_its_natural_frequency(
+    points: int, weights: dict[str, float], exact: bool
+) -> None:
+    scene = BLOCK.with_values({"time.step": 0.002} | weights)
+    first = get_solver("dda").modes(scene)[0].frequency
+    if not exact:
+        first = 2 / 0.002 * math.atan(first * 0.002 / 2)  # of the trapezoidal rule
+    for column in ("displacement", "contact_pressure"):
+        peak = response(scene, np.linspace(0.1, 100.0, points), "dda", exact).peaks(column)[0]
+        assert peak == (pytest.approx(first / (2 * math.pi), rel=1e-8), math.inf)
 
 
 def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:

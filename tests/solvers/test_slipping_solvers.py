@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem_reference.events import bar_events, block_events, block_march
+from fem_reference.events import block_events, block_march
 from fem_reference.events.switches import NoContactStateError
 from validation import load_scene
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
+from validation.solvers.events import BarMotion
 from validation.solvers.registry import get_solver
 
 INCLINE = """
@@ -77,9 +78,8 @@ def test_the_notes_tell_what_is_proven(tmp_path: Path) -> None:
     prepared = get_solver("block-events").prepare(scene(tmp_path))
     notes = prepared.run().notes
     assert sum(note.startswith("proven: ") for note in notes) == 2
-    enclosed = prepared.enclosures()
-    assert len(enclosed) == len(prepared.switches())
-    assert all(radius < 1e-40 and len(midpoint) > 35 for _, _, midpoint, radius in enclosed)
+    assert len(prepared.switch_events) == len(prepared.switches())
+    assert all(event.radius < 1e-40 and len(event.midpoint) > 35 for event in prepared.switch_events)
 
 
 GRANITE = """
@@ -104,10 +104,10 @@ solvers = ["bar-events"]
 
 @pytest.mark.parametrize(
     ("name", "module", "limit", "most", "horizon"),
-    [("bar-events", bar_events, "ADVANCES", 150, 0.0096), ("block-events", block_march, "STEPS", 27, 0.0049)],
+    [("bar-events", BarMotion, "most_terms", 7e5, 0.0088), ("block-events", block_march, "STEPS", 27, 0.0049)],
 )
 def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, most: int, horizon: float
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, most: float, horizon: float
 ) -> None:
     monkeypatch.setattr(module, limit, most)
     run = get_solver(name).prepare(scene(tmp_path, GRANITE)).run()

@@ -1,7 +1,6 @@
 """The register of claims: computed, gated, and not deaf: thresholds and code turn verdicts over."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,28 +8,28 @@ import numpy as np
 import pytest
 from conftest import refused
 from faults import seams
-from faults.fault import of_first, soft_springs, told, with_scheme
+from faults.fault import soft_springs, told, with_scheme
 from faults.kill_matrix import whole
-from validation.studies.claims import REGISTER, Band, Evidence, Finding, Register, page
-from validation.studies.literature.study import CLAIMS_OF_THE_LITERATURE, STUDY
-from validation.studies.paper.study import CLAIMS, CLAIMS_OF_THE_PAPER, PAPER
 
-from dda import ContactResult, Unilateral
+from dda import ContactResult
 from validation import solve
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import _derived_record, finish
-from validation.engine.study import Study
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.studies.paper import friction, open_close
+from validation.studies.paper import open_close
+from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
+from validation.suite.claims import REGISTER, Band, Evidence, Finding, page
+from validation.suite.folders import get_study
 
 ROOT = Path(__file__).parents[2]
+PAPER = get_study("paper")
 pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
-OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS | friction.TESTS for need in claim.needs}
+OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS for need in claim.needs}
 
 
 def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
@@ -38,30 +37,21 @@ def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
     return finish(cases, PAPER, Results(directory))
 
 
-REGISTERS = {
-    "paper": (CLAIMS_OF_THE_PAPER, PAPER, run),
-    "literature": (CLAIMS_OF_THE_LITERATURE, STUDY, lambda directory: finish(STUDY.cases(), STUDY, Results(directory))),
-}
-
-
-@pytest.fixture(scope="module", params=REGISTERS)
-def kept(request: pytest.FixtureRequest, finished_cases: Path) -> tuple[Register, Study, Finished]:
-    """Return a register, its study and its finished cases."""
-    register, study, finished = REGISTERS[request.param]
-    return register, study, finished(finished_cases)
+@pytest.fixture(scope="module")
+def finished(finished_cases: Path) -> Finished:
+    """Return the finished cases of the register."""
+    return run(finished_cases)
 
 
 @pytest.mark.long
-def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(kept: tuple[Register, Study, Finished]) -> None:
-    register, study, finished = kept
-    found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in register.claims}
-    assert found == {claim.id: claim.expected for claim in register.claims}
-    assert all(evaluate(gate, finished).status is Status.PASS for gate in study.gates())
+def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished: Finished) -> None:
+    found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in CLAIMS}
+    assert found == {claim.id: claim.expected for claim in CLAIMS}
+    assert all(evaluate(gate, finished).status is Status.PASS for gate in PAPER.gates())
 
 
-def test_a_changed_threshold_turns_the_verdict_over(kept: tuple[Register, Study, Finished]) -> None:
-    register, _, finished = kept
-    for claim in register.claims:
+def test_a_changed_threshold_turns_the_verdict_over(finished: Finished) -> None:
+    for claim in CLAIMS:
         numbers = claim.measure(Evidence(finished))
         bands = (*claim.printed, *claim.conditional)
         assert {band.number for band in bands} | {name for name, _, _ in claim.numbers} <= numbers.keys(), claim.id
@@ -75,11 +65,10 @@ def test_a_changed_threshold_turns_the_verdict_over(kept: tuple[Register, Study,
         assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
 
 
-def test_the_page_in_docs_is_what_a_fresh_run_writes(kept: tuple[Register, Study, Finished]) -> None:
-    register, _, finished = kept
-    rows = [_derived_record(finished, REGISTER, claim.id) for claim in register.claims]
-    text = (ROOT / register.page).read_text(encoding="utf-8")
-    assert text == page(register, rows)
+def test_the_page_in_docs_is_what_a_fresh_run_writes(finished: Finished) -> None:
+    rows = [_derived_record(finished, REGISTER, claim.id) for claim in CLAIMS]
+    text = (ROOT / CLAIMS_OF_THE_PAPER.page).read_text(encoding="utf-8")
+    assert text == page(CLAIMS_OF_THE_PAPER, rows)
     assert "below 1e-12" in text and not re.search(r"e-1[0-9]", text.replace("below 1e-12", ""))
 
 
@@ -88,19 +77,8 @@ def damped(delta: float) -> float:
 
 
 def held(found: ContactResult) -> dict[str, object]:
-    """Count the corners as closed, with 1e6 J more."""
-    shut = np.ones_like(found.closed)
-    energies = found.energies and found.energies | {"kinetic": found.energies["kinetic"] + 1e6}
-    return {"closed": shut, "energies": energies}
-
-
-def rubbing(**changes: object) -> Callable[..., Callable[..., object]]:
-    """Change the contact law where it has friction."""
-
-    def law(contact: Unilateral) -> Unilateral:
-        return contact if contact.friction is None else replace(contact, **changes)  # type: ignore[arg-type]
-
-    return of_first(lambda model: {"contact": law(model.contact)})
+    """Count the corners as closed."""
+    return {"closed": np.ones_like(found.closed)}
 
 
 FAULTS = {  # seam, what is made of it, and the claims that it turns over
@@ -112,10 +90,8 @@ FAULTS = {  # seam, what is made of it, and the claims that it turns over
         with_scheme(0, delta=lambda delta: 0.5),
         {"C1", "C6", "C7", "C10"},
     ),
-    "gg 0.1 % low": (seams.DDA_VELOCITY, with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12"}),
-    "contact that stays closed and gains": (seams.DDA_OPENED, told(held), {"C15", "C16", "C17"}),
-    "friction that lags": (seams.DDA_OPENED, rubbing(rules="lagged"), {"C20"}),
-    "springs under friction 2 % soft": (seams.DDA_OPENED, rubbing(stiffness=0.98e9), {"C21"}),
+    "gg 0.1 % low": (seams.DDA_VELOCITY, with_scheme(0, gg=lambda gg: 0.999 * gg), {"C9", "C12", "C18"}),
+    "contact that stays closed": (seams.DDA_OPENED, told(held), {"C15", "C16"}),
     "gg missing": (seams.DDA_PREDICTOR, with_scheme(0, gg=lambda gg: 1.0), {"C12"}),
 }
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.made_cases import between, kept_study, made_case, made_group, made_history, made_row
-from validation.studies.work import record as work_record
 from validation.studies.work import study as work_precision
 from validation.studies.work.points import COSTS, METHODS, Point, cheapest, floor, front, points, table
 
@@ -131,7 +130,7 @@ def test_scenes_and_methods_of_the_study_have_their_own_names() -> None:
     assert front([(1, 5), (2, 4.9), (3, 6), (4, 1), (4, 0.5)]) == [(1, 5), (2, 4.9), (4, 0.5)]
 
 
-# ---- the record ---------------------------------------------------------------------------------------------------
+# ---- orders -------------------------------------------------------------------------------------------------------
 
 
 def finished(**histories: Any) -> Any:
@@ -139,33 +138,6 @@ def finished(**histories: Any) -> Any:
             for name in histories}  # fmt: skip
     history = lambda case, name: histories.get(name)  # noqa: E731
     return SimpleNamespace(rows=rows, history=history, needed_history=history)
-
-
-def test_the_record_measures_models_against_the_bar_and_the_bar_against_the_continuum() -> None:
-    made = {name: made_history(0.1, v * np.ones(9), p * np.ones(9)) for name, v, p in
-            (("dda", 1.32, 2.6), ("fem", 1.212, 2.02), ("bar", 1.2, 2.0), ("continuum", 1.0, 1.6))}  # fmt: skip
-    found = work_record.measured(finished(**made), [("a", name) for name in made])
-    errors = {name: entry["errors"] for name, entry in found.items()}
-    assert errors == {
-        "a dda": {"displacement": 0.1, "contact_pressure": 0.3},
-        "a fem": {"displacement": 0.01, "contact_pressure": 0.01},
-        "a bar": {"displacement": 0.2, "contact_pressure": 0.25},
-        "a continuum": {},
-    }
-    assert found["a dda"]["work"] == {"unknowns": 6, "solves": 40}
-    assert found["a dda"]["seconds"] == {"stepping": 1.0}
-
-
-def test_a_run_is_as_bad_as_its_worst_error_and_its_worst_count() -> None:
-    def entry(error: float, solves: int) -> dict[str, Any]:
-        return {"errors": {"displacement": error}, "work": {"solves": solves}}
-
-    then = {"a": entry(0.1, 40), "b": entry(0.2, 50), "c": entry(1e-13, 60), "gone": entry(1.0, 1)}
-    now = {"a": entry(0.13, 30), "b": entry(0.1, 60), "c": entry(9e-12, 60), "new": entry(9.0, 9)}
-    assert work_record.ratios(now, then) == {"errors": pytest.approx(1.3), "work": pytest.approx(1.2)}
-
-
-# ---- orders -------------------------------------------------------------------------------------------------------
 
 
 def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times() -> None:

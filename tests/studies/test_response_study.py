@@ -18,7 +18,7 @@ from validation.runs.results import Results
 from validation.scenes.record import base_record
 from validation.scenes.scene import load_scene
 from validation.studies.response import formulas as response
-from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW
+from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW, VISCOUS
 from validation.suite.folders import get_study
 
 STUDY = get_study("response")
@@ -36,6 +36,7 @@ ANSWERS = [
 ]
 STEPS = [
     Fault("dda: delta 0.1 % high", ("dda",), seams.DDA_CARRIED, with_scheme(0, delta=thousandth)),
+    Fault("dda: delta of the velocity 0.1 % high", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=thousandth)),
     Fault("fem: one step late", ("fem",), seams.FEM_RUN, late),
 ]
 
@@ -43,7 +44,8 @@ STEPS = [
 @pytest.mark.parametrize("fault", ANSWERS, ids=lambda fault: fault.name)
 @pytest.mark.long
 def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault: Fault, finished_cases: Path) -> None:
-    gates = [g for g in STUDY.gates() if g.metric != "damping.steps" and reached(g, fault.name)]
+    judged = [g for g in STUDY.gates() if g.metric not in ("damping.steps", "mode1.damping")]
+    gates = [g for g in judged if reached(g, fault.name)]
     finished = finish(STUDY.cases(), STUDY, Results(finished_cases))
     with pytest.MonkeyPatch.context() as patch:
         fault.seam.wrap(patch, fault.replacement)
@@ -57,7 +59,8 @@ def reached(gate: Gate, solver: str) -> bool:
 
 @pytest.mark.long
 def test_gates_on_steps_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
-    gates = [gate for gate in STUDY.gates() if gate.scene.startswith(BASE) or gate.metric == "damping.steps"]
+    stepped = (BASE, VISCOUS)
+    gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)
 
 

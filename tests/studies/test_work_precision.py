@@ -1,10 +1,8 @@
-"""Error against run time: points, fronts, the record, the commands, and the kill matrix of the study's gates."""
+"""Error against run time: points, fronts, the command, and the kill matrix of the study's gates."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 from conftest import beside
 from faults import seams
@@ -12,18 +10,16 @@ from faults.fault import Fault, swapped, with_scheme
 from faults.kill_matrix import check_kill_matrix
 from oracles.pages import table
 from typer.testing import CliRunner
-from validation.studies.work import record as work_record
-from validation.studies.work import study as work_study
 from validation.studies.work.study import WORK_PRECISION
 
 from validation.cli.app import app
-from validation.engine.run import finish, run_study
+from validation.engine.run import run_study
 from validation.errors import InputError
 from validation.runs.results import Results
 
 ROOT = Path(__file__).parents[2]
 COARSE = replace(WORK_PRECISION, timed=False)  # the repeats of a study of timings are tested apart
-LEVELS = 2  # of the first scene, the coarsest ones: as the record has them
+LEVELS = 2  # of the first scene, the coarsest ones
 FIRST = WORK_PRECISION.scenes[0].model_copy(
     update={"sweep": {key: x if key == "mode" else x[:LEVELS] for key, x in WORK_PRECISION.scenes[0].sweep.items()}}
 )
@@ -55,7 +51,6 @@ FAULTS = [
     Fault("dda: delta 1/2", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=lambda d: 0.5)),
     Fault("fem: column 0.1 % soft", ("fem",), seams.FEM_COLUMN, lambda sound: lambda p: sound(softer(p))),
     Fault("fem: mass of first order", ("fem",), seams.FEM_MASS, heavier_on_coarse_meshes),
-    Fault("fem: stepped", ("fem",), seams.FEM_SMALL_SPACE, lambda sound: lambda *a: "a fault"),
 ]
 
 
@@ -75,53 +70,6 @@ def test_rows_are_a_table_of_every_run(few, tmp_path):
     assert len(lines) == len(PAIRS) == 4 * LEVELS
     assert {"seconds.setup", "work.solves", "continuum:displacement.l2", "estimate"} <= set(lines[0])
     assert isinstance(CliRunner().invoke(app, ["rows", "core", *where]).exception, InputError)
-
-
-def test_a_worse_run_fails_and_a_new_record_asks_for_the_reason(few, tmp_path, monkeypatch):
-    finished = finish(FEW.cases(), FEW, few)
-    now = work_record.measured(finished, PAIRS)
-    then = {name: entry for name, entry in work_record.load()["cases"].items() if name in now}
-    assert len(then) == len(PAIRS)
-    found = work_record.ratios(now, then)
-    assert all(1 - slack <= found[part] <= 1 + slack for part, slack in work_record.SLACK.items())
-    worse = json.loads(json.dumps(then))
-    name = next(name for name in worse if name.endswith("fem"))
-    worse[name]["errors"]["displacement"] /= 1.1
-    worse[name]["work"]["solves"] -= worse[name]["work"]["solves"] // 5
-    found = work_record.ratios(now, worse)
-    assert found["errors"] == pytest.approx(1.1, rel=0.03) and found["work"] > 1.15
-    monkeypatch.setattr(work_record, "PATH", tmp_path / "record.json")
-    with pytest.raises(InputError, match=r"^--reason: "):
-        work_record.update(finished, PAIRS, " ")
-    work_record.update(finished, PAIRS, "a test")
-    assert work_record.load()["reasons"] == ["a test"]
-    assert work_record.ratios(now, work_record.load()["cases"])["work"] == 1
-
-
-def test_what_is_missing_is_not_as_good_as_recorded():
-    then = work_record.load()["cases"]
-    name = next(name for name in then if name.endswith("fem"))
-    now = {name: json.loads(json.dumps(then[name]))}
-    assert work_record.ratios(now, then) == {"errors": 1, "work": 1}
-    now[name]["errors"]["displacement"] = "undefined"
-    del now[name]["work"]["solves"]
-    assert work_record.ratios(now, then) == {"errors": np.inf, "work": np.inf}
-    assert work_record.ratios({}, then) == {}
-
-
-@pytest.mark.parametrize(
-    ("text", "words"), [(None, "No such file"), ("{", "must be JSON"), ('{"cases": {}}', "nothing was compared")]
-)
-def test_the_command_refuses_to_compare_with_nothing(few, tmp_path, monkeypatch, text, words):
-    path = tmp_path / "record.json"
-    if text is not None:
-        path.write_text(text)
-    monkeypatch.setattr(work_record, "PATH", path)
-    monkeypatch.setattr(work_study, "WORK_PRECISION", FEW)
-    monkeypatch.setattr(work_study, "study_cases", lambda: PAIRS)
-    done = CliRunner().invoke(app, ["record", "--results", str(few.directory)])
-    assert isinstance(done.exception, InputError) and words in str(done.exception)
-    assert "worst ratio" not in done.output
 
 
 def test_a_study_of_timings_repeats_and_keeps_the_spread(tmp_path):

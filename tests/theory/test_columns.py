@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 7])
@@ -30,16 +31,32 @@ def test_the_far_face_of_a_block_turns_at_its_step(alpha):
 
 
 @pytest.mark.parametrize(
-    ("delta", "gg", "step", "blocks", "seconds"),
-    [(1.0, 1.0, 1e-3, 10, 3.092), (0.5, 0.98, 1e-3, 10, 0.691), (1.0, 1.0, 1e-3, 20, 11.771)],
+    ("weights", "gg", "step", "blocks", "seconds"),
+    [
+        ((0.5, 1.0), 1.0, 1e-3, 10, 3.097),
+        ((0.5, 1.0), 1.0, 5e-3, 10, 0.650),
+        ((0.5, 1.0), 1.0, 20e-3, 10, 0.260),  # w1 dt = 1.9, where the formula of small steps has 0.155
+        ((0.25, 0.5), 0.98, 1e-3, 10, 0.674),
+        ((0.25, 0.5), 0.98, 2e-4, 10, 0.135),
+    ],
 )
-def test_a_stack_rests_when_the_notes_say(delta, gg, step, blocks, seconds):
+def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step, blocks, seconds):
     omega = columns.lowest_frequency(1e9, 2500, blocks)
-    assert columns.settling_time(omega, step, delta, gg) == pytest.approx(seconds, abs=6e-4)
+    # band: a quarter of a period, within which the last crossing lies, and a step
+    assert columns.ring_down(omega, Stepping(step, *weights, gg)) == pytest.approx(
+        seconds, abs=math.pi / omega / 2 + step
+    )
+
+
+@pytest.mark.parametrize(("delta", "gg"), [(1.0, 1.0), (0.5, 0.999), (0.6, 0.9999)])
+def test_a_small_step_takes_what_the_closed_form_says(delta, gg):
+    omega, step = 10.0, 1e-3
+    rate = omega**2 * (delta - 0.5) * step / 2 + (1 - gg) / (2 * step)
+    assert columns.ring_down(omega, Stepping(step, 0.5, delta, gg)) == pytest.approx(math.log(1e3) / rate, rel=0.01)
 
 
 def test_nothing_damps_average_acceleration_without_a_discount():
-    assert columns.settling_time(10.0, 1e-3, 0.5, 1.0) == math.inf
+    assert columns.ring_down(10.0, Stepping(1e-3, 0.25, 0.5)) == math.inf
 
 
 def test_every_contact_at_rest_carries_what_is_above():

@@ -15,11 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from validation.advice import overshoot
 from validation.advice.advice import LARGEST_RATIO
+from validation.advice.coarse import closed
 from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency, percent
 from validation.errors import InputError
+from validation.runs.modes import Mode
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.events import rectangle
@@ -65,6 +68,7 @@ class Offer:
     rebound: dict[str, float]  # of its contact at this step, without the discount: mean, least, most [-]
     greatest_rebound: float  # at any step [-]
     gains: bool  # whether an impact at this step may give back more than it had
+    start_rise: float | None  # energy that the first step adds from a consistent start, over what the loads give [-]
     fears: tuple[str, ...]
 
 
@@ -86,9 +90,9 @@ def advise_across(
 ) -> SchemeAdvice:
     """Return the schemes that have a damping ratio at a frequency, each at its own step, the recommended first.
 
-    Recommended are first those whose impacts gain nothing, where that is wanted; then those with eight steps in a
-    period of the frequency; then those without a discount, which is a drag in flight and in sliding; then those with
-    the fewest linear solves.
+    Recommended are first those whose impacts gain nothing, where that is wanted; then those whose first step adds no
+    energy, where the scene starts consistently; then those with eight steps in a period of the frequency; then those
+    without a discount, which is a drag in flight and in sliding; then those with the fewest linear solves.
 
     Parameters
     ----------
@@ -132,9 +136,12 @@ def advise_across(
             back = {"time.scheme": "newmark"} if stepping.scheme == "newmark" != scene.time.scheme else {}
             offers.append(describe(name, back | settings, stepping))
 
-    def rank(offer: Offer) -> tuple[bool, bool, bool, float]:
+    starts = scene.time.start == "consistent" and scene.load.ramp == 0
+
+    def rank(offer: Offer) -> tuple[bool, bool, bool, bool, float]:
         steps_of_a_period = 1 / (hertz * offer.step)
-        return wish and offer.gains, steps_of_a_period < STEPS, offer.gg < 1, offer.cost or 0.0
+        is_raised = starts and (offer.start_rise or 0.0) > overshoot.NOTABLE
+        return wish and offer.gains, is_raised, steps_of_a_period < STEPS, offer.gg < 1, offer.cost or 0.0
 
     ranked = sorted(offers, key=rank)
     answer = SchemeAdvice(scene.name, float(damping), hertz, wish, tuple(ranked), unreachable, "")
@@ -148,6 +155,7 @@ class BlockFrequencies:
     first: float  # its first axial mode, contact closed
     highest: float  # its highest mode, the contact's where p is large
     impact: float  # pi over the duration of a landing
+    modes: tuple[Mode, ...]  # contact closed
 
 
 def _block_frequencies(scene: Scene) -> BlockFrequencies:
@@ -158,10 +166,12 @@ def _block_frequencies(scene: Scene) -> BlockFrequencies:
             rule = "must be a rectangle on springs of finite stiffness where contact opens"
             raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
         impact = landing.contact_frequency(scene)
-        return BlockFrequencies(spectra.dda_frequency(scene), spectra.contact_frequency(scene), impact)
+        modes = dda_modes(closed(scene))
+        return BlockFrequencies(spectra.dda_frequency(scene), spectra.contact_frequency(scene), impact, modes)
     highest = highest_frequency(scene)
     impact = highest if rectangle(scene) is None else landing.contact_frequency(scene)
-    return BlockFrequencies(dda_modes(scene)[0].frequency, highest, impact)
+    modes = dda_modes(scene)
+    return BlockFrequencies(modes[0].frequency, highest, impact, modes)
 
 
 # ---- candidates -----------------------------------------------------------------------------------------------------
@@ -295,6 +305,7 @@ def _offer(
         rebound={"mean": statistics.mean, "least": statistics.least, "most": statistics.most},
         greatest_rebound=greatest,
         gains=statistics.most > 1 + GAIN,
+        start_rise=overshoot.rise_of(stepping, frequencies.modes),
         fears=(),
     )
     return replace(offer, fears=tuple(_fears(offer, omega)))
@@ -317,6 +328,9 @@ def _fears(offer: Offer, omega: float) -> Iterator[str]:
         yield f"an impact at this step gives back up to {offer.rebound['most']:.3g} times its speed"
     elif offer.greatest_rebound > 1 + GAIN:
         yield f"at longer steps or stiffer contact impacts give back up to {offer.greatest_rebound:.3g} times the speed"
+    if offer.start_rise is not None and offer.start_rise > overshoot.NOTABLE:
+        rise = percent(offer.start_rise)
+        yield f"from a consistent start under a load at once the first step adds {rise} of the energy it gives"
     if offer.contact_radius > KEEPS:
         yield f"the contact mode keeps {100 * offer.contact_radius:.3g} % of its amplitude a step"
     if offer.gg < 1:

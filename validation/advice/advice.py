@@ -42,6 +42,7 @@ from validation.theory.friction import distance_share
 LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
+NO_STATIC = "no static displacement"  # in place of where a settling is from
 LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
 Reach = tuple[float | None, float | None, float | None, float | None]  # least xi and where, greatest xi and where
 GAIN = 3.0  # a mode's amplitude over its static share, at most: 1 at rest, more where roots collide
@@ -53,9 +54,11 @@ class Solution:
 
     value: float  # dt [s], gg [1] or delta [1]
     damping: float  # xi of the first axial mode there [1]
-    settling_steps: int | None  # displacement within 1 % of static for ever after; None if never
+    settling_steps: (
+        int | None
+    )  # displacement within 1 % of static under the scene's loads for ever after; None if never
     settling_seconds: float | None  # the same [s]
-    settling_from: str  # "history", or "envelope" where the history would be too long
+    settling_from: str  # "history", "envelope" where the history would be too long, or `NO_STATIC`
     alpha: float  # weight of the new acceleration in the displacement [1]
     delta: float  # and in the velocity [1]
     step: float  # dt [s]
@@ -243,18 +246,21 @@ def _solution(scene: Scene, search: Search, s: float) -> Solution:
 
 
 def _settling(case: Scene) -> tuple[int | None, str]:
-    """Return the settling step of the displacement, from its history or, where that is too long, from the envelope."""
+    """Return the settling step of the displacement under the scene's own loads, and where it is from.
+
+    That is its history or, where it is too long, the envelope. A displacement without a static value settles nowhere.
+    """
+    static = 0.0 if case.load.base_motion else get_solver("dda").static(case)["displacement"]
+    if static == 0:
+        return None, NO_STATIC
     modes = [(mode.spectral_radius, abs(mode.share)) for mode in dda_modes(case)]
     last = [_crossing(radius, 0.01 / (GAIN * share)) for radius, share in modes if share > 0]
-    if max(last) > LONGEST:
-        rough = max(_crossing(radius, 0.01 / share) for radius, share in modes if share > 0)
+    ramp = case.load.ramp / case.time.step  # steps until the load stands in full
+    if max(last) + ramp > LONGEST:
+        rough = ramp + max(_crossing(radius, 0.01 / share) for radius, share in modes if share > 0)
         return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
-    dda = get_solver("dda")
-    static = dda.static(case)["displacement"]
-    steps = max(10, math.ceil(max(last)) + 10)
-    run = solve(case.with_values({"time.steps": steps, "load.pressure": 1.0}), dda)
-    if case.load.pressure:
-        static /= case.load.pressure  # of the unit pressure that is run
+    steps = max(10, math.ceil(ramp + max(last)) + 10)
+    run = solve(case.with_values({"time.steps": steps}), "dda")
     step = settling_step(run.displacement, static)
     return (int(step) if isinstance(step, float) else None), "history"
 

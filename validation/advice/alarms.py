@@ -1,7 +1,5 @@
 """Alarms: results that look better than they are.
 
-agreement by damping
-    DDA and its reference agree better than either of them agrees with the motion, because both are damped out.
 hidden tension
     A locked contact carries tension; a real one would open.
 contact ringing
@@ -9,35 +7,37 @@ contact ringing
 fixed discount
     dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
 
-Those of contact that opens are in `validation.advice.contact_alarms`, those of friction in `.friction`, those of
-columns whose contacts open or slip in `.columns`.
+Those of a step that is too long for the motion are in `validation.advice.coarse`, that of a start that puts energy in
+in `.overshoot`, those of contact that opens in `.contact_alarms`, those of friction in `.friction`, those of columns
+whose contacts open or slip in `.columns`.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
-import numpy as np
-
 from validation.advice.alarm import Alarm as Alarm
 from validation.advice.alarm import alarm, first_row, number
+from validation.advice.coarse import coarse_alarms
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
+from validation.advice.overshoot import overshoot_alarms
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.row import Row
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
+from validation.solvers.contract import EXACT_IN_TIME, Role
 from validation.solvers.registry import by_role, role
 
-AGREEMENT = "agreement by damping"
 TENSION = "hidden tension"
 RINGING = "contact ringing"
 DISCOUNT = "fixed discount"
-REMOVED = 0.5  # of the first mode's motion over the window
+AGREES = 0.5  # relative L2 below which two histories share more than half of the motion
 FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps over 0.9 of its amplitude
 
 
@@ -58,37 +58,37 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
     rows_by_scene: dict[str, dict[str, Row]] = {}
     for (name, solver), row in finished.rows.items():
         rows_by_scene.setdefault(name, {})[solver] = row
+    blocks = [scene for scene in listed if scene.kind == "block"]
     for scene in listed:
         rows = rows_by_scene.get(scene.name, {})
-        yield from _agreement(scene, finished)
+        if _stepped(rows):
+            frequency = number(first_row(rows, Role.JUDGED), "mode1.frequency")
+            yield from coarse_alarms(scene, frequency, functools.partial(agreement, scene, finished))
+    for scene in blocks:
+        rows = rows_by_scene.get(scene.name, {})
         yield from _tension(scene, rows)
         yield from _ringing(scene, rows)
         yield from contact_alarms(scene, rows)
+        yield from overshoot_alarms(scene, rows)
         yield from friction_alarms(scene, rows)
-    yield from fixed_discount(listed)
+    yield from fixed_discount(blocks)
 
 
-def agreement_by_damping(scene: Scene, finished: Cases) -> dict[str, float] | None:
-    """Return agreement, share of the motion that damping removed and time error, or None where not all are known.
+def _stepped(rows: Mapping[str, Row]) -> bool:
+    """Whether some solver that takes the scene's steps has completed it."""
+    return any(row.outcome is Outcome.COMPLETED and role(solver) not in EXACT_IN_TIME for solver, row in rows.items())
 
-    Agreement and time error are relative L2 of the displacement, over the whole history: DDA against the bar (or
-    elements) under the same scheme, and that reference against the continuum. The share is one minus the root mean
-    square over the window of the first mode's amplitude |lambda|^n, without what physical damping would remove: the
-    continuum has the kinetic damping -ln(gg) / dt, so that only the algorithmic part counts.
-    """
-    solver, history = _first(scene, finished, Role.JUDGED)
-    _, reference = _first(scene, finished, Role.REFERENCE)
-    _, exact = _first(scene, finished, Role.TRUTH)
-    if history is None or exact is None or reference is None:
-        return None
-    agreement = pair_metric("displacement.l2", history, reference)
-    error = pair_metric("displacement.l2", reference, exact)
-    row = finished.rows[scene.name, solver]
-    radius = number(row, "mode1.spectral_radius")
-    if not (isinstance(agreement, float) and isinstance(error, float) and radius is not None):
-        return None
-    removed = removed_motion(scene, radius, number(row, "mode1.frequency") or 0.0)
-    return {"agreement": agreement, "removed": removed, "time error": error}
+
+def agreement(scene: Scene, finished: Cases) -> str:
+    """Say how well the judged method and its reference agree; nothing where one did not run, or they do not agree."""
+    judged, history = _first(scene, finished, Role.JUDGED)
+    name, reference = _first(scene, finished, Role.REFERENCE)
+    if history is None or reference is None:
+        return ""
+    difference = pair_metric("displacement.l2", history, reference)
+    if not isinstance(difference, float) or difference >= AGREES:
+        return ""
+    return f"{judged} and {name} are {100 * difference:.2g} % apart"
 
 
 def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, History | None]:
@@ -97,28 +97,6 @@ def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, Hi
         if (history := finished.history(scene.name, name)) is not None:
             return name, history
     return "", None
-
-
-def removed_motion(scene: Scene, radius: float, frequency: float = 0.0) -> float:
-    """Return one minus the root mean square of (|lambda| / sqrt(gg))^n over the window, 0 where nothing is damped.
-
-    Damping tables are meant: what they take from a mode of some frequency [rad/s] is no removal, and neither is what
-    the discount takes.
-    """
-    rate = scene.damping.mass + scene.damping.stiffness * frequency**2
-    physical_radius = math.sqrt(scene.time.discount) * math.exp(-rate * scene.time.step / 2)
-    if radius == 0 or physical_radius == 0:
-        return 1.0
-    amplitude = np.minimum(radius / physical_radius, 1.0) ** np.arange(1, scene.time.steps + 1)
-    return float(1 - np.sqrt(np.mean(amplitude**2)))
-
-
-def _agreement(scene: Scene, finished: Cases) -> Iterator[Alarm]:
-    values = agreement_by_damping(scene, finished)
-    if values is None or values["removed"] < REMOVED or values["agreement"] >= values["time error"]:
-        return
-    shares = {"agreement_share": "agreement", "removed_share": "removed", "error_share": "time error"}
-    yield alarm(AGREEMENT, scene.name, values, **{word: 100 * values[name] for word, name in shares.items()})
 
 
 def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:

@@ -3,7 +3,8 @@
 step too large for contact
     The step changes the restitution of a landing by more than a tenth; arbitrary where it is the phase that decides.
 energy gained by switching
-    Opening and closing have put energy into the block.
+    Opening and closing have put energy into the block; under a scheme that remembers its acceleration, all that the
+    scheme did.
 energy may be gained
     delta < 1 or 2 alpha < delta, with w_c dt > 1: nothing keeps opening and closing from putting energy in.
 hidden opening
@@ -60,9 +61,7 @@ def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     lands = number(row, "switches.first_closing") is not None or scene.block.velocity < 0
     if opens and lands:
         yield from _landing(scene)
-    gain = number(row, "energy.switching_gain")
-    if gain is not None and gain > NOTABLE:
-        yield alarm(GAINED, scene.name, {"gain": gain}, percent=100 * gain)
+    yield from gained(scene, row)
     if opens and lands:
         yield from _may_gain(scene)
     limit = landing.hidden_from(scene)
@@ -71,6 +70,26 @@ def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     yield from _penalty(scene, number(row, "contact.peak_force"), first_row(rows, Role.TRUTH))
     yield from _drag(scene, number(row, "contact.open_share") or 0.0)
     yield from _pulling(scene)
+
+
+def gained(scene: Scene, row: Row) -> Iterator[Alarm]:
+    """Yield the alarm of a run that has gained energy where its contacts opened and closed.
+
+    What switching gains is an energy of its own where the accelerations have no share in that of the scheme, Newmark's
+    with alpha = delta/2. Under any other scheme a switch changes what is stored in them as well: only the sum of all
+    that the scheme has taken and given is an energy there.
+    """
+    gain = number(row, "energy.switching_gain")
+    cause = "opening and closing have"
+    stepping = Stepping.of(scene)
+    if stepping.scheme != "newmark" or 2 * stepping.alpha != stepping.delta:
+        lost = [number(row, f"energy.lost_{part}") for part in ("algorithmic", "switching")]
+        given = number(row, "energy.given")
+        gain = -sum(part or 0.0 for part in lost) / given if given and None not in lost else None
+        cause = "the scheme has, with opening and closing,"
+    switches = number(row, "switches.count")
+    if gain is not None and gain > NOTABLE and switches != 0:
+        yield alarm(GAINED, scene.name, {"gain": gain}, percent=100 * gain, cause=cause)
 
 
 def _landing(scene: Scene) -> Iterator[Alarm]:

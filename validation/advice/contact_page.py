@@ -12,6 +12,7 @@ from typing import Any
 
 from validation.advice import contact, friction
 from validation.advice.contact_alarms import contact_alarms
+from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.row import Row, Value
@@ -34,7 +35,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 NONE = "-"  # in place of a number that a run has not
 
 LINES: dict[str, list[dict[str, Any]]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-ALARMS = (contact_alarms, friction.friction_alarms)
+ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 
 def of_role(role: Role) -> str:
@@ -243,7 +244,8 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     load = abs(opened.resultant_load(scene))
     why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
     yield (
-        f"{why}: a restitution within {100 * error:g} % of the block's own and a penetration below {depth:g} m, "
+        f"{why}: a restitution within {error:g} of the block's own (both over the speed of approach) and a penetration "
+        f"below {depth:g} m, "
         f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N."
     )
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
@@ -282,7 +284,7 @@ def _allowed(steps: Mapping[str, Any] | None, gg: float) -> str:
         return "not known for this scheme, contact rule, outline or rigid stop"
     if steps["longest"] is None:
         discount = f" with gg = {gg:g}" if gg < 1 else ""
-        return f"none{discount}; the least error is {100 * steps['best']:.3g} %, at dt = {steps['best_step']:.3g} s"
+        return f"none{discount}; the least difference is {steps['best']:.3g}, at dt = {steps['best_step']:.3g} s"
     if steps["shortest"] is None:
         return f"dt <= {steps['longest']:.3g} s"
     return f"dt from {steps['shortest']:.3g} s, below which gg takes more, to {steps['longest']:.3g} s"

@@ -6,7 +6,8 @@ lagged friction
     The friction of a slipping corner is that of the pass before: a stable block may creep, the faster the finer the
     step (at 20 degrees under 30, 0.8 mm in a second at 1 ms and 6.1 mm at 0.2 ms; at 5 degrees hardly).
 slip hidden by the step
-    The step is too long for the ringing that moves the exact block: it stands because it is damped.
+    The step is too long for the ringing that may move the exact block: it stands because it is damped. Not told where
+    shear springs are as stiff as normal ones and the slope is gentle: there the exact block stands as well.
 no contact state
     No states of stick and slip agree with the motion, or several do.
 drag on a sliding block
@@ -52,6 +53,8 @@ class Sliding:
     braked: float  # the same with the scene's scheme and discount [m]
     offset: float  # by which the deflection of the springs puts it ahead [m]
     creep: float  # g / w_n, with which the creep of a stable block on ringing springs scales [m/s]
+    shear_ratio: float  # of shear springs over normal ones, on which the factor depends
+    rings_alike: bool  # whether they ring alike, and a block on this slope stands in spite of it
     rate: float | None  # -ln(gg) / dt [1/s]; None where gg = 0, which takes the whole velocity in every step
     constant: float  # dt / (1 - gg), terminal speed over acceleration [s]
 
@@ -73,7 +76,8 @@ def sliding(scene: Scene) -> Sliding | None:
         return None
     acceleration = friction.sliding_acceleration(scene)
     displacements, _ = friction.free_motion(scene, max(acceleration, 0.0))
-    creep = friction.creep_scale(scene) if math.isfinite(scene.contact.stiffness) else 0.0
+    is_soft = math.isfinite(scene.contact.stiffness)
+    creep = friction.creep_scale(scene) if is_soft else 0.0
     rate = friction.drag_rate(scene) if scene.time.discount > 0 else None
     return Sliding(
         friction.threshold_angle(scene),
@@ -82,6 +86,8 @@ def sliding(scene: Scene) -> Sliding | None:
         float(displacements[-1]),
         friction.penalty_offset(scene),
         creep,
+        scene.contact.shear / scene.contact.stiffness if is_soft else 1.0,
+        is_soft and friction.stands_on_ringing_springs(scene),
         rate,
         friction.time_constant(scene),
     )
@@ -100,10 +106,13 @@ def lines(scene: Scene, slides: Sliding) -> Iterator[str]:
     both = ", cohesion acting at both corners" if scene.contact.cohesion else ""
     yield f"Slope {slope:g} deg, {side} the threshold of {slides.threshold:.4g} deg{both}:"
     if slides.stands:
-        yield (
-            "  stable      undamped springs ring and let it creep at a speed that scales with g / w_n = "
-            f"{1e3 * slides.creep:.3g} mm/s; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
+        words = (
+            f"undamped springs ring, and with p_s = {slides.shear_ratio:.3g} p it may creep by the order of g / w_n = "
+            f"{1e3 * slides.creep:.3g} mm/s"
         )
+        if slides.rings_alike:
+            words = "undamped springs ring, those of shear like the normal ones, and it stands"
+        yield f"  stable      {words}; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
     else:
         yield (
             f"  slides      if rigid, at rest and touching at t = 0: by {slides.run_out:.5g} m in {t.duration:.4g} s "
@@ -151,6 +160,6 @@ def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
     t = scene.time
     phase = friction.normal_frequency(scene) * t.step
     damps = Stepping.of(scene).damps or t.discount < 1
-    if scene.load.slope and damps and phase > COARSE and slides.creep > 0:
-        values = {"phase": phase, "scale": slides.creep}
+    if scene.load.slope and damps and phase > COARSE and slides.creep > 0 and not slides.rings_alike:
+        values = {"phase": phase, "scale": slides.creep, "ratio": slides.shear_ratio}
         yield alarm(HIDES, scene.name, values, period=2 * math.pi * t.step / phase, speed=1e3 * slides.creep)

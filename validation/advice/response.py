@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from validation.advice.spectra import checked
 from validation.errors import InputError
@@ -17,7 +19,26 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Solver
 
 ROUNDING = 1e-12  # of an amplitude that is real
+POINTS_A_ZOOM = 17  # in the range in which a peak is followed, which is then an eighth
+NARROW = 1e-9  # width of that range over frequency in the end: a bounded peak then has all digits that are printed
+GROWTH = 100.0  # of a pole's amplitude meanwhile, at least; that of a bounded peak is within the first range
+SAME = 1e-6  # of frequencies that two brackets have led to
 HEADER = ("frequency", DISPLACEMENT, f"{DISPLACEMENT}_phase", PRESSURE, f"{PRESSURE}_phase")  # Hz, m, rad, Pa, rad
+
+
+Answer = Callable[[Array], Mapping[str, Complex]]
+
+
+class Peak(NamedTuple):
+    """A peak of an amplitude over frequency."""
+
+    frequency: float  # [Hz]
+    amplitude: float  # [m, Pa, or those per m], infinite where nothing damps the vibration
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether something damps the vibration."""
+        return math.isfinite(self.amplitude)
 
 
 @dataclass(frozen=True)
@@ -34,6 +55,7 @@ class Response:
     base: bool  # per metre of base motion, else under the scene's loads
     frequency: Array  # f [Hz]
     columns: Mapping[str, Complex]  # complex amplitude of each column
+    answer: Answer = field(repr=False, compare=False)  # the same columns at other frequencies
 
     @property
     def displacement(self) -> Complex:
@@ -49,12 +71,60 @@ class Response:
         """Return the columns of `HEADER`: frequency, and amplitude and phase of each column, one row a frequency."""
         return np.column_stack([self.frequency, *polar(self.displacement), *polar(self.contact_pressure)])
 
-    def peaks(self, column: str) -> list[tuple[float, float]]:
-        """Return frequency and amplitude of the local maxima between the ends of the range, the highest first."""
-        size = np.abs(self.columns[column])
-        inside = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
-        peaks = [(float(self.frequency[i]), float(size[i])) for i in inside]
-        return sorted(peaks, key=lambda peak: -peak[1])
+    def peaks(self, column: str) -> list[Peak]:
+        """Return the peaks inside the range, unbounded ones first by frequency, then the others from the highest down.
+
+        The listed frequencies only bracket them: each is followed between them until frequency and amplitude are those
+        of the model. Where nothing damps a vibration that the load reaches, the amplitude passes from one infinity to
+        the other at its natural frequency.
+        """
+        values = self.columns[column]
+        size = np.abs(values)
+        local = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+        brackets = [(int(i) - 1, int(i) + 1) for i in local]
+        # without damping amplitudes are real: a change of sign may hide a resonance of which neither end is a maximum
+        signs = np.flatnonzero(_is_real(values[:-1]) & _is_real(values[1:]) & (values.real[:-1] * values.real[1:] < 0))
+        brackets += [(int(i), int(i) + 1) for i in signs]
+        peaks: list[Peak] = []
+        for low, high in brackets:
+            peak = self._follow(column, float(self.frequency[low]), float(self.frequency[high]))
+            if peak is not None and not any(_is_same(peak, other) for other in peaks):
+                peaks.append(peak)
+        return sorted(peaks, key=lambda peak: (peak.is_bounded, -peak.amplitude if peak.is_bounded else peak.frequency))
+
+    def _follow(self, column: str, low: float, high: float) -> Peak | None:
+        """Return the peak between two frequencies; None where the amplitude is highest at an end."""
+        first, last = low, high
+        coarse = 0.0
+        undamped = False
+        while True:
+            frequency = np.linspace(low, high, POINTS_A_ZOOM)
+            values = self.answer(frequency)[column]
+            size = np.where(np.isfinite(values), np.abs(values), np.inf)
+            highest = int(np.argmax(size))
+            if coarse == 0:
+                coarse = float(size[highest])
+                undamped = bool(np.mean(_is_real(values)) > 0.5)  # next to a pole the imaginary rounding grows too
+            beside = slice(max(highest - 1, 0), highest + 2)
+            low, high = (float(end) for end in frequency[beside][[0, -1]])
+            if high - low <= NARROW * high:
+                break
+        middle = float(frequency[highest])
+        if not first < middle < last:
+            return None
+        # At a pole, a real amplitude changes its sign and grows as 1 / |f - f0|; a bounded one has converged.
+        around = values[beside].real
+        is_pole = undamped and around[0] * around[-1] < 0 and size[highest] > GROWTH * coarse
+        return Peak(middle, math.inf if is_pole else float(size[highest]))
+
+
+def _is_real(values: Complex) -> NDArray[np.bool_]:
+    """Whether amplitudes have no imaginary part but rounding."""
+    return np.asarray(np.abs(values.imag) <= ROUNDING * np.abs(values))
+
+
+def _is_same(peak: Peak, other: Peak) -> bool:
+    return math.isclose(peak.frequency, other.frequency, rel_tol=SAME)
 
 
 def polar(amplitude: Complex) -> tuple[Array, Array]:
@@ -113,13 +183,18 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     chosen = checked(solver, scene) if isinstance(solver, str) else solver
     if reason := chosen.refusal(scene):
         raise InputError(f"solver {chosen.name} does not apply: {reason}", source=scene.name)
+    prepared = chosen.prepare(scene)
+
+    def answer(at: Array) -> Mapping[str, Complex]:
+        amplitudes = prepared.response(at, exact)
+        return {name: amplitudes[name] for name in (DISPLACEMENT, PRESSURE)}
+
     try:
-        amplitudes = chosen.prepare(scene).response(f, exact)
+        columns = answer(f)
     except NotReported as error:
         raise InputError(f"solver {chosen.name}: {error}", source=scene.name) from None
     base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
-    columns = {name: amplitudes[name] for name in (DISPLACEMENT, PRESSURE)}
-    return Response(scene.name, chosen.name, exact, base, f, columns)
+    return Response(scene.name, chosen.name, exact, base, f, columns, answer)
 
 
 def check_scene(scene: Scene) -> None:

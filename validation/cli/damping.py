@@ -46,13 +46,13 @@ def advise(
         typer.Option("--damping", help="Target damping ratio of the first axial mode, 0.05 for 5 %.", min=0.0),
     ] = None,
     solve_for: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--solve-for",
-            help="What to vary: dt, gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
+            help="What to vary: dt (if absent), gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
             metavar="NAME",
         ),
-    ] = "dt",
+    ] = None,
     at: Annotated[
         float | None,
         typer.Option("--at", help="With --damping: frequency at which it is wanted, across all schemes.", metavar="HZ"),
@@ -93,7 +93,7 @@ def advise(
     """
     from dataclasses import asdict
 
-    from validation.advice.columns import advised, column_alarms, limits
+    from validation.advice.columns import advised, column_alarms, limits, rest
     from validation.advice.plain import plain
     from validation.errors import InputError
     from validation.scenes.features import refuse_nonlinear
@@ -102,11 +102,17 @@ def advise(
     is_across = across or at is not None or no_gain is not None
     if is_across and damping is None:
         raise InputError("must be given with --at, --across and --no-gain", field="--damping", value="nothing")
+    if solve_for is not None and (is_across or fmax is not None):
+        rule = "goes with --damping alone, without --at, --across, --no-gain and --fmax"
+        raise InputError(rule, field="--solve-for", value=repr(solve_for))
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
+        with _progress("advise", between_calls=True):
+            resting = rest(case)
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
-        echo_answer(plain(asdict(bounds)), map(broken, (*advised(case, bounds), *alarms)), as_json)
+        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
+        echo_answer(plain(data), map(broken, (*advised(case, bounds, resting), *alarms)), as_json)
     elif (damping is None) == (fmax is None):
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
@@ -122,7 +128,7 @@ def advise(
         wave = advise_wave(case, float(fmax or 0), loss, wavelengths, phase_error)
         echo_answer(wave.as_dict(), _wave_lines(wave), as_json)
     else:
-        _advise_damping(case, damping, solve_for, as_json)
+        _advise_damping(case, damping, solve_for or "dt", as_json)
 
 
 def _wave_lines(advice: WaveAdvice) -> Iterator[str]:
@@ -207,13 +213,18 @@ def _advice_lines(advice: Advice, errors: list[dict[str, Any]]) -> Iterator[str]
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 
-    steps = "never" if solution.settling_steps is None else f"{solution.settling_steps} steps"
-    seconds = "" if solution.settling_seconds is None else f" = {solution.settling_seconds:.4g} s"
+    settles = f"never (from the {solution.settling_from})"
+    if solution.settling_from == NO_STATIC:
+        settles = f"nowhere: the loads have {NO_STATIC}"
+    elif solution.settling_steps is not None:
+        steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
+        settles = f"{steps} (from the {solution.settling_from})"
     yield "damping ratio", f"{100 * solution.damping:.6g} %"
     yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
-    yield "displacement settles", f"{steps}{seconds} (from the {solution.settling_from})"
+    yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
     for name in ("fem", "continuum"):

@@ -19,7 +19,6 @@ from validation.cli import (
     field,
     gallery,
     judge,
-    merge,
     report,
     run,
     show,
@@ -35,7 +34,6 @@ from validation.runs.text import printable
 
 COMMANDS = (
     run,
-    merge,
     show,
     report,
     gallery,
@@ -50,8 +48,8 @@ COMMANDS = (
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
-    "Scenes and runs": ("list", "show", "run", "merge", "solve"),
-    "Results": ("report", "figures", "gallery", "rows", "claims", "diff", "record"),
+    "Scenes and runs": ("list", "show", "run", "solve"),
+    "Results": ("report", "figures", "gallery", "rows", "claims", "diff"),
     "Your own code or program": ("judge", "field", "compare", "export-pack"),
     "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
 }

@@ -204,6 +204,8 @@ def _judge_solver(target: str, solver: str, assignments: list[str] | None, progr
     case = one_case(source, assignments)
     posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
     adapter = get_solver(solver)
+    if isinstance(adapter, UserSolver):
+        adapter.check_module()
     progress(0, 3, f"{case.name} {solver}")
     run = completed(adapter, case)
     history = _completed_history(run, case.name, solver)
@@ -259,6 +261,8 @@ def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
         echo(f"warning: {sentence}")
     if judged.cause is not None:
         echo(f"cause: {judged.cause.sentence}")
+        if judged.cause.passing_step is not None:
+            echo(f"this scheme passes at a step of {judged.cause.passing_step:g} s")
         echo(reached(judged))
         if judged.cause.would_tell:
             echo(f"what would tell: {judged.cause.would_tell}")

@@ -17,6 +17,9 @@ from validation.cli.printing.output import echo
 @app.command()
 def report(
     out: Annotated[Path, typer.Option(help="PDF file to write.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
+    appendix: Annotated[
+        bool, typer.Option("--appendix", help="List the gates that passed, by the reason of their band.")
+    ] = False,
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
@@ -31,7 +34,7 @@ def report(
         raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
     store = Results(results)
     with _progress("report", between_calls=True):
-        page = build(store, out)
+        page = build(store, out, appendix)
     print_unread(store)
     echo(f"wrote {page}")
 

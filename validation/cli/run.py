@@ -5,28 +5,28 @@ from __future__ import annotations
 import itertools
 import os
 import time
-from collections import Counter
 from contextlib import closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from validation.cli.printing.answer import RunAnswer
     from validation.engine.measured import JudgedStudy
     from validation.engine.run import StudyCases
-    from validation.engine.shards import RunOptions, Shard
     from validation.gates.gate import Verdict
     from validation.runs.records import BaselineVerdict
     from validation.runs.results import Results
     from validation.runs.run import Run
     from validation.scenes.scene import Scene
-    from validation.solvers.contract import Solver
+    from validation.solvers.contract import Prepared, Solver
     from validation.suite.declaration import Study
+from validation.cli.announcing import announced
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -58,6 +58,7 @@ RequireOption = Annotated[
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")]
+LONG_RUN = 5.0  # s, from which on `solve` says before it begins how long a run takes
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
@@ -118,10 +119,6 @@ def run(
     verbose: VerboseOption = False,
     as_json: JsonOption = False,
     quiet: QuietOption = False,
-    shard: Annotated[
-        str | None,
-        typer.Option(help="Run this part of all cases only, for `dda-validate merge` to judge.", metavar="I/N"),
-    ] = None,
 ) -> None:
     """Run studies or scenes, judge them, and print a line for each study and every gate that fails.
 
@@ -129,32 +126,17 @@ def run(
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
     """
-    from validation.engine.shards import Shard
-    from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
     from validation.suite.folders import resolve, study_names
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
-    part = None if shard is None else Shard.parse(shard)
-    if part is not None and (require or summary or baseline or verbose):
-        raise InputError(
-            "goes without --require, --summary, --baseline and --verbose", field="--shard", advice="give them to merge"
-        )
     before = judging.check()
     promise_rows()
     studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
     store = Results(results)
     store.check()
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
-    if part is not None:
-        options: RunOptions = {
-            "targets": targets or ["core"],
-            "assignments": assignments or [],
-            "full": full,
-            "ranks": ranks,
-        }
-        raise typer.Exit(_run_shard(part, options, studies, store, machine, judging))
     for study in studies:
         if study.name not in study_names():  # the suite's own studies are extreme on purpose
             for scene in study.scenes:
@@ -286,46 +268,6 @@ def _run_studies(
     return [runs[study.name] for study in studies], [seconds[study.name] for study in studies]
 
 
-def _run_shard(
-    shard: Shard,
-    options: RunOptions,
-    studies: Sequence[Study],
-    results: Results,
-    machine: Machine,
-    judging: Judging,
-) -> int:
-    """Run a part of the studies' cases, keep its record, print what it did and return the status."""
-    from validation.cli.printing.answer import how_it_ended
-    from validation.engine import shards
-    from validation.engine.measured import JudgedStudy
-    from validation.engine.run import study_cases
-
-    groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    part = shard.part(groups)
-    shards.begin(shard, results)
-    runs: list[JudgedStudy] = []
-    with _running(part, results, machine, judging) as ended:
-        for group in ended:
-            rows = group.finished(results).rows
-            run = JudgedStudy(group.study, (), {case: row.outcome for case, row in rows.items()})
-            runs.append(run)
-            if not judging.quiet and not judging.as_json:
-                for case in run.failed:
-                    echo(how_it_ended(*case, rows[case].outcome, rows[case].notes))
-    shards.write(shards.record_of(shard, options, groups), results)
-    counted = len(shards.all_keys(part))
-    total = len(shards.all_keys(groups))
-    status = _status([], [], any(run.refused for run in runs), None, [str(run.failed) for run in runs if run.failed])
-    if judging.as_json:
-        outcomes = Counter(str(outcome) for run in runs for outcome in run.outcomes.values())
-        data = {"status": status, "results": str(results.directory), "shard": str(shard), "cases": counted}
-        echo_json(data | {"of_cases": total, "outcomes": dict(outcomes)})
-    elif not judging.quiet:
-        echo(f"shard {shard}: {counted} of {total} cases, results: {results.directory}")
-        echo("next: dda-validate merge with the directories of all shards judges them")
-    return status
-
-
 def _print_answer(answer: RunAnswer, verbose: bool) -> None:
     """Print every gate where there are few or all are asked for, then the answer, then what to do with a scene."""
     from validation.cli.printing import tables
@@ -372,9 +314,13 @@ def solve(
     from validation.errors import InputError
     from validation.runs.files import write_csv
     from validation.runs.run import Outcome
+    from validation.solvers.contract import Role
     from validation.solvers.registry import FULL, distributed, get_solver
+    from validation.solvers.user import UserSolver
 
     adapter = get_solver(solver)
+    if isinstance(adapter, UserSolver):
+        adapter.check_module()
     if ranks > 1:
         if not adapter.distributed:
             raise InputError(f"goes with {', '.join(distributed())}", field="--ranks", value=repr(solver))
@@ -383,7 +329,12 @@ def solve(
     case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
-    ended = _run_case(adapter, case, full or solver.endswith(FULL), fields)
+    is_full = full or solver.endswith(FULL)
+    with _progress(f"solve {solver}", between_calls=True) as show:
+        if adapter.role is Role.REFERENCE:  # an exact motion says by itself how long it takes
+            show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        watch = partial(_watch, solver, show)
+        ended = _run_case(adapter, case, is_full, fields, watch)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)
@@ -401,7 +352,17 @@ class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> Run:
+def _watch(solver: str, show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+    """Say how long a run takes where that is long, and show how far it is."""
+    seconds = prepared.expected_seconds()
+    if seconds is None:
+        return
+    if seconds > LONG_RUN:
+        echo(f"{solver}: takes at least about {seconds:.0f} s", err=True)
+    prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
+
+
+def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None, watch: Callable[[Prepared], None]) -> Run:
     """Run a case; a file of fields takes its name only when the run has completed."""
     from validation.engine.measure import completed
     from validation.errors import InputError
@@ -409,9 +370,9 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None) -> R
     from validation.runs.run import Outcome
 
     if fields is None:
-        return completed(solver, case, full)
+        return completed(solver, case, full, watch=watch)
     with suppress(_Abandoned), atomic_path(fields) as part:
-        run = completed(solver, case, full, part)
+        run = completed(solver, case, full, part, watch)
         if run.outcome is not Outcome.COMPLETED:
             raise _Abandoned
         if part.stat().st_size == 0:

@@ -10,8 +10,6 @@ import typer
 from validation.cli.app import GATE_FAILED, PASSED, _progress, app
 from validation.cli.printing.output import echo
 
-PARTS = 5  # of a pack
-
 
 @app.command()
 def diff(
@@ -39,31 +37,14 @@ def export_pack(
         Path, typer.Argument(help="Directory to write, or an earlier pack to replace.", metavar="DIR")
     ],
 ) -> None:
-    """Write a reference pack for codes in any language: scenes, exact histories as CSV, bands, problems to answer.
+    """Write the reference pack for codes in any language: problems, exact motions as CSV, bands, folders to fill in.
 
     Example: [bold]dda-validate export-pack pack[/bold]
     """
-    from validation.problems.pack import write_problems
+    from validation.problems.pack import check_place, write_pack
     from validation.runs.files import atomic_directory
-    from validation.studies.contact.pack import write_contact_pack
-    from validation.studies.contact.slipping_pack import write_slipping_pack
-    from validation.studies.pack import check_place, write_pack
-    from validation.studies.waves.pack import write_waves_pack
 
     check_place(directory)
     with atomic_directory(directory) as place, _progress("export-pack", between_calls=True) as progress:
-        progress(0, PARTS, "scenes, histories and bands")
-        written = write_pack(place)
-        progress(1, PARTS, "contact that opens")
-        numbers = write_contact_pack(place)
-        progress(2, PARTS, "waves")
-        waves = write_waves_pack(place)
-        progress(3, PARTS, "contact that slips")
-        slipping = write_slipping_pack(place)
-        progress(4, PARTS, "problems")
-        problems = write_problems(
-            place, lambda number, of, name: progress(4, PARTS, f"problem {name}, {number} of {of}")
-        )
-    counts = f"{written.scenes} scenes, {written.histories} histories, {written.bands} bands"
-    exact = f"of contact that opens {numbers} exact numbers, of contact that slips {slipping}, of waves {waves}"
-    echo(f"wrote {directory}: {counts}; {exact}; {problems} problems for any program")
+        problems = write_pack(place, progress)
+    echo(f"wrote {directory}: {problems} problems for any program")

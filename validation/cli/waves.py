@@ -14,7 +14,7 @@ from validation.cli.printing.output import columns, echo
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
-    from validation.advice.response import Response
+    from validation.advice.response import Peak, Response
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
     from validation.theory.stepping import Stepping
@@ -112,6 +112,8 @@ def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Pa
 
 def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     """Say where the answers peak, and where the steps see an alias."""
+    import numpy as np
+
     from validation.runs.history import DISPLACEMENT, PRESSURE
 
     exact_response = answers[EXACT]
@@ -121,20 +123,35 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
     rows: list[tuple[str, ...]] = [heads]
+    has_unbounded = False
+    left_out = 0
     for name, answer in answers.items():
         label = name if name == EXACT else "as stepped"
+        if name != EXACT and all(np.array_equal(answer.columns[c], exact_response.columns[c]) for c in answer.columns):
+            continue  # of a solver that takes no steps
         highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
         peak_cells: list[list[tuple[str, str]]] = []
         for column in (DISPLACEMENT, PRESSURE):
-            peaks = [peak for peak in answer.peaks(column) if peak[0] <= highest][:PEAKS]
-            peak_cells.append([(f"{frequency:.6g}", f"{amplitude:.6g}") for frequency, amplitude in peaks])
+            visible = [peak for peak in answer.peaks(column) if peak.frequency <= highest]
+            left_out = max(left_out, len(visible) - PEAKS)
+            peaks = visible[:PEAKS]
+            has_unbounded |= not all(peak.is_bounded for peak in peaks)
+            peak_cells.append([(f"{peak.frequency:.6g}", _amplitude(peak)) for peak in peaks])
         for displacement, pressure in itertools.zip_longest(*peak_cells, fillvalue=("", "")):
             rows.append((label, *displacement, *pressure))
     if len(rows) == 1:
-        rows = [("no peak in this range",)]
+        rows = [(f"no peak from {exact_response.frequency[0]:g} to {exact_response.frequency[-1]:g} Hz",)]
     echo(columns(rows))
+    if left_out > 0:
+        echo(f"note: {PEAKS} peaks of each at most, unbounded ones before the highest others")
+    if has_unbounded:
+        echo("note: unbounded: no damping; the amplitude has no limit at this natural frequency")
     if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+def _amplitude(peak: Peak) -> str:
+    return f"{peak.amplitude:.6g}" if peak.is_bounded else "unbounded"
 
 
 @app.command()

@@ -116,7 +116,12 @@ def _repeated(run: Run, solver: Solver, case: Case) -> Run:
 
 @np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of
 def attempt(
-    solver: Solver, scene: Scene, full: bool, fields: Path | None = None, contact_record: bool = False
+    solver: Solver,
+    scene: Scene,
+    full: bool,
+    fields: Path | None = None,
+    contact_record: bool = False,
+    watch: Callable[[Prepared], None] | None = None,
 ) -> tuple[Prepared | None, Run]:
     """Prepare and run a scene, and turn the solver's errors into outcomes.
 
@@ -130,6 +135,8 @@ def attempt(
         File for displacement and stress fields; none is written where None.
     contact_record
         Keep what metrics of contact are measured from, energies included.
+    watch
+        Takes the prepared scene before it is run, to say how long it takes and to show its progress.
 
     Returns
     -------
@@ -145,6 +152,8 @@ def attempt(
         prepared = solver.prepare(narrowed_scene, full)
         if contact_record:  # a user's own class may be frozen
             prepared.keeps_contact_record = True
+        if watch is not None:
+            watch(prepared)
         run = prepared.run(fields)
         return prepared, replace(run, notes=(*run.notes, *notes))
     except InputError as error:
@@ -157,10 +166,16 @@ def attempt(
         return prepared, Run(Outcome.RAISED, notes=(error_text(error),))
 
 
-def completed(solver: Solver, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+def completed(
+    solver: Solver,
+    scene: Scene,
+    full: bool = False,
+    fields: Path | None = None,
+    watch: Callable[[Prepared], None] | None = None,
+) -> Run:
     """Return the checked run of a scene, whatever its outcome; the parameters are those of `attempt`."""
     with one_thread():
-        return checked(attempt(solver, scene, full, fields)[1], scene)
+        return checked(attempt(solver, scene, full, fields, watch=watch)[1], scene)
 
 
 def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:

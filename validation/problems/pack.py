@@ -33,7 +33,7 @@ from validation.runs.files import write_atomically
 from validation.runs.history import History
 
 Progress = Callable[[int, int, str], None]
-PLACE = "problems"  # directory of a pack that holds this part
+PAGE = Path(__file__).with_suffix(".md")  # of the pack, to be filled in
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
 DIALECT = "https://json-schema.org/draft/2020-12/schema"  # of pydantic's schemas
@@ -102,13 +102,33 @@ def _judged(column: str, band: Band) -> ColumnOfAnswer:
     )
 
 
-def write_problems(directory: Path, progress: Progress = lambda number, total, label: None) -> int:
-    """Write the problems into `problems` of a pack's directory, and return how many there are.
+def check_place(directory: Path) -> None:
+    """Refuse a place whose files are not those of a pack, which is replaced as a whole.
+
+    Raises
+    ------
+    InputError
+        It is a file, or a directory of other files.
+    """
+    if directory.exists() and not directory.is_dir():
+        raise InputError("must be a directory", source=directory, value="a file")
+    readme = directory / "README.md"
+    if not directory.is_dir() or not any(directory.iterdir()):
+        return
+    title = PAGE.read_text(encoding="utf-8").splitlines()[0].encode()
+    if not readme.is_file() or not readme.read_bytes().startswith(title):
+        raise InputError(
+            "must be a new or empty directory or an earlier pack", source=directory, value="one with other files"
+        )
+
+
+def write_pack(place: Path, progress: Progress = lambda number, total, label: None) -> int:
+    """Write the problems into the directory of a pack, and return how many there are.
 
     Parameters
     ----------
-    directory
-        Of the pack.
+    place
+        Directory of the pack, which is made.
     progress
         Told before each problem: how many are done, of how many, and which is next.
 
@@ -117,7 +137,7 @@ def write_problems(directory: Path, progress: Progress = lambda number, total, l
     InputError
         The directory cannot be made or written.
     """
-    place, rows = directory / PLACE, []
+    rows = []
     for number, name in enumerate(PROBLEMS):
         progress(number, len(PROBLEMS), name)
         posed = problem(name)
@@ -141,7 +161,7 @@ def write_problems(directory: Path, progress: Progress = lambda number, total, l
         stem = data_of.__name__.removesuffix("Data").lower()
         _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
-    readme = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+    readme = PAGE.read_text(encoding="utf-8")
     _write(place / "README.md", readme.format(pack=PACK, table=table))
     return len(PROBLEMS) + len(box_questions())
 

@@ -74,8 +74,7 @@ def check_pack(document: Document, defects: Defects) -> str | None:
     pack = document.content.get("pack")
     if pack is None or pack in packs():
         return pack
-    versions = ", ".join(packs())
-    rule = f"must be {PACK!r}, the version of this pack, or an earlier one ({versions})"
+    rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
     defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack), advice=EXPORT)
     return None
 

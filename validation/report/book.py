@@ -59,8 +59,8 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     return reasons
 
 
-def build(results: Results, out: Path) -> Path:
-    """Write the PDF of all studies in a results directory and return its path.
+def build(results: Results, out: Path, gates: bool = False) -> Path:
+    """Write the PDF of all studies in a results directory and return its path; `gates` lists those that passed.
 
     Raises
     ------
@@ -69,10 +69,10 @@ def build(results: Results, out: Path) -> Path:
     """
     results = Readable(results)
     studies = ordered_studies(results)
-    return write_document(out, lambda root: _all_blocks(results, studies, root))
+    return write_document(out, lambda root: _all_blocks(results, studies, root, gates))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list[Part]:
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> list[Part]:
     from validation.report.appendix.pages import appendix
     from validation.report.front.groups import groups_of_studies
     from validation.report.front.pages import front_pages
@@ -93,7 +93,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path) -> list
         verdicts = results.verdicts()
         provenances = [results.manifest(study).get("provenance", {}) for study in readable]
         front = front_pages(groups, verdicts, readable, figures, provenances)
-        return [*front, *chapters, *appendix(results, groups, verdicts, readable)]
+        return [*front, *chapters, *appendix(results, groups, verdicts, readable, gates)]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> Blocks:

@@ -14,6 +14,7 @@ from validation.scenes.tables import Angle, Count, Flag, NonNegative, Positive, 
 MOST_HEIGHTS = 99  # at which a history may look
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
 BlockCount = Annotated[Count, Field(le=100_000)]  # of a layer: faces are lists, made before memory is predicted
+THINNEST = 1e-6  # block, of the height: its elements, hundreds at most, must be longer than `NEAR`
 PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
 FrictionAngle = Annotated[Angle, Field(ge=0)]
 OPENS, SLIPS, MOVES = 'law = "unilateral"', 'law = "frictional"', 'law = "unilateral" or "frictional"'
@@ -114,6 +115,10 @@ class ColumnSection(Section):
     def _check(self) -> Self:
         self._check_base()
         self._check_law()
+        for layer in self.layer:
+            if not layer.thickness / layer.blocks > THINNEST * self.height:
+                rule = f"layer.thickness must be above {THINNEST:g} of the column's height for each block"
+                raise ValueError(f"{rule}, got {layer.thickness:g} for {layer.blocks} of {self.height:g}")
         for name, values in (("joint.height", [j.height for j in self.joint]), ("heights", self.heights)):
             outside = [value for value in values if value > self.height * (1 + NEAR)]
             if outside:

@@ -145,8 +145,16 @@ def refuse_nonlinear(scene: Scene, what: str) -> None:
     InputError
         The motion is not linear.
     """
-    if not linear(scene):
-        raise InputError(f"{what} for linear scenes only", source=scene.name, value=f"one with {', '.join(of(scene))}")
+    present = [feature.name for feature in _present(scene) if not feature.linear]
+    if not present:
+        return
+    advice = None
+    if not set(present).isdisjoint(OF_MOVING_COLUMN):
+        advice = "dda-validate contact shows what opens and slips"
+    elif UNILATERAL in present:
+        advice = 'dda-validate contact shows how it opens and lands; contact.law = "locked" keeps it closed'
+    rule = f"{what} for linear scenes only"
+    raise InputError(rule, source=scene.name, value=f"one with {', '.join(present)}", advice=advice)
 
 
 def refuse_damping(scene: Scene, what: str) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
+
+import numpy as np
 
 from validation.errors import InputError
 from validation.runs.contact import ContactRecord
@@ -18,6 +20,10 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming
+
+# What solvers raise where numbers leave the range of double precision: also a pivot or a mass that rounding or
+# underflow has made zero.
+OUT_OF_RANGE = (OverflowError, ZeroDivisionError, FloatingPointError, np.linalg.LinAlgError)
 
 
 class NotReported(LookupError):
@@ -73,6 +79,7 @@ class Prepared:
     keeps_contact_record = False  # whether `contact_record` will be asked for; set before `run`
     has_fields = False  # whether it can write displacement and stress fields
     fields: Path | None = None  # file for these fields
+    progress: Callable[[float], None] | None = None  # takes the share of a run that is done; set before `run`
 
     def run(self, fields: Path | None = None) -> Run:
         """Run the scene; `fields` names a file for displacement and stress fields.
@@ -92,12 +99,16 @@ class Prepared:
                 advice="add --solver fem",
             )
         self.fields = fields
-        check_step(self.scene, self.highest_frequency)
         try:
+            check_step(self.scene, self.highest_frequency)
             with naming(self.scene):
                 return self.history_run()
-        except OverflowError as error:  # of plain floats, where an array would have become infinite
+        except OUT_OF_RANGE as error:  # of plain floats and factors, where an array would have become infinite
             return Run(Outcome.OVERFLOW, notes=(str(error),))
+
+    def expected_seconds(self) -> float | None:
+        """Return how long a run takes about, at least [s]; None where that is not known."""
+        return None
 
     def highest_frequency(self) -> float | None:
         """Return the largest frequency of the model, contacts closed and sticking [rad/s]; infinite on a rigid stop.

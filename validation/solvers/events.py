@@ -43,6 +43,12 @@ LEAST_SAMPLES = 400  # instants of the motion in which peaks are sought
 SAMPLES_IN_CONTACT = 9  # further ones in each contact
 # of a switch: whether it opens or closes, whether it slips or sticks
 KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
+# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024, and how many
+# that has in a second: of columns and blocks' series in steps, and of the waves in bars.
+MOST_TERMS = 2.5e6
+TERMS_A_SECOND = 3e5
+MOST_BAR_TERMS = 6e7
+BAR_TERMS_A_SECOND = 5e6
 SWITCHES_LISTED = 6  # switches that a note names
 
 
@@ -113,24 +119,18 @@ class Motion(Prepared):
 
     names: tuple[str, ...]  # of the columns
     motion: events.ProvenMotion
+    most_terms = math.inf  # of series, see `work`
 
-    def __init__(self, scene: Scene, name: str) -> None:
+    def __init__(self, scene: Scene, name: str, full: bool = False) -> None:
         self.scene = scene
         self.name = name
+        self.full = full
         self.switch_events: Sequence[events.Switch] | None = None
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the motion that was run."""
         events = completed(self.switch_events)
         return tuple(Switch(event.time, event.corner, *KINDS[event.kind]) for event in events)
-
-    def enclosures(self) -> list[tuple[str, str, str, float]]:
-        """Return corner, kind, decimal digits of the midpoint and radius [s] of each switch that is enclosed."""
-        return [
-            (event.corner, event.kind, event.midpoint, event.radius)
-            for event in self.switch_events or ()
-            if event.midpoint
-        ]
 
     def instants(self) -> Array:
         """Return the instants that are reported [s]."""
@@ -166,10 +166,19 @@ class Motion(Prepared):
         """Whether a corner is closed just after t = 0."""
         raise NotImplementedError
 
+    def work(self) -> events.Work:
+        """Return what counts the work of a motion: it ends at `most_terms`, in full it has no limit."""
+        from fem_reference.events.switches import Work
+
+        report = self.progress
+        end = self.end
+        of_time = None if report is None else lambda time: report(time / end)
+        return Work(math.inf if self.full else self.most_terms, of_time)
+
     def history_run(self) -> Run:
         """Run the scene."""
         check_columns(self.scene, self.names)
-        from fem_reference.events.switches import HorizonError, NoContactStateError
+        from fem_reference.events.switches import HorizonError, NoContactStateError, TooMuchWorkError
 
         began = perf_counter()
         try:
@@ -178,7 +187,10 @@ class Motion(Prepared):
             return Run(Outcome.NO_CONTACT_STATE, notes=(f"{error}; any other load, however near, has one",))
         except HorizonError as error:
             steps = math.floor(error.time / self.scene.time.step)
-            return Run(Outcome.HORIZON, notes=(f"{error}; the scene may have {steps} steps",))
+            advice = f"the scene may have {steps} steps"
+            if isinstance(error, TooMuchWorkError):
+                advice += f", or run {self.name}:full, which has no limit of work"
+            return Run(Outcome.HORIZON, notes=(f"{error}; {advice}",))
         requested_columns = {name: columns[name] for name in self.scene.run.columns}
         work = {"switches": len(self.switch_events or ()), "steps": self.scene.time.steps}
         seconds = {"setup": 0.0, "stepping": perf_counter() - began}
@@ -320,6 +332,7 @@ class BarMotion(Motion):
 
     names = BAR_COLUMNS
     motion: bar_events.BarMotion  # type: ignore[assignment]
+    most_terms = MOST_BAR_TERMS
 
     def starts_closed(self, corner: str) -> bool:
         """Whether the base is closed just after t = 0."""
@@ -330,7 +343,7 @@ class BarMotion(Motion):
         from fem_reference.events.bar_events import solve
 
         problem = bar_of(self.scene)
-        self.motion = solve(problem, self.end)
+        self.motion = solve(problem, self.end, work=self.work())
         self.switch_events = self.motion.switches
         state = self.motion.at(self.instants())
         force = state.contact_pressure * problem.width / 2
@@ -419,4 +432,4 @@ class BarEvents(BlockEvents):
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
-        return BarMotion(scene, self.name)
+        return BarMotion(scene, self.name, full)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from validation.errors import InputError
+from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
 
@@ -28,15 +29,16 @@ def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> N
     Raises
     ------
     InputError
-        w dt exceeds the critical value of the scheme and the scene does not allow it.
+        w dt exceeds the critical value of the scheme, or a dashpot grows, and the scene does not allow it.
     """
     t = scene.time
     stepping = Stepping.of(scene)
+    check_dampers(scene)
     omega = min(replace(stepping, gg=gg).critical_omega for gg in discounts(scene))
     if math.isinf(omega) or t.allow_unstable:
         return
     frequency = highest_frequency()
-    if frequency is None:
+    if not frequency:  # not known, or nothing that is not a rigid stop has a stiffness: no step is too long for it
         return
     largest_step = omega / frequency
     if t.step <= largest_step * (1 + 1e-12):
@@ -61,6 +63,38 @@ def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> N
         field="time.step",
         value=f"{t.step:g}",
         advice=f"make it smaller, {advice}",
+    )
+
+
+def check_dampers(scene: Scene) -> None:
+    """Refuse delta below 1/2 beside a dashpot, which critical frequencies of undamped motion know nothing of.
+
+    A mass m on a dashpot c alone, A = -(c / m) V, has V1 / V0 = (gg - (1 - delta) x) / (1 + delta x) with
+    x = c dt / m: it grows from x = (1 + gg) / (1 - 2 delta) on. The mass beside the dashpot is that of an element.
+
+    Raises
+    ------
+    InputError
+        The scene has a dashpot and delta below 1/2, and does not allow it.
+    """
+    t = scene.time
+    if t.scheme != "newmark" or t.delta >= 0.5 or t.allow_unstable:
+        return
+    dashpots = None
+    if scene.column is not None and scene.column.impedance is not None:
+        dashpots = "a transmitting base"
+    elif features.DASHPOTS in features.of(scene):
+        dashpots = "contact dashpots"
+    elif features.DAMPING in features.of(scene):
+        dashpots = "damping tables"
+    if dashpots is None:
+        return
+    raise InputError(
+        f"must be at least 1/2 beside {dashpots}, which grow below it",
+        source=scene.name,
+        field="time.delta",
+        value=f"{t.delta:g}",
+        advice="set allow_unstable = true to run it all the same",
     )
 
 

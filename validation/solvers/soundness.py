@@ -13,18 +13,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs.history import Array
 from validation.runs.run import Outcome, Run
-from validation.scenes.drive import motion_at
+from validation.scenes.column import ColumnSection
+from validation.scenes.drive import motion_at, read_drive
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 
 # The bound is of the mean over the body: a point of it may move further by the square root of the mass over that of
 # the point's surroundings, and a scheme overshoots in its first steps. A growing step passes a thousandfold at once.
 MARGIN = 1e3
+ROUNDING = float(np.finfo(float).eps)  # part of its size that stands for the displacement of a body at rest
+INSTANTS = 16  # of a period or pulse at which a drive is looked at
+MOST_INSTANTS = 1_000_000
 TINY = float(np.finfo(float).tiny)  # what stands for a mass or modulus that underflows
 LENGTHS = ("displacement", "horizontal_displacement", "gap_", "slide_", "largest_")  # columns in m begin so
 
@@ -90,7 +96,8 @@ def _reach_of_block(scene: Scene) -> float:
     travel = math.hypot(*size.tolist()) * math.sqrt(b.density / b.young)
     time = scene.time.duration + scene.time.step + travel
     base_displacement = _base_motion(scene, time)
-    return abs(b.velocity) * time + acceleration * time * time / 2 + base_displacement + c.gap + sum(c.band)
+    at_start = c.gap + sum(c.band) + ROUNDING * float(max(size))
+    return abs(b.velocity) * time + acceleration * time * time / 2 + base_displacement + at_start
 
 
 def _base_motion(scene: Scene, time: float) -> float:
@@ -117,13 +124,56 @@ def _reach_of_column(scene: Scene) -> float:
     mass = max(sum(masses) if column.law == "bonded" else min(of_blocks), TINY)
     speeds = [math.sqrt(max(column.modulus(layer), TINY) / layer.density) for layer in column.layer]
     travel = sum(layer.thickness / speed for layer, speed in zip(column.layer, speeds, strict=True))
-    step = scene.time.step
-    time = scene.time.duration + step + travel
-    drive = motion_at(scene, step * np.arange(scene.time.steps + 1.0))
+    time = scene.time.duration + scene.time.step + travel
+    instants = _drive_instants(scene)
+    drive = motion_at(scene, instants)
     pressure_displacement = float(np.max(np.abs(drive.pressure))) / mass * time * time / 2
     jumps = float(np.sum(np.abs(np.diff(drive.velocity, prepend=0.0))))
-    base_displacement = time * jumps + float(np.max(np.abs(drive.displacement)))
+    # A base moves the column while it runs; how long a wave takes through a soft layer adds nothing.
+    run_time = scene.time.duration + scene.time.step
+    base_displacement = run_time * jumps + float(np.max(np.abs(drive.displacement)))
     # A transmitting base takes in at most Z v^2 of the incident wave.
-    input_energy = (column.impedance or 0.0) * step * float(np.sum(drive.velocity**2)) + kinetic_energy
-    fall = column.gravity * time * time
-    return pressure_displacement + fall + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)
+    incident_energy = float(np.sum(np.diff(instants) * drive.velocity[1:] ** 2))
+    settlement, stored_energy = _at_rest(column) if column.settled else (0.0, 0.0)
+    input_energy = (column.impedance or 0.0) * incident_energy + kinetic_energy + stored_energy
+    fall = column.gravity * run_time * run_time
+    gaps = sum(contact.gap for contact in column.contacts)
+    at_start = gaps + settlement + ROUNDING * column.height
+    driven = pressure_displacement + 2 * base_displacement + time * math.sqrt(2 * input_energy / mass)
+    return at_start + fall + driven
+
+
+def _drive_instants(scene: Scene) -> Array:
+    """Return instants of the run, close enough that a drive that varies within a step is seen [s]."""
+    t = scene.time
+    instants = t.step * np.arange(t.steps + 1.0)
+    if scene.stated_input is None:
+        return instants
+    drive = scene.input
+    if drive.record is not None:
+        rows = read_drive(Path(drive.record), drive.at)[0]
+        within = rows[(rows > 0) & (rows < t.duration)]
+        return np.unique(np.concatenate([instants, within]))
+    period = drive.duration if drive.frequency is None else 1 / drive.frequency
+    span = t.duration if drive.frequency is not None else min(t.duration, drive.duration or t.duration)
+    count = min(MOST_INSTANTS, math.ceil(INSTANTS * span / (period or span)))
+    return np.unique(np.concatenate([instants, np.linspace(0.0, span, count + 1)]))
+
+
+def _at_rest(column: ColumnSection) -> tuple[float, float]:
+    """Return how far a column settles under its weight [m], and the energy that is in it then [J/m2]."""
+    settlement = 0.0
+    energy = 0.0
+    for contact in column.contacts:
+        if math.isfinite(contact.stiffness):
+            pressed = column.static_stress(contact.height) / contact.stiffness
+            settlement += pressed
+            energy += contact.stiffness * pressed**2 / 2
+    low = 0.0
+    for layer in column.layer:
+        stress = column.static_stress(low)  # at its foot, the greatest in it
+        strain = stress / column.modulus(layer)
+        settlement += strain * layer.thickness
+        energy += stress * strain * layer.thickness / 2
+        low += layer.thickness
+    return settlement, energy

@@ -67,7 +67,7 @@ def naming(scene: Scene) -> Iterator[None]:
     """Give what a solver package refuses, a ValueError, the name of the scene: an InputError."""
     try:
         yield
-    except InputError:
+    except (InputError, np.linalg.LinAlgError):  # a factor that fails is no refusal
         raise
     except ValueError as error:
         raise InputError(str(error), source=scene.name) from None

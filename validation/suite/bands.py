@@ -21,7 +21,6 @@ from validation.scenes.scene import Scene, load_scene
 Band = tuple[float, float]
 """Lower and upper edge."""
 OTHER = "other code"  # the kind of a reference that an independent program computed
-OWN = "own last value"
 APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
 
 

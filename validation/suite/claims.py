@@ -1,9 +1,8 @@
-"""A register of claims: what somebody says, how that is tested, what comes out.
+"""The register of claims: what the paper says, how that is tested, what comes out.
 
 A claim is data of a file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
 *confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that
-carry the condition, and *refuted* otherwise. The expected verdict is a gate of the register's study. There are two
-registers: of the paper (`studies.paper`) and of other publications (`studies.literature`).
+carry the condition, and *refuted* otherwise. The expected verdict is a gate of the register's study.
 """
 
 from __future__ import annotations
@@ -95,7 +94,7 @@ class Claim:
     Attributes
     ----------
     id, place, says
-        Stable id, place in the paper or who says it, the statement.
+        Stable id, place in the paper, the statement.
     needs
         The (case, solver) pairs that it is tested on.
     measure
@@ -108,8 +107,8 @@ class Claim:
         The condition under which it holds, and the bands that hold then.
     numbers
         What an independent program gives: number, value, and half a unit of its last digit.
-    sources, read, tested
-        Of a claim of other publications: keys of the bibliography, how much of them was read, and how it is tested.
+    misprint
+        Whether it is a slip of print in an equation or a number, which no curve or conclusion of the paper hangs on.
     """
 
     id: str
@@ -123,9 +122,7 @@ class Claim:
     condition: str = ""
     conditional: tuple[Band, ...] = ()
     numbers: tuple[tuple[str, float, float], ...] = ()
-    sources: tuple[str, ...] = ()
-    read: str = ""
-    tested: str = ""
+    misprint: bool = False
 
     def finding(self, numbers: Mapping[str, float]) -> Finding:
         """Return the verdict on measured numbers."""
@@ -179,7 +176,6 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
             "printed": tuple(Band(*band) for band in entry["printed"]),
             "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
             "numbers": tuple(entry.get("numbers", ())),
-            "sources": tuple(entry.get("sources", ())),
         }
         claims.append(Claim(**claim))
     return tuple(claims)
@@ -195,7 +191,6 @@ class Register:
     study: str
     title: str
     page: str  # in the documentation
-    speaker: str  # who says what it lists
     introduction: str
     claims: tuple[Claim, ...]
 
@@ -224,7 +219,7 @@ def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[
     for claim in register.claims:
         numbers = dict(measured.get(claim.id, {}))
         verdict = numbers.pop("verdict", None)
-        fields = {name: getattr(claim, name) for name in ("id", "says", "place", "sources", "read", "tested")}
+        fields = {name: getattr(claim, name) for name in ("id", "says", "place")}
         outcome = {
             "verdict": None if verdict is None else Finding(int(verdict)).words,
             "expected": claim.expected.words,
@@ -244,12 +239,8 @@ def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
         condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
         parts += [
             f"## {entry['id']}: {entry['verdict']}{condition}",
-            f"**{register.speaker}** ({entry['place']}): {entry['says']}",
+            f"**The paper** ({entry['place']}): {entry['says']}",
+            f"**Measured:** {listed}.",
+            f"**Why:** {entry['why']}.",
         ]
-        if entry["sources"]:
-            links = ", ".join(f"[{key}](references.md#{key})" for key in entry["sources"])
-            parts.append(f"**Source:** {links}; {entry['read']}.")
-        if entry["tested"]:
-            parts.append(f"**Tested:** {entry['tested']}.")
-        parts += [f"**Measured:** {listed}.", f"**Why:** {entry['why']}."]
     return "\n\n".join(parts) + "\n"

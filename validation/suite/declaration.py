@@ -20,11 +20,12 @@ from validation.solvers.registry import role
 
 def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
-    judged = {scene for scene, solver in finished.rows if role(solver) is Role.JUDGED}
+    judged = {scene: row for (scene, solver), row in finished.rows.items() if role(solver) is Role.JUDGED}
     blocks = [scene for scene in scenes if scene.kind == "block"]
-    of_columns = (column_alarms(scene) for scene in scenes if scene.name in judged and scene.kind == "column")
+    columns = [scene for scene in scenes if scene.name in judged and scene.kind == "column"]
+    of_columns = (column_alarms(scene, judged[scene.name]) for scene in columns)
     return {
-        "alarms": [alarm.record() for alarm in (*alarms(blocks, finished), *chain.from_iterable(of_columns))],
+        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_columns))],
         "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
     }
 

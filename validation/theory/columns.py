@@ -1,4 +1,4 @@
-r"""Columns whose contacts open or slip: how the open-close iteration ends, when a stack rests, and its static state.
+r"""Columns whose contacts open or slip: end of the open-close iteration, ring-down of a stack, its static state.
 
 A step under the scheme makes of the contacts of N blocks one problem with a tridiagonal matrix, whose entries beside
 the diagonal are at most zero where a block is rigid or
@@ -15,6 +15,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
+from validation.runs.history import Array
+from validation.scenes.column import NEAR, ColumnSection
+from validation.theory.stepping import Stepping
+
+GRID = 33  # values of w at which a root is looked for at once
+OCTAVE = 2.0  # of them; two modes of a column within a thirty-second of one are taken for none
+REFINEMENTS = 6  # of the interval around a root: to 32^-6 = 1e-9 of it
+ROUNDING = 1e-9  # by which a column of one mass may have its root below the bound
 FAR_FACE = 6.0  # of the Courant number 1 / sqrt(6 alpha): consistent mass of a block of one strain
 
 
@@ -57,19 +67,89 @@ def lowest_frequency(stiffness: float, mass: float, blocks: int) -> float:
     return 2 * math.sqrt(stiffness / mass) * math.sin(math.pi / (2 * (2 * blocks + 1)))
 
 
-def settling_time(omega: float, step: float, delta: float, gg: float, share: float = 1e-3) -> float:
-    """Return the time in which a vibration falls to a share of its amplitude under a step that is small for it [s].
+def first_frequency(column: ColumnSection) -> float | None:
+    """Return the first natural frequency of a column of blocks of one strain, all contacts closed [rad/s].
 
-    ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)): the algorithmic damping of the scheme and the
+    The least w at which no stress is left on the top of blocks whose foot stands still. It is at least that of all
+    mass on top of all that gives way, from where the root is looked for upwards. None where the base is free or
+    transmitting, or nothing gives way.
+    """
+    if column.base in ("free", "transmitting"):
+        return None
+    mass = sum(layer.density * layer.thickness for layer in column.layer)
+    flexibility = sum(layer.thickness / column.modulus(layer) for layer in column.layer)
+    flexibility += sum(1 / stiffness for _, stiffness in _springs(column))
+    if flexibility == 0:
+        return None
+    low = 1 / math.sqrt(mass * flexibility)
+    high = OCTAVE * low
+    while np.all(_top_stress(column, np.geomspace(low, high, GRID)) > 0):
+        low, high = high, OCTAVE * high
+    for _ in range(REFINEMENTS):
+        grid = np.linspace(low * (1 - ROUNDING), high, GRID)
+        first = int(np.argmax(_top_stress(column, grid) <= 0))
+        low, high = float(grid[max(first - 1, 0)]), float(grid[first])
+    return (low + high) / 2
+
+
+def _springs(column: ColumnSection) -> list[tuple[float, float]]:
+    """Return height [m] and stiffness [Pa/m] of each spring across a column, from the base upwards."""
+    springs = [(joint.height, joint.stiffness) for joint in column.springs]
+    between = column.glue if column.law == "bonded" else column.stiffness
+    if between is not None:
+        near = NEAR * column.height
+        jointed = [height for height, _ in springs]
+        faces = (face for face in column.faces[:-1] if all(abs(face - height) > near for height in jointed))
+        springs += [(face, between) for face in faces]
+    return sorted(springs)
+
+
+def _top_stress(column: ColumnSection, frequencies: Array) -> Array:
+    """Return the stress on the top where that on the base is 1, at frequencies w [rad/s].
+
+    A block of one strain with the faces' displacements u, U has the stresses s = (M/h)(U - u) + w2 rho h (2u + U)/6
+    below and S = s - w2 rho h (u + U)/2 above it.
+    """
+    springs = _springs(column)
+    displacement = np.zeros_like(frequencies)
+    stress = np.ones_like(frequencies)
+    foot = 0.0
+    near = NEAR * column.height
+    for layer in column.layer:
+        height = layer.thickness / layer.blocks
+        flexibility = height / column.modulus(layer)
+        inertia = frequencies**2 * layer.density * height
+        for _ in range(layer.blocks):
+            while springs and springs[0][0] <= foot + near:
+                displacement = displacement + stress / springs.pop(0)[1]
+            stretch = flexibility * (stress - inertia * displacement / 3)
+            upper = (stretch + displacement) / (1 + flexibility * inertia / 6)
+            stress = stress - inertia * (displacement + upper) / 2
+            displacement = upper
+            foot += height
+    return stress
+
+
+def ring_down(omega: float, stepping: Stepping, share: float = 1e-3) -> float:
+    """Return the time in which a free vibration falls to a share of its amplitude under a step [s].
+
+    dt ln(1 / share) / -ln |z|, z the largest root of a step at w dt. Where the step is small for the vibration that is
+    ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)) of Newmark's scheme: its algorithmic damping and the
     discount, which is a rate per step. Infinite where neither damps.
 
     Parameters
     ----------
     omega
         Of the vibration [rad/s].
+    stepping
+        The scheme and its step.
     """
-    rate = omega**2 * (delta - 0.5) * step / 2 + (1 - gg) / (2 * step)
-    return math.log(1 / share) / rate if rate > 0 else math.inf
+    if not stepping.damps and stepping.gg == 1:
+        return math.inf
+    radius = stepping.spectral_radius(omega * stepping.step)
+    if radius >= 1:
+        return math.inf
+    return 0.0 if radius == 0 else stepping.step * math.log(1 / share) / -math.log(radius)
 
 
 def static_forces(weights: Sequence[float], pressure: float = 0.0) -> list[float]:

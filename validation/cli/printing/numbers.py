@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.advice import contact
+from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
 from validation.advice.columns import column_alarms, limits
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
@@ -27,6 +28,10 @@ from validation.theory.rocking import Rectangle
 
 MOST_CASES = 200  # of a sweep that are looked at, evenly taken
 MOST_BLOCKS = 4  # sub-blocks whose modes are found at once; `damping` finds those of more
+OF_STEPS = {  # the alarms of a run, without their numbers, by which the cases of a sweep would differ
+    AGREEMENT: "the step damps more than a third of the first mode, or of the input, away in a period",
+    SAMPLED: "fewer than two steps per period of the first mode, or of the input: no history can show it",
+}
 
 
 @dataclass(frozen=True)
@@ -71,8 +76,10 @@ def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
     values = {number.name: number.value for number in derived}
     of_columns = (alarm.sentence for alarm in column_alarms(scene))
-    parts = (part(scene, values) for part in (_unstable, _coarse, _landing, _steep, _of_boxes))
-    return [*itertools.chain(*parts), *of_columns]
+    frequency = values.get("w1") if scene.kind == "block" else None
+    of_step = (OF_STEPS[alarm.kind] for alarm in coarse_alarms(scene, frequency))
+    parts = (part(scene, values) for part in (_unstable, _ringing, _landing, _steep, _of_boxes))
+    return [*of_step, *itertools.chain(*parts), *of_columns]
 
 
 # ---- a block ------------------------------------------------------------------------------------------------------
@@ -203,8 +210,9 @@ def _contacts(scene: Scene) -> Iterator[Number]:
         yield Number("dt face", bounds.far_face_step, "s", "step below which a block's far face moves the wrong way")
     if bounds.lowest is not None:
         yield Number("w1", bounds.lowest, "rad/s", "lowest frequency of the stack, all contacts closed")
-    if bounds.settling is not None:
-        yield Number("t rest", bounds.settling, "s", "time in which the stack comes to rest to a thousandth")
+    if bounds.ring_down is not None:
+        says = "in which that vibration falls to a thousandth while none opens or slips"
+        yield Number("t ring", bounds.ring_down, "s", says)
 
 
 # ---- rigid boxes --------------------------------------------------------------------------------------------------
@@ -268,9 +276,7 @@ def _unstable(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
         yield "dt is beyond the stability limit: the solution grows without bound"
 
 
-def _coarse(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
-    if values.get("w1 dt", 0.0) > math.pi:
-        yield "fewer than two steps per period of the first mode: no history can show it"
+def _ringing(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
     stable = scene.time.step <= values.get("dt stable", math.inf)
     if stable and values.get("least root", 0.0) <= FLIPPING:
         yield "the contact mode changes sign in every step: the contact force rings"

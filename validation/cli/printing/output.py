@@ -56,6 +56,12 @@ def columns(lines: Sequence[Line]) -> str:
     return in_columns(lines, terminal_width())
 
 
+def in_minutes(seconds: float) -> str:
+    """Return a duration in words, "36 s" or "2 m 6 s"."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} m {rest} s" if minutes else f"{rest} s"
+
+
 def settings_text(settings: Mapping[str, float]) -> str:
     """Return settings as ``--set`` takes them."""
     return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())

@@ -15,11 +15,11 @@ from rich.text import Text
 
 from validation.advice.plain import in_columns
 from validation.cli.printing.answer import STYLES, Line, how_it_ended
-from validation.cli.printing.output import console, echo
+from validation.cli.printing.output import broken, console, echo
 from validation.gates.gate import Verdict, value_text
 from validation.metrics.values import NOT_REPORTED
 from validation.runs.case_name import CaseName
-from validation.runs.records import BaselineVerdict, ComparisonRecord, VerdictRecord
+from validation.runs.records import AlarmRecord, BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.runs.text import printable
@@ -136,7 +136,7 @@ def print_differences(results: Results, study: str, writable: bool) -> None:
     if len(compared) > PAIRS_SHOWN:
         printer.print(f"and {len(compared) - PAIRS_SHOWN} more pairs; dda-validate report shows all", markup=False)
     if compared:
-        echo("\n".join(_next(compared, writable)))
+        echo("\n".join(_next(compared, results.manifest(study)["alarms"], writable)))
     else:
         echo(_without_comparison(outcomes(results, study)))
 
@@ -152,8 +152,10 @@ def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
     )
 
 
-def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]:
-    """Yield the lines of a gate for a scene that nothing has judged."""
+def _next(compared: Sequence[ComparisonRecord], alarms: Sequence[AlarmRecord], writable: bool) -> Iterator[str]:
+    """Yield the lines of a gate for a scene that nothing has judged; of none where the step makes the agreement."""
+    from validation.advice.coarse import KINDS
+
     metric = DIFFERENCES[0]
     agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
     if not agreeing:
@@ -161,7 +163,14 @@ def _next(compared: Sequence[ComparisonRecord], writable: bool) -> Iterator[str]
         yield f"next: no pair agrees within {limit}, which is a finding and no tolerance:"
         yield "  look at the histories (dda-validate report), refine time.step and fem.elements, then write a gate"
         return
-    first = agreeing[0]
+    coarse = {record["scene"]: record for record in reversed(alarms) if record["kind"] in KINDS}
+    resolved = [c for c in agreeing if c["scene"] not in coarse]
+    if not resolved:
+        alarm = coarse[agreeing[0]["scene"]]
+        yield broken(f"next: a smaller time.step before a gate, which would pass by the step ({alarm['kind']}):")
+        yield broken(f"  {printable(alarm['scene'])}: {alarm['sentence']}")
+        return
+    first = resolved[0]
     value = first["metrics"].get(metric)
     place = "at the end of the scene file" if writable else "in a scene file of your own with these values"
     yield f"next: write {place} what you tolerate, with your reason, and run it again:"

@@ -13,14 +13,16 @@ from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
-def appendix(results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str]) -> list[Part]:
-    """Return words, alarms, parameters, provenance, gates and references."""
+def appendix(
+    results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str], gates: bool = False
+) -> list[Part]:
+    """Return words, alarms, parameters, provenance and references, and the gates that passed if they are asked for."""
     return [
         Heading("Appendix"),
         *glossary(),
         *alarm_table(groups),
         *parameter_table(groups),
         *provenance(results, studies),
-        *gate_table(verdicts),
+        *(gate_table(verdicts) if gates else ()),
         References(),
     ]

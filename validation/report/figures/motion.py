@@ -39,6 +39,8 @@ from validation.report.figures.histories import (
     small_multiples,
 )
 from validation.runs.history import Array, History
+from validation.solvers.contract import Role
+from validation.solvers.registry import role
 
 TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
 SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
@@ -88,13 +90,17 @@ def history_figure(panels: HistoryPanels, *columns: str, apart: bool = False) ->
 
 
 def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
-    """Return the solvers that are drawn, and with each the later ones that lie on it in every panel."""
+    """Return the solvers that are drawn, and with each the later ones that lie on it in every panel.
+
+    One that repeats another by other arithmetic, such as the printed recursion, is named only where it departs.
+    """
     lines: dict[str, dict[str, float]] = {}
     for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
         for line, others in lines.items():
             off = _apart(panels, columns, line, name)
             if off is not None and off <= TWIN:
-                others[name] = off
+                if role(name) is not Role.REPEAT:
+                    others[name] = off
                 break
         else:
             lines[name] = {}

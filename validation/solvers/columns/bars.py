@@ -17,7 +17,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
-from validation.solvers.events import KINDS, Motion, digits_of_switches
+from validation.solvers.events import BAR_TERMS_A_SECOND, KINDS, MOST_BAR_TERMS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
@@ -90,9 +90,10 @@ class BarsOfColumn(Motion):
     """A column of elastic bars."""
 
     motion: BarsMotion  # type: ignore[assignment]
+    most_terms = MOST_BAR_TERMS
 
-    def __init__(self, scene: Scene, name: str) -> None:
-        super().__init__(scene, name)
+    def __init__(self, scene: Scene, name: str, full: bool) -> None:
+        super().__init__(scene, name, full)
         self.column = column_of(scene)
         self.names = scene.run.columns
         self.problem, self.feet = bars_of(scene)
@@ -115,14 +116,26 @@ class BarsOfColumn(Motion):
 
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return the columns that the scene asks for."""
-        from fem_reference.events.bars_events import solve
+        from fem_reference.events.bars_events import least_terms, solve
+        from fem_reference.events.switches import TooMuchWorkError
 
-        self.motion = solve(self.problem, self.end)
+        work = self.work()
+        least = least_terms(self.problem, self.end)
+        if least > work.limit:
+            reason = f"its series would have at least {least:.3g} terms, more than {work.limit:.3g}"
+            raise TooMuchWorkError(self.end * work.limit / least, reason)
+        self.motion = solve(self.problem, self.end, work=work)
         self.switch_events = [
             replace(event, corner=contact_name(self.feet[int(event.corner)])) for event in self.motion.switches
         ]
         t = self.instants()
         return [self._values(name, t) for name in self.names]
+
+    def expected_seconds(self) -> float:
+        """Return how long a run takes about, without its echoes and up to the limit of work [s]."""
+        from fem_reference.events.bars_events import least_terms
+
+        return min(least_terms(self.problem, self.end), self.work().limit) / BAR_TERMS_A_SECOND
 
     def _values(self, name: str, t: Array) -> Array:
         """Return a column of the history."""
@@ -175,4 +188,4 @@ class BarsEvents(Solver):
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
-        return BarsOfColumn(scene, self.name)
+        return BarsOfColumn(scene, self.name, full)

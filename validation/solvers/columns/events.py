@@ -18,7 +18,7 @@ from validation.scenes.drive import read_drive
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
-from validation.solvers.events import Motion
+from validation.solvers.events import MOST_TERMS, TERMS_A_SECOND, Motion
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
@@ -104,10 +104,11 @@ class ColumnEventMotion(Motion):
     """A column whose motion is found from switch to switch."""
 
     motion: ColumnMotion
+    most_terms = MOST_TERMS
     radius: float  # greatest proven distance of a displacement from the true one [m]
 
-    def __init__(self, scene: Scene, name: str) -> None:
-        super().__init__(scene, name)
+    def __init__(self, scene: Scene, name: str, full: bool) -> None:
+        super().__init__(scene, name, full)
         self.section = column_of(scene)
         self.names = scene.run.columns
         with naming(scene):
@@ -115,14 +116,26 @@ class ColumnEventMotion(Motion):
 
     def solve_motion(self) -> Iterable[Array]:
         """Find the motion and its switches; return the columns of the scene."""
-        from fem_reference.events.column_events import solve
+        from fem_reference.events.column_events import least_terms, solve
+        from fem_reference.events.switches import TooMuchWorkError
 
-        self.motion = solve(self.problem, self.end)
+        work = self.work()
+        least, closed = least_terms(self.problem, self.end)
+        if least > work.limit:
+            reason = f"its series would have at least {least:.3g} terms, more than {work.limit:.3g}"
+            raise TooMuchWorkError(self.end * work.limit / closed, reason)
+        self.motion = solve(self.problem, self.end, work=work)
         feet = self.section.faces
         self.switch_events = tuple(replace(event, corner=f"{feet[event.joint]:g} m") for event in self.motion.switches)
         state = self.motion.at(self.instants())
         self.radius = float(state.displacement_radius.max())
         return [self._column(name, state) for name in self.names]
+
+    def expected_seconds(self) -> float:
+        """Return how long a run takes about, without its switches and up to the limit of work [s]."""
+        from fem_reference.events.column_events import least_terms
+
+        return min(least_terms(self.problem, self.end)[1], self.work().limit) / TERMS_A_SECOND
 
     def _column(self, name: str, state: ColumnHistory) -> Array:
         """Return a column of the history; of two blocks that meet at a height it is the lower one's."""
@@ -248,4 +261,4 @@ class ColumnEvents(Solver):
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene."""
-        return ColumnEventMotion(scene, self.name)
+        return ColumnEventMotion(scene, self.name, full)

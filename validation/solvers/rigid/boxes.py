@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
@@ -25,7 +24,7 @@ from validation.theory.rocking import Rectangle
 AT_REST = 1e-12  # of the speed of the first landing: what is slower bounces no more
 ROLLS = 1e-6  # relative: a velocity that is that of a rotation about the corner, in the digits of a file
 ACCURACY = 1e-12  # relative tolerance of the integration
-SAMPLES = 64  # of a radian of rotation, in which a corner is sought that has come down
+ROUNDING = 16 * float(np.finfo(float).eps)  # part of the lengths in it by which a height of a corner may be wrong
 MOST_IMPACTS = 100_000
 
 
@@ -67,7 +66,11 @@ class ExactBoxes(Prepared):
         if isinstance(motion, str):
             return Run(Outcome.NOT_APPLICABLE, notes=(motion,))
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
-        columns = motion(time)
+        try:
+            columns = motion(time)
+        except TumblingHorizonError as error:
+            steps = math.floor(error.time / scene.time.step)
+            return Run(Outcome.HORIZON, notes=(f"{error}; the scene may have {steps} steps",))
         history = History(time, {name: np.asarray(columns[name], float) for name in scene.run.columns})
         seconds = {"setup": 0.0, "stepping": perf_counter() - start}
         return Run(Outcome.COMPLETED, history, {"steps": scene.time.steps}, seconds)
@@ -92,7 +95,7 @@ def motion_of(scene: Scene) -> Motion | str:
     if box.tilt == 0 and box.lift == 0 and not _turns_off(rigid, box):
         return _why_not_about_corner(scene, rigid) or partial(_about_corner, rigid)
     if rigid.friction == 0 and rigid.restitution == 1:
-        return partial(_tumbling, rigid)
+        return _why_not_tumbling(rigid) or partial(_tumbling, rigid)
     return (
         "the motion is not known of a box that turns, apart from turning about the corner on which it stands at t = 0, "
         "and from tumbling with friction = 0 and restitution = 1"
@@ -349,92 +352,177 @@ def _about_corner(rigid: RigidSection, time: Array) -> dict[str, Array]:
 # ---- tumbling -------------------------------------------------------------------------------------------------------
 
 
+class TumblingHorizonError(ArithmeticError):
+    """A box does not go on from impact to impact of one corner."""
+
+    def __init__(self, time: float, reason: str) -> None:
+        super().__init__(f"exact up to {time:.6g} s only: {reason}")
+        self.time = time  # the horizon [s]
+        self.reason = reason
+
+
+def _why_not_tumbling(rigid: RigidSection) -> str | None:
+    try:
+        _start_of_tumbling(rigid).next_impact(0.0)
+    except TumblingHorizonError as error:
+        return f"the motion is not known of a box that at t = 0 does this: {error.reason}"
+    return None
+
+
 def _tumbling(rigid: RigidSection, time: Array) -> dict[str, Array]:
-    """From impact to impact of a corner, without friction or loss."""
+    """From impact to impact of a corner, without friction or loss.
+
+    Raises
+    ------
+    TumblingHorizonError
+        If the box does not go on from impact to impact, or these are more than `MOST_IMPACTS`.
+    """
     box = rigid.box[0]
     along, across = rigid.pull
-    corners = np.array([(sx * box.width / 2, sy * box.height / 2) for sx in (-1, 1) for sy in (-1, 1)])
-    instant = 0.0
-    _, y, angle = rigid.starts[0]
-    velocity = box.velocity[1]
-    spin = box.spin
+    flight = _start_of_tumbling(rigid)
     heights = np.empty(len(time))
     angles = np.empty(len(time))
     written = 0
     for _ in range(MOST_IMPACTS):
-        flight = _CornerFlight(corners, y, angle, velocity, spin, across)
-        lasted, corner = flight.lands(float(time[-1]) - instant)
-        until = int(np.searchsorted(time, instant + lasted, side="right"))
-        since = time[written:until] - instant
-        heights[written:until] = y + velocity * since + across * since**2 / 2
-        angles[written:until] = angle + spin * since
+        impact = flight.next_impact(float(time[-1]))
+        until = len(time) if impact is None else int(np.searchsorted(time, impact[0], side="right"))
+        since = time[written:until] - flight.start
+        heights[written:until] = flight.y + flight.velocity * since + across * since**2 / 2
+        angles[written:until] = flight.angle + flight.spin * since
         written = until
-        if corner is None:
-            break
-        y += velocity * lasted + across * lasted**2 / 2
-        angle += spin * lasted
-        velocity += across * lasted
-        instant += lasted
-        arm = corners[corner][0] * math.cos(angle) - corners[corner][1] * math.sin(angle)
-        approach = velocity + spin * arm
-        impulse = -2 * approach / (1 / box.mass + arm**2 / box.inertia)
-        velocity += impulse / box.mass
-        spin += impulse * arm / box.inertia
-    x = box.x + box.velocity[0] * time + along * time**2 / 2
-    return _poses(rigid, time, x=x, y=heights, angle=angles)
+        if impact is None:
+            x = box.x + box.velocity[0] * time + along * time**2 / 2
+            return _poses(rigid, time, x=x, y=heights, angle=angles)
+        flight = flight.after(*impact)
+    raise TumblingHorizonError(flight.start, f"more than {MOST_IMPACTS} impacts")
+
+
+def _start_of_tumbling(rigid: RigidSection) -> _CornerFlight:
+    box = rigid.box[0]
+    corners = tuple((sx * box.width / 2, sy * box.height / 2) for sx in (-1, 1) for sy in (-1, 1))
+    _, y, angle = rigid.starts[0]
+    return _CornerFlight(
+        corners=corners,
+        inverse_mass=1 / box.mass,
+        inverse_inertia=1 / box.inertia,
+        gravity=rigid.pull[1],
+        start=0.0,
+        y=y,
+        angle=angle,
+        velocity=box.velocity[1],
+        spin=box.spin,
+    )
 
 
 @dataclass(frozen=True)
 class _CornerFlight:
-    """A free flight of a box that turns."""
+    """A free flight of a box that turns, above frictionless ground that gives all energy back."""
 
-    corners: Array  # about the centre [m], shape (4, 2)
-    y: float
-    angle: float
-    velocity: float
-    spin: float
-    gravity: float  # negative downwards
+    corners: tuple[tuple[float, float], ...]  # about the centre [m]
+    inverse_mass: float  # [1/kg]
+    inverse_inertia: float  # [1/(kg m2)]
+    gravity: float  # negative downwards [m/s2]
+    start: float  # instant at which it begins [s]
+    y: float  # of the centre then [m]
+    angle: float  # [rad]
+    velocity: float  # of the centre upwards [m/s]
+    spin: float  # [rad/s]
 
-    def height(self, corner: int, time: float) -> float:
+    def arm(self, corner: int, elapsed: float) -> float:
+        """Return how far a corner is from the centre along the ground [m]."""
+        x, y = self.corners[corner]
+        angle = self.angle + self.spin * elapsed
+        return x * math.cos(angle) - y * math.sin(angle)
+
+    def height(self, corner: int, elapsed: float) -> float:
         """Return the height of a corner above the ground [m]."""
-        angle = self.angle + self.spin * time
         x, y = self.corners[corner]
-        lift = x * math.sin(angle) + y * math.cos(angle)
-        return self.y + self.velocity * time + self.gravity * time**2 / 2 + float(lift)
+        angle = self.angle + self.spin * elapsed
+        centre = self.y + self.velocity * elapsed + self.gravity * elapsed**2 / 2
+        return centre + x * math.sin(angle) + y * math.cos(angle)
 
-    def approach(self, corner: int, time: float) -> float:
+    def rate(self, corner: int, elapsed: float) -> float:
         """Return the velocity of a corner upwards [m/s]."""
-        angle = self.angle + self.spin * time
-        x, y = self.corners[corner]
-        arm = x * math.cos(angle) - y * math.sin(angle)
-        return self.velocity + self.gravity * time + self.spin * float(arm)
+        return self.velocity + self.gravity * elapsed + self.spin * self.arm(corner, elapsed)
 
-    def lands(self, duration: float) -> tuple[float, int | None]:
-        """Return when a corner comes down first [s], and which; the duration and None where none does by then."""
-        # samples close enough that between two of them a corner's height is nearly a parabola
-        length = float(np.max(np.hypot(*self.corners.T)))
-        fast = abs(self.spin) + math.sqrt(abs(self.gravity) / length)
-        count = max(2, math.ceil(SAMPLES * fast * duration))
-        instants = np.linspace(0.0, duration, count + 1)
-        angles = self.angle + self.spin * instants
-        centre = self.y + self.velocity * instants + self.gravity * instants**2 / 2
-        first: tuple[float, int | None] = (duration, None)
-        for corner, (x, y) in enumerate(self.corners):
-            above = centre + x * np.sin(angles) + y * np.cos(angles)
-            for row in np.flatnonzero(above[1:] < 0)[:1]:
-                low = float(instants[row])
-                high = float(instants[row + 1])
-                if self.height(corner, low) <= 0:  # it has just bounced: from the top of its first rise on
-                    low = self._top(corner, low, high)
-                    if self.height(corner, low) <= 0:
-                        continue
-                landing = float(brentq(partial(self.height, corner), low, high, xtol=1e-15, rtol=1e-14))
-                if landing < first[0]:
-                    first = (landing, corner)
-        return first
+    def acceleration(self, corner: int, elapsed: float) -> float:
+        """Return the acceleration of a corner upwards [m/s2]."""
+        centre = self.y + self.velocity * elapsed + self.gravity * elapsed**2 / 2
+        return self.gravity - self.spin**2 * (self.height(corner, elapsed) - centre)
 
-    def _top(self, corner: int, low: float, high: float) -> float:
-        """Return the instant at which a corner that rises turns back, the first one where it does not rise."""
-        if self.approach(corner, low) <= 0 or self.approach(corner, high) >= 0:
-            return low
-        return float(brentq(partial(self.approach, corner), low, high, xtol=1e-15, rtol=1e-14))
+    def next_impact(self, end: float) -> tuple[float, int] | None:
+        """Return when a corner comes down first [s], and which; None where none does before an instant.
+
+        Raises
+        ------
+        TumblingHorizonError
+            If a corner comes to press on the ground without an impact, or two come down at once.
+        """
+        landings: list[tuple[float, int]] = []
+        pressing = math.inf
+        for corner in range(len(self.corners)):
+            elapsed, presses = self._comes_down(corner, end - self.start)
+            if elapsed is None:
+                continue
+            if presses:
+                pressing = min(pressing, elapsed)
+            else:
+                landings.append((self.start + elapsed, corner))
+        first = min(landings, default=(math.inf, 0))
+        if math.isfinite(pressing) and self.start + pressing <= first[0]:
+            reason = "a corner presses on the ground without an impact, and slides on it"
+            raise TumblingHorizonError(self.start + pressing, reason)
+        if len(landings) > 1 and sorted(landings)[1][0] == first[0]:
+            raise TumblingHorizonError(
+                first[0], "two corners come down at once, and the first one decides what follows"
+            )
+        return first if landings else None
+
+    def _comes_down(self, corner: int, duration: float) -> tuple[float | None, bool]:
+        """Return when a corner is on the ground and does not rise, within a duration, and whether it presses on it.
+
+        No step passes a landing: with K a bound of the acceleration the height s later is at least
+        h + h' s - K s^2 / 2, and with K' one of its rate at least a s^2 / 2 - K' s^3 / 6 where h = h' = 0.
+        """
+        size = max(math.hypot(*place) for place in self.corners)
+        bound = abs(self.gravity) + size * self.spin**2
+        bound_of_rate = size * abs(self.spin) ** 3
+        elapsed = 0.0
+        while elapsed <= duration:
+            height = self.height(corner, elapsed)
+            rate = self.rate(corner, elapsed)
+            # what rounding leaves of a height, and the rate with which one falls through so little
+            extent = size + abs(self.y) + abs(self.velocity) * elapsed - self.gravity * elapsed**2
+            nothing = ROUNDING * (extent + abs(rate) * self.start)
+            slow = math.sqrt(2 * bound * nothing)
+            if height > nothing:
+                root = math.sqrt(rate**2 + 2 * bound * height)
+                if bound == 0 and rate >= 0:
+                    return None, False
+                elapsed += 2 * height / (root - rate) if rate < 0 else (rate + root) / bound
+            elif rate < -slow:
+                return elapsed, False
+            elif rate > slow:
+                elapsed += rate / bound if bound else math.inf
+            else:
+                acceleration = self.acceleration(corner, elapsed)
+                if acceleration < 0 or (acceleration == 0 and bound > 0):
+                    return elapsed, True
+                if bound_of_rate == 0:
+                    return None, False
+                elapsed += acceleration / bound_of_rate
+        return None, False
+
+    def after(self, time: float, corner: int) -> _CornerFlight:
+        """Return the flight after the impact of a corner at an instant [s]."""
+        elapsed = time - self.start
+        arm = self.arm(corner, elapsed)
+        impulse = -2 * self.rate(corner, elapsed) / (self.inverse_mass + arm**2 * self.inverse_inertia)
+        return replace(
+            self,
+            start=time,
+            y=self.y + self.velocity * elapsed + self.gravity * elapsed**2 / 2,
+            angle=self.angle + self.spin * elapsed,
+            velocity=self.velocity + self.gravity * elapsed + impulse * self.inverse_mass,
+            spin=self.spin + impulse * arm * self.inverse_inertia,
+        )

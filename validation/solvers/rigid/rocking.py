@@ -78,27 +78,3 @@ def rocking(
     motion = solve(RockingBlock(width, height, gravity, restitution), float(time[-1]), tilt)
     instants = time[time <= motion.end]
     return Rocking(instants, *motion.at(instants), motion.impacts, motion.overturned)
-
-
-def overturning_acceleration(
-    width: float, height: float, duration: float, shape: str = "half-sine", gravity: float = 9.81
-) -> float:
-    """Return the least amplitude of a pulse of the base that overturns a block at rest [m/s2].
-
-    Parameters
-    ----------
-    width, height, gravity
-        Of the block [m], and g [m/s2].
-    duration
-        Duration of the pulse [s].
-    shape
-        ``"half-sine"`` or ``"rectangle"``.
-
-    Raises
-    ------
-    ValueError
-        A number is out of its range.
-    """
-    from fem_reference.exact.rocking import RockingBlock, overturning_amplitude
-
-    return overturning_amplitude(RockingBlock(width, height, gravity), duration, shape)

@@ -103,33 +103,6 @@ def block_of(scene: Scene) -> SlidingBlock:
     )
 
 
-def harmonic_slide(
-    slope: float, friction: float, amplitude: float, rate: float, duration: float, time: Array, two_way: bool = True
-) -> Slide:
-    """Return how a rigid mass slides on a base with the acceleration A sin(w t).
-
-    Parameters
-    ----------
-    slope, friction
-        Angles of the base and of friction [deg].
-    amplitude, rate, duration
-        A [m/s2], w [rad/s] and how long the base vibrates [s]; after it the base goes on at its velocity.
-    time
-        Instants that are reported [s], shape (times,); the slip is that until the last one.
-    two_way
-        Whether it also slides up the slope; Newmark's own analysis holds it there.
-
-    Raises
-    ------
-    ValueError
-        A number is out of its range.
-    """
-    from fem_reference.exact.sliding_block import SlidingBlock, harmonic, solve
-
-    block = SlidingBlock(slope, friction, two_way=two_way)
-    return _reported(solve(block, harmonic(amplitude, rate, duration), float(np.max(time))), time)
-
-
 def _reported(motion: SlidingMotion, time: Array) -> Slide:
     slide, velocity = motion.at(time)
     return Slide(time, slide, velocity, motion.slip, motion.switches)

@@ -22,6 +22,7 @@ from validation.solvers.columns.names import column_of
 from validation.suite import tables
 from validation.suite.bands import Band, cases, fitted_order
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 DDA = "dda"
 EVENTS = "column-events"
@@ -185,12 +186,12 @@ def blocks_of_pieces(case: Scene) -> Mapping[str, Value]:
 
 
 def settling(case: Scene) -> Mapping[str, Value]:
-    """Return the time in which a stack comes to rest, in closed form [s]."""
+    """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
     column = column_of(case)
     layer = column.layer[0]
     mass = layer.density * layer.thickness / layer.blocks
     lowest = columns.lowest_frequency(column.contacts[0].stiffness, mass, layer.blocks)
-    return {"settling": columns.settling_time(lowest, case.time.step, case.time.delta, case.time.discount)}
+    return {"settling": columns.ring_down(lowest, Stepping.of(case))}
 
 
 def one_contact_a_solve(case: Scene) -> Band:

@@ -23,6 +23,7 @@ from validation.theory import friction
 EXACT = "creep-exact"
 STEPS = "creep-steps"
 LAGGED = "creep-lagged"
+CLAIM = "creep-claim"
 STIFFNESS = "creep-stiffness"
 DAMPED = "creep-damped"
 REFINED = ("slope-exact-constant", "slope-exact-average")
@@ -86,6 +87,12 @@ def damped_way(case: Scene) -> Band:
     """Return how far a damped block creeps until it stands [m]."""
     hop = friction.creep_scale(case) / friction.normal_frequency(case)
     return hop, 2 * friction.damped_creep(case)
+
+
+def lagged_creep(case: Scene) -> Band:
+    """Return the speed at which a block under lagged friction goes on to creep [m/s]."""
+    scale = friction.creep_scale(case)
+    return 0.01 * scale, 2 * scale
 
 
 def lag(case: Scene) -> Band:

@@ -20,9 +20,11 @@ from validation.runs.case_name import scene_of
 from validation.runs.history import Array, History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.studies.methods import facts
+from validation.studies.methods.closed import exact_locked
 from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
 from validation.suite.bands import Band, about, fitted_order
-from validation.theory import friction, rebound, spectra, statics
+from validation.theory import friction, rebound, spectra
 from validation.theory.stepping import Stepping
 
 RATIOS = (1.0, 10.0, 100.0)  # p/E
@@ -50,6 +52,7 @@ RIGID_PHASES = 2000
 ERROR = "displacement error"
 RIGID_MAP = "rebound on a rigid contact"
 COST = "methods-cost"
+FAST = ("ch-0", "conserving")  # of second order, and none of whose switches gains energy
 ENERGIES = tuple(f"energy.{name}" for name in ("kinetic", "strain", "springs", "load"))
 BLOCK_EVENTS = ("methods-refined-exact", "block-events")
 COLUMN_EVENTS = ("methods-column-exact", "column-events")
@@ -184,8 +187,9 @@ def scenes() -> tuple[Scene, ...]:
     declared += [sliding(one) for one in FRICTIONAL]
     columns = {"run.columns": ["displacement"]}
     dropped = exact("columns-drop-average", COLUMN_EVENTS, "Five rigid blocks dropped", 1e-3, COLUMN_TIME, **columns)
-    opened = exact("unlocked-average", BLOCK_EVENTS, "Contact that opens", REFINED_TIME / COARSEST, REFINED_TIME)
-    return (*declared, opened, dropped)
+    step = REFINED_TIME / COARSEST
+    unlocked_exactly = exact("unlocked-average", BLOCK_EVENTS, "Contact that opens", step, REFINED_TIME)
+    return (*declared, unlocked_exactly, dropped, load_scene(facts.AUGMENTED))
 
 
 @functools.cache
@@ -205,6 +209,30 @@ def locked_cases() -> Iterator[Scene]:
         yield from expanded(locked(one))
 
 
+def rigid_stops() -> tuple[Scene, ...]:
+    """Return the cases of the rigid stop in displacements."""
+    return expanded(rigid("displacements"))
+
+
+def opened() -> dict[str, Scene]:
+    """Return the cases of contact that opens, at 0.2 ms, that are held to the exact motion, by scheme and p."""
+    compared = {}
+    for name, word, index in (
+        ("leapfrog", "leapfrog, p = 1E", 1),
+        ("leapfrog", "leapfrog, p = 100E", 3),
+        ("average", "(1/4, 1/2), p = 1E", 1),
+        ("average", "(1/4, 1/2), p = 100E", 3),
+        ("constant", "(1/2, 1), p = 1E", 1),
+    ):
+        compared[word] = expanded(unlocked(method(name)))[index]
+    return compared
+
+
+def opened_exactly() -> dict[str, Scene]:
+    """Return the cases whose exact motion these are held to, by p."""
+    return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
+
+
 def sliding_cases() -> Iterator[Scene]:
     """Yield the cases of the block that slides."""
     for one in FRICTIONAL:
@@ -212,34 +240,6 @@ def sliding_cases() -> Iterator[Scene]:
 
 
 # ---- what is derived from the runs ----------------------------------------------------------------------------------
-
-
-def two_unknowns(scene: Scene) -> tuple[Array, Array, Array]:
-    """Return M and K of the block of one strain in (v, ey), and the row b of the gap at its base, for mu = 0."""
-    width, height = statics.size(scene)
-    modulus, _ = statics.moduli(scene)
-    p = scene.contact.stiffness
-    m = scene.block.mass
-    gap = np.array([1.0, -height / 2])
-    mass = np.diag([m, m * height**2 / 12])
-    stiffness = np.diag([0.0, modulus * width * height]) + 2 * p * np.outer(gap, gap)
-    return mass, stiffness, gap
-
-
-def exact_locked(scene: Scene, time: Array) -> Array:
-    """Return the displacement of the centroid of the locked block under a suddenly applied pressure, from rest [m]."""
-    mass, stiffness, _ = two_unknowns(scene)
-    width, height = statics.size(scene)
-    load = scene.load.pressure * width * np.array([-1.0, -height / 2])
-    root = np.sqrt(np.diag(mass))
-    squares, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
-    shapes = vectors / root[:, None]
-    static = (shapes.T @ load) / squares
-    swings = static * (1 - np.cos(np.multiply.outer(time, np.sqrt(squares))))
-    return np.asarray(swings @ shapes.T[:, 0], dtype=np.float64)
-
-
-# ---- a free mass under a sine ---------------------------------------------------------------------------------------
 
 
 def locked_error(case: Scene, history: History) -> Mapping[str, Value]:
@@ -282,9 +282,10 @@ def order(one: Method, finished: Finished) -> Mapping[str, Value]:
 
 
 def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
-    """Return how many times as many steps DDA's own scheme needs for 1 % of the motion as CH 0."""
-    counts = [order(method(name), finished)["solves to 1 %"] for name in ("constant", "ch-0")]
-    return {"constant over ch-0": or_nan(counts[0]) / or_nan(counts[1])}
+    """Return how many times as many solves DDA's own scheme needs for 1 % of the motion as schemes of second order."""
+    slow = or_nan(order(method("constant"), finished)["solves to 1 %"])
+    counts = {name: or_nan(order(method(name), finished)["solves to 1 %"]) for name in FAST}
+    return {f"constant over {name}": slow / count for name, count in counts.items()}
 
 
 # Displacement of the block that stops dead at a rigid stop, by an independent program [s], [m].
@@ -377,8 +378,8 @@ def row(
 def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
     declared = [row(COST, ERROR, [*cost_cases().values()], equal_cost)]
-    slow_cases = [*expanded(refined(method("constant"))), *expanded(refined(method("ch-0")))]
-    declared.append(row(COST, "order", slow_cases, slow_and_fast, exact=(BLOCK_EVENTS,)))
+    compared = [case for name in ("constant", *FAST) for case in expanded(refined(method(name)))]
+    declared.append(row(COST, "order", compared, slow_and_fast, exact=(BLOCK_EVENTS,)))
     for one in METHODS:
         for case in expanded(unlocked(one)):
             declared.append(row(case, "energy at the end", [case], final_energy, case, reads=ENERGIES))
@@ -394,7 +395,7 @@ def derived() -> tuple[Derived, ...]:
     for one in SCHEMES:
         for case in expanded(column(one)):
             declared.append(row(case, "column error", [case], column_error, case, exact=(COLUMN_EVENTS,)))
-    return tuple(declared)
+    return (*declared, *facts.derived(opened(), opened_exactly()))
 
 
 CURVES = ("constant", "average", "ch-0.8", "ch-0.5", "ch-0", "hht-0.1", "bathe-half", "tr-bdf2", "leapfrog")

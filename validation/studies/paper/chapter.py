@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -57,7 +57,8 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     groups = groups_by_name(results, manifest)
     rows = {row["name"]: row["metrics"] for row in manifest.get("derived", []) if row["scene"] == CLAIMS}
     claims = manifest.get("data", {}).get("claims", [])
-    blocks: Blocks = [Heading(manifest.get("title") or manifest["study"]), Paragraph(conclusion(rows), "lead")]
+    lead = conclusion(rows, {claim["id"] for claim in claims if claim.get("misprint")})
+    blocks: Blocks = [Heading(manifest.get("title") or manifest["study"]), Paragraph(lead, "lead")]
     for title, letter in (("Statements", "C"), ("Slips of the equations", "S")):
         blocks += [Heading(title, 2), claims_table([c for c in claims if c["id"].startswith(letter)], rows)]
     blocks += [Heading("The figures", 2), *figure_1(manifest, groups, directory)]
@@ -67,10 +68,15 @@ def chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
     return blocks
 
 
-def conclusion(rows: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return one sentence on the register."""
+def conclusion(rows: Mapping[str, Mapping[str, Any]], misprints: Collection[str] = ()) -> str:
+    """Return one sentence on the register, and how many of the refuted are slips of print."""
     parts = counted_verdicts(rows, VERBS)
-    return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {parts}."
+    refuted = {name for name, metrics in rows.items() if verdict_of(metrics) == "refuted"}
+    slips = len(refuted.intersection(misprints))
+    remark = ""
+    if slips:
+        remark = PAGE.text("misprint" if slips == 1 else "misprints", count=slips, refuted=len(refuted))
+    return f"Of {len(rows)} statements and equations of the paper @feng2017 that were tested, {parts}.{remark}"
 
 
 def counted_verdicts(rows: Mapping[str, Mapping[str, Any]], verbs: Mapping[str, tuple[str, str]]) -> str:

@@ -1,4 +1,4 @@
-"""The slips of the paper's equations in the register: (13), (16), (20), (21), (29) and (32)."""
+"""The slips of the paper's equations in the register: (13), (16), (20), (21), (25), (28), (29) and (32)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,12 @@ from validation.suite.claims import Evidence, Tests, named
 
 LATERAL = next(iter(named("poisson-statics")))  # mu = 0.3, p = 1E
 OBLONG = {"block.width": 1.0, "block.height": 2.0}
+HALF = 1.0  # m, of the paper's side: the corners are at (-HALF, -HALF) and (HALF, -HALF) from the centroid
+# Displacement of the corners M and N away from and along the base, by the six unknowns: (24) and below (26)
+CORNER_M = (0.0, 1.0, -HALF, 0.0, -HALF, -HALF / 2)
+CORNER_N = (0.0, 1.0, HALF, 0.0, -HALF, HALF / 2)
+SHEAR_M = (1.0, 0.0, HALF, -HALF, 0.0, -HALF / 2)
+SHEAR_N = (1.0, 0.0, HALF, HALF, 0.0, -HALF / 2)
 
 
 def model(case: str, **values: float) -> Any:
@@ -39,10 +45,14 @@ def radius(e: Evidence) -> dict[str, float]:
 
 
 def inertia(e: Evidence) -> dict[str, float]:
-    """Return entries (3, 6) and (6, 6) of the inertia matrix of a 1 m x 2 m block, over rho."""
+    """Return entries (3, 6) and (6, 6) of a 1 m x 2 m block's inertia over rho, and (1, 1) over the area."""
     block_model = model(SOFT, **OBLONG)
     mass = block_model.mass / block_model.block.material.density
-    return {"entry (3, 6)": float(mass[2, 5]), "entry (6, 6)": float(mass[5, 5])}
+    return {
+        "entry (3, 6)": float(mass[2, 5]),
+        "entry (6, 6)": float(mass[5, 5]),
+        "entry (1, 1) over the area, kg/m3": float(block_model.mass[0, 0] / 2.0),
+    }
 
 
 def energy(e: Evidence) -> dict[str, float]:
@@ -80,11 +90,29 @@ def lateral(e: Evidence) -> dict[str, float]:
     }
 
 
+def shear_load(e: Evidence) -> dict[str, float]:
+    """Return the sideways force of the springs at rest, where they hold no shear, and that of (25) and (28) over a q.
+
+    As printed the load of a shear spring is -(p s0 / l) e_r with the s0 of (23), and s0 / l is the normal gap.
+    """
+    block_model = model(SOFT)
+    p = block_model.contact.stiffness
+    at_rest = np.linalg.solve(block_model.stiffness, block_model.force)
+    gaps = [np.dot(corner, at_rest) for corner in (CORNER_M, CORNER_N)]
+    stretches = [np.dot(corner, at_rest) for corner in (SHEAR_M, SHEAR_N)]
+    load_force = 2 * HALF * block_model.load.pressure
+    return {
+        "sideways force at rest over a q": float(-p * sum(stretches) / load_force) + 0.0,
+        "by (25) and (28) as printed": float(-p * sum(gaps) / load_force),
+    }
+
+
 TESTS: Tests = {
     "S13": (MAP, radius),
     "S16": ((SOFT,), inertia),
     "S20": ((SOFT,), energy),
     "S21": ((LATERAL,), modulus),
+    "S25": ((SOFT,), shear_load),
     "S29": ((SOFT,), load),
     "S32": ((LATERAL,), lateral),
 }

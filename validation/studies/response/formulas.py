@@ -31,6 +31,7 @@ from validation.theory.stepping import Complex, Stepping
 
 BASE = "response-base"
 DAMPING = "response-damping"
+VISCOUS = "viscous"
 FREQUENCIES = (20.0, 52.0, 80.0, 150.0)  # Hz
 RESONANCE = 52.0  # Hz, next to the first frequency
 LOW = (5.0, 10.0, 20.0)  # Hz
@@ -253,6 +254,34 @@ def damping_gates() -> Iterator[Gate]:
         yield gate(DAMPING, row, "damping.response", about(exact, float(closed_form.band[at])), why)
 
 
+# ---- viscous damping beside that of the step ------------------------------------------------------------------------
+
+
+def viscous_damping_ratio(scene: Scene) -> float:
+    """Return xi of the first mode under viscous damping: it adds to what the step takes, and does not replace it.
+
+    With W = w dt and e = dt (a0 + a1 w^2) the eigenvalues of a step are the roots of
+    (1 + alpha W^2 + delta e) z^2 + [W^2 (1/2 - alpha + gg (delta - alpha)) + e (1 - 2 delta) - 1 - gg] z
+    + gg + gg W^2 (1/2 - delta + alpha) - e (1 - delta).
+    """
+    t = scene.time
+    w = dda_frequency(scene)
+    W2 = (w * t.step) ** 2
+    e = t.step * (scene.damping.mass + scene.damping.stiffness * w * w)
+    square = 1 + t.alpha * W2 + t.delta * e
+    linear = W2 * (0.5 - t.alpha + t.discount * (t.delta - t.alpha)) + e * (1 - 2 * t.delta) - 1 - t.discount
+    constant = t.discount * (1 + W2 * (0.5 - t.delta + t.alpha)) - e * (1 - t.delta)
+    logarithm = np.log(complex(np.roots([square, linear, constant])[0]))
+    return float(-logarithm.real / abs(logarithm))
+
+
+def viscous_gates() -> Iterator[Gate]:
+    """Yield the gates on the damping of the first mode under 5 % of viscous damping."""
+    why = "the quadratic of a step with viscous damping, written apart; band: rounding"
+    for case in cases(VISCOUS):
+        yield gate(case, "dda", "mode1.damping", about(viscous_damping_ratio(case), 1e-12), why)
+
+
 # ---- the study ------------------------------------------------------------------------------------------------------
 
 
@@ -277,7 +306,7 @@ def _row(scene: str, solver: str, frequency: float, compute: Callable[..., Any],
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates())
+    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates(), *viscous_gates())
 
 
 def curves() -> Mapping[str, Any]:

@@ -1,13 +1,14 @@
 """The study `slopes`: trajectories on inclines against closed forms.
 
 While every corner slips one way or is open, u_t + tan(phi) u_n of the centroid moves freely under
-a_s = g (sin b - tan(phi) cos b), in any scheme and through bounces (`validation.theory.friction`). So the run-out, what
-a discount takes of it and the slope at which a block begins to slide are known to rounding.
+a_s = g (sin b - tan(phi) cos b), in any scheme and, without cohesion, through bounces (`validation.theory.friction`).
+So the run-out, what a discount takes of it and the slope at which a block begins to slide are known to rounding.
 """
 
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -20,9 +21,11 @@ from validation.runs.history import History
 from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
+from validation.studies.slopes import closed as closed_forms
 from validation.suite.bands import APART, Band, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
+from validation.theory.stepping import Stepping
 
 SLIDING = "slope-sliding"
 AVERAGE = "slope-average"
@@ -31,6 +34,11 @@ THRESHOLD = "slope-threshold"
 MANUAL = "slope-manual"
 SHAKEN = "slope-base"
 QUAKE = "slope-quake"
+STIFFNESS = "slope-stiffness"
+FACTS = "slope-facts"  # owner of rows without a run
+FACT_STEPS = (1e-4, 1e-3, 5e-3, 1e-2)  # s
+RINGS_FROM = 0.05  # s: what the block rings is seen beside a way of some millimetres
+RINGING = 1e-3  # of the error by ringing: the own vibration of a block whose strain follows at rest
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
 RIGID = "sliding block"
 # The shaking
@@ -43,7 +51,12 @@ def derived() -> tuple[Derived, ...]:
     """Return the rows that are computed from finished cases."""
     pair = tuple(cases(THRESHOLD))
     needs = tuple((case.name, "dda") for case in pair)
-    return (Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)),)
+    return (
+        Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)),
+        Derived(FACTS, "ringing of a rigid block", (), rigid_ringing),
+        Derived(FACTS, "friction of the step before", (), late_friction),
+        Derived(FACTS, "discount", (), discounted),
+    )
 
 
 def sliding(scene: Scene, history: History) -> np.ndarray:
@@ -76,6 +89,44 @@ def identity(scene: Scene, history: History) -> Mapping[str, Value]:
     return {"largest difference": float(difference), "offset": float(offset)}
 
 
+def ringing(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the largest error of a sliding block over its exact way, from a start on."""
+    way = friction.sliding_acceleration(scene) * history.time**2 / 2
+    late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
+    return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
+
+
+def rigid_ringing(finished: Finished) -> Mapping[str, Value]:
+    """Return the error of a rigid block that slides and stays closed, over penalty and step."""
+    scene = next(iter(cases(STIFFNESS)))
+    numbers: dict[str, Value] = {}
+    for p, step in itertools.product((1e8, 1e9), FACT_STEPS):
+        numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed_forms.normal_ringing_error(scene, p, step)
+    return numbers
+
+
+def late_friction(finished: Finished) -> Mapping[str, Value]:
+    """Return the error after a second of a sliding block whose friction is that of the step before."""
+    scene = next(iter(cases(STIFFNESS)))
+    return {f"dt = {1e3 * step:g} ms": closed_forms.lagging_friction_error(scene, step, 1.0) for step in FACT_STEPS}
+
+
+def discounted(finished: Finished) -> Mapping[str, Value]:
+    """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
+    gg = 0.98
+    numbers: dict[str, Value] = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
+    for step in (1e-2, 5e-3, 2.5e-3, 1e-3):
+        numbers[f"rate at dt = {1e3 * step:g} ms, 1/s"] = -math.log(gg) / step
+    for step in (1e-2, 2.5e-3):
+        for hertz in (1.0, 5.0, 10.0):
+            ratio = Stepping(step, 0.25, 0.5, gg=gg).damping_ratio(2 * math.pi * hertz * step)
+            numbers[f"xi at {hertz:g} Hz, dt = {1e3 * step:g} ms"] = ratio
+    exact = closed_forms.shaken_way(closed_forms.FINE, 1.0)
+    for step in (1e-2, 5e-3, 2.5e-3, 1e-3, 1e-4):
+        numbers[f"way kept at dt = {1e3 * step:g} ms"] = closed_forms.shaken_way(step, gg) / exact
+    return numbers | {"way without a discount at dt = 10 ms": closed_forms.shaken_way(1e-2, 1.0) / exact}
+
+
 def against_rigid(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
@@ -105,6 +156,15 @@ def dragged(case: Scene) -> Band:
 def sliding_rate(case: Scene) -> Band:
     """Return the acceleration of a block that slides [m/s2]."""
     return about(friction.sliding_acceleration(case), 1e-6 * friction.along(case))
+
+
+def ringing_way(case: Scene) -> Band:
+    """Return the error by what a block rings on stiff springs; its own strain settles with them, p h / (2 E a) more."""
+    width, height = size(case)
+    modulus, _ = moduli(case)
+    own_strain = case.contact.stiffness * height / (2 * modulus * width)
+    rigid = closed_forms.normal_ringing_error(case, case.contact.stiffness, case.time.step)
+    return near(rigid * (1 + own_strain), RINGING)
 
 
 def lost_energy(case: Scene) -> Band:

@@ -14,7 +14,7 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.waves import rows
+from validation.studies.waves import oblique, rows
 from validation.studies.waves.rows import curves as curves
 from validation.suite.bands import APART, gate
 
@@ -43,12 +43,14 @@ def derived() -> tuple[Derived, ...]:
         *(wave.row(rows.parted) for wave in rows.jointed()),
         *(wave.row(rows.sent_back) for wave in rows.returned()),
         Derived(needs[-1][0], "order", needs, rows.joint_order),
+        *oblique.derived(),
     )
 
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *site())
+    waves = (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *oblique.gates())
+    return (*waves, *site())
 
 
 def site() -> Iterator[Gate]:

@@ -1,4 +1,4 @@
 """Error against run time and work.
 
-Points, fronts, orders and the committed record.
+Points, fronts and orders.
 """

@@ -1,0 +1,143 @@
+"""A step that is too long is told from the scheme alone, for every scene that has modes, and no other one."""
+
+from __future__ import annotations
+
+import cmath
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms, removal_of
+from validation.cli.app import app
+from validation.report.front.groups import groups_of_studies
+from validation.report.front.pages import alarm_lines
+from validation.runs.results import Results
+from validation.scenes.scene import Scene
+from validation.theory import columns
+
+GRANITE: dict[str, Any] = {
+    "block": {"side": 1.2, "density": 2650.0, "young": 5e10, "poisson": 0.25},
+    "contact": {"stiffness": 5e11},
+    "load": {"gravity": 9.81, "pressure": 1e6},
+    "time": {"step": 1e-3, "steps": 200},
+}
+COLUMN: dict[str, Any] = {
+    "column": {"motion": "shear", "layer": [{"thickness": 10.0, "density": 2000.0, "young": 2e9, "blocks": 20}]},
+    "input": {"shape": "ricker", "velocity": 0.1, "frequency": 2.0},
+    "time": {"step": 1e-3, "steps": 200},
+}
+
+
+def scene(base: dict[str, Any] = GRANITE, **changes: Any) -> Scene:
+    tables = {name: dict(table) for name, table in base.items()}
+    for key, value in changes.items():
+        table, _, field = key.partition("__")
+        if value is None:
+            tables[table].pop(field, None)
+        else:
+            tables[table] = value if not field else tables.get(table, {}) | {field: value}
+    return Scene.model_validate({"name": "granite", **tables})
+
+
+def kinds(case: Scene) -> set[str]:
+    return {alarm.kind for alarm in coarse_alarms(case)}
+
+
+BOTH = {AGREEMENT, SAMPLED}
+FINE = 1.2e-5  # s, w dt = 0.073
+UNLOCKED = {"law": "unilateral", "stiffness": 5e11}
+CH = {"scheme": "chung-hulbert", "rho_inf": 0.0, "steps": 200}
+
+
+@pytest.mark.parametrize(
+    ("case", "raised"),
+    [
+        (scene(), BOTH),
+        (scene(time__step=3e-4), {AGREEMENT}),
+        (scene(time__step=FINE), set()),
+        (scene(time__step=3e-4, block__poisson=0.0, load={"pressure": 1e6}), {AGREEMENT}),
+        (scene(time__step=3e-4, block__subdivide=[2, 2]), {AGREEMENT}),
+        (scene(time__step=3e-4, contact=UNLOCKED), {AGREEMENT}),
+        (scene(time__step=FINE, contact=UNLOCKED), set()),
+        (scene(contact=UNLOCKED | {"stiffness": math.inf, "shear_stiffness": 0.0}), BOTH),
+        (scene(contact=UNLOCKED | {"rule": "energy-conserving"}, time__alpha=0.25, time__delta=0.5), {SAMPLED}),
+        (scene(time=CH | {"step": 3e-4}), {AGREEMENT}),
+        (scene(time=CH | {"step": 3e-5}), set()),
+        (scene(time__alpha=0.25, time__delta=0.5), {SAMPLED}),
+        (scene(time__alpha=0.25, time__delta=0.5, time__step=3e-4), set()),
+        (scene(time__gg=0.0), set()),  # to come to rest is what is meant
+        (scene(load__ramp=0.1), set()),  # 97 periods of the first mode
+        (scene(contact=UNLOCKED | {"friction": 30.0}, load={"gravity": 9.81, "slope": 20.0}), set()),  # slides
+        (scene(COLUMN), set()),
+        (scene(COLUMN, time__step=5e-3), {AGREEMENT}),  # w1 dt = 0.56
+        (scene(COLUMN, time__step=5e-2), BOTH),
+        (scene(COLUMN, time__step=1e-3, input__frequency=100.0), {AGREEMENT}),  # of the wave, not of the first mode
+    ],
+)
+def test_a_step_that_is_too_long_is_told_without_a_run(case: Scene, raised: set[str]) -> None:
+    assert kinds(case) == raised
+
+
+@pytest.mark.parametrize(("gg", "damping"), [(1.0, 0.0), (0.95, 0.0), (1.0, 1e-4)])
+def test_what_the_scheme_takes_in_a_period(gg: float, damping: float) -> None:
+    """(1/2, 1) has z^2 (1 + W2 / 2) - 2 z + 1 = 0 with W2 = (w dt)^2; discount and tables are not the scheme's."""
+    case = scene(time__gg=gg, damping__stiffness=damping)
+    omega_dt = 1.7
+    removal = removal_of(case, omega_dt / case.time.step)
+    root = (1 + cmath.sqrt(1 - 1 * (1 + omega_dt**2 / 2))) / (1 + omega_dt**2 / 2)
+    period = 2 * math.pi / omega_dt
+    assert removal.by_scheme == pytest.approx(1 - abs(root) ** period, rel=1e-9)
+    rate = damping * (omega_dt / case.time.step) ** 2 * case.time.step
+    assert removal.by_damping == pytest.approx(1 - (gg * math.exp(-rate)) ** (period / 2), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("column", "frequency"),
+    [
+        ({"layer": [{"blocks": 200}]}, math.pi / 2 * math.sqrt(1e9 / 2000) / 10),  # a bar, to 1e-5
+        ({"layer": [{"blocks": 1}]}, math.sqrt(3) * math.sqrt(1e9 / 2000) / 10),  # one strain
+        (
+            {"base": "springs", "base_stiffness": 1e5, "layer": [{"blocks": 4}]},
+            math.sqrt(5 / (1 + 1e-3 / 3)),
+        ),  # k H / 3 G
+    ],
+)
+def test_the_first_frequency_of_a_column(column: dict[str, Any], frequency: float) -> None:
+    layers = [{"thickness": 10.0, "density": 2000.0, "young": 2e9} | layer for layer in column["layer"]]
+    section = scene(COLUMN, column=column | {"motion": "shear", "layer": layers}).column
+    assert section is not None
+    assert columns.first_frequency(section) == pytest.approx(frequency, rel=1e-4)
+
+
+@pytest.mark.parametrize("blocks", [1, 3, 8])
+def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks: int) -> None:
+    layer = {"thickness": 1.0 * blocks, "density": 2000.0, "young": math.inf, "blocks": blocks}
+    tables = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": [layer]}
+    section = Scene.model_validate({"name": "s", "column": tables, "time": COLUMN["time"]}).column
+    assert section is not None
+    expected = columns.lowest_frequency(1e9, 2000.0, blocks)
+    assert columns.first_frequency(section) == pytest.approx(expected, rel=1e-7)
+
+
+def test_run_show_and_the_report_warn(tmp_path: Path) -> None:
+    """No gate is proposed that would pass by the step."""
+    source = tmp_path / "granite.toml"
+    lines: list[str] = []
+    for name, table in GRANITE.items():
+        lines += [f"[{name}]", *(f"{key} = {value}" for key, value in table.items())]
+    source.write_text("\n".join(lines))
+    results = tmp_path / "results"
+    printed = CliRunner().invoke(app, ["run", str(source), "--results", str(results)])
+    assert printed.exit_code == 0 and all(kind in printed.output for kind in BOTH)
+    assert "[[gate]]" not in printed.output
+    first_page = alarm_lines(groups_of_studies(Results(results), ["granite"]))
+    assert all(any(kind in line.text for line in first_page) for kind in BOTH)
+    refined = CliRunner().invoke(app, ["run", str(source), "--results", str(results), "--set", "time.step=1e-5"])
+    assert "[[gate]]" in refined.output and not any(kind in refined.output for kind in BOTH)
+    shown = json.loads(CliRunner().invoke(app, ["show", str(source), "--json"]).output)
+    assert len(shown["remarks"]) == 3 and np.isclose(shown["numbers"]["w1 dt"]["low"], 6.0754, rtol=1e-4)
