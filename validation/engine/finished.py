@@ -117,7 +117,9 @@ def from_history(
     return Derived(case.name, name, ((case.name, solver),), compute_row)
 
 
-def from_metrics(case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Mapping[str, Value]]) -> Derived:
+def from_metrics(
+    case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Mapping[str, Value]]
+) -> Derived:
     """Return a row that is computed from the metrics of some solvers of a case, or from the case alone.
 
     Parameters

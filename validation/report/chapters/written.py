@@ -7,6 +7,8 @@ and is left out where a table or figure that it names shows nothing:
     { heading = "Run-out", text = "x", figure = "y", table = "z", after = "w" }
     { heading_of = "locking" }                             headed by the title of a scene
     { level = 3, table = "z", each = "scene" }             once for each scene, headed so
+    { section = "figure-7", columns = ["displacement"] }   the section of a scene, `without` the exact solutions
+    { ledger = true }                                      where the energy of each scene went
     { history = "long-run", columns = ["displacement"] }   the histories of a scene
     { outcomes = 3 }                                       as many callouts on runs that did not complete
     { call = "f" }                                         what the function f(table, directory) of chapter.py returns
@@ -37,8 +39,9 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph, Table, table
 from validation.report.chapters.described import CaseColumn, Description
+from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.queries import Line, Query, StudyTable
-from validation.report.chapters.scene import gate_count, history_block, opening, outcomes
+from validation.report.chapters.scene import gate_count, history_block, opening, outcomes, scene_section
 from validation.report.chapters.text import DASH, capital
 from validation.report.figures.charts import ChartLine
 from validation.report.figures.histories import saved
@@ -47,6 +50,8 @@ from validation.runs.history import Array
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Value
+from validation.solvers.contract import Role
+from validation.solvers.registry import by_role
 
 COLUMN_FIELDS = {one.name for one in fields(CaseColumn)}
 LINE_FIELDS = {one.name for one in fields(ChartLine)} - {"name", "x", "y", "shaded", "notes"}
@@ -77,7 +82,7 @@ class WrittenChapter:
         """Return the blocks of all parts."""
         blocks: Blocks = []
         for part in self.page.entries("parts"):
-            needed = {*part.get("when", ()), *filter(None, [part.get("heading_of")])}
+            needed = {*part.get("when", ()), *filter(None, [part.get("heading_of"), part.get("section")])}
             if not needed <= set(self.table.groups):
                 continue
             if "heading_of" in part:
@@ -95,6 +100,12 @@ class WrittenChapter:
         if "call" in part:
             blocks: Blocks = getattr(self.module, part["call"])(self.table, self.directory)
             return blocks
+        if "section" in part:
+            group = self.table.groups[part["section"]]
+            without = tuple(by_role(Role.TRUTH)) if part.get("without") == "truth" else ()
+            return scene_section(group, self.directory, part["columns"], without=without)
+        if "ledger" in part:
+            return ledger_blocks(list(self.table.groups.values()), self.table.manifest["study"], self.directory)
         if "outcomes" in part:
             callouts = itertools.chain.from_iterable(map(outcomes, self.table.groups.values()))
             return list(dict.fromkeys(callouts))[: part["outcomes"]]
@@ -301,7 +312,6 @@ class WrittenChapter:
             drawn = ChartLine("", x, y, shaded=shaded)  # type: ignore[arg-type]
             own = {key: value for key, value in curve.items() if isinstance(value, str)}
             yield self._named(line, drawn, Line("", words=own), curve.get(line.get("each", "")))
-
 
     # ---- maps -------------------------------------------------------------------------------------------------------
 

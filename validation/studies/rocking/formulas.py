@@ -54,7 +54,11 @@ def rigid(scene: Scene) -> Mapping[str, Value]:
     if scene.name.startswith(PULSED):
         return values | {"size": PUSH / block.gravity / block.pulse_threshold(DURATION)}
     tilt = math.radians(scene.block.tilt)
-    return values | {"tilt": tilt, "tilt over tipping": tilt / block.alpha, "quarter period": block.quarter_period(tilt)}
+    return values | {
+        "tilt": tilt,
+        "tilt over tipping": tilt / block.alpha,
+        "quarter period": block.quarter_period(tilt),
+    }
 
 
 def overturns(scene: Scene) -> bool:
