@@ -202,7 +202,7 @@ def test_each_fault_is_told_with_its_number(cause: str) -> None:
 @pytest.mark.parametrize(
     ("cause", "fields", "words"),
     [
-        ("gg-in-one-formula", {"discounted": "velocity"}, "the formula for the velocity (7)"),
+        ("gg-in-one-formula", {"discounted": "velocity"}, "the formula for the velocity, V1"),
         ("time-shift", {"shift": -1}, "1 step early"),
         ("time-shift", {"shift": 2}, "2 steps late"),
         ("reported-point", {"point": 1.0}, "+1 m above the centroid, the top edge"),

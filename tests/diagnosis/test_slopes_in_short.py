@@ -101,6 +101,9 @@ def test_noise_is_no_departure_and_a_shape_is_one() -> None:
     noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=0)
     assert beside(scene, place).left == 0
     assert beside(scene, place + 1e-3 * noise).same
+    wrong_row = place + 1e-3 * noise
+    wrong_row[len(place) // 2] *= 1.02
+    assert not beside(scene, wrong_row).same
     assert not beside(scene, place + 3e-2 * noise).same
     assert not beside(scene, place * (1 + 1e-3)).same
 

@@ -41,6 +41,8 @@ class Plain:
     keeps_springs: bool = True
     opens: bool = False
     band: float = 0.0
+    tension: float = 0.0  # N a corner, that a closed contact bears
+    lags: str = ""  # "opening" or "switching": by the gap at the start of the step
     pressure_times: float = 1.0
     displacement_times: float = 1.0
 
@@ -93,6 +95,9 @@ def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
         share *= 1 + P.shaken * rng.standard_normal()
         one = P.gg if P.formulas != "velocity" else 1.0
         two = P.gg if P.formulas != "displacement" else 1.0
+        if P.lags:
+            on = [gone[1] <= 0 if was else P.lags == "switching" and gone[1] < 0 for gone, was in
+                  zip(stretch, on, strict=True)]  # fmt: skip
         for _ in range(8):
             K, F = elastic.copy(), share * load + weight
             if P.keeps_stress:
@@ -123,8 +128,10 @@ def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
             right = F + M @ star / b - damping @ (two * V + P.dt * (1 - P.delta) * A - c * star)
             d = np.linalg.solve(left, right)
             ends = [gone + corner @ d for gone, corner in zip(stretch, corners, strict=True)]
-            new = [not P.opens or (end[1] < 0 if closed else end[1] < -P.band) for end, closed in
+            new = [not P.opens or (end[1] < P.tension / P.p if closed else end[1] < -P.band) for end, closed in
                    zip(ends, on, strict=True)]  # fmt: skip
+            if P.lags:
+                new = on if P.lags == "switching" else [was or now for was, now in zip(on, new, strict=True)]
             if new == on:
                 break
             on = new

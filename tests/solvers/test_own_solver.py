@@ -203,8 +203,30 @@ def test_a_word_that_names_no_solver_is_refused() -> None:
 @pytest.mark.long
 def test_a_solver_that_cannot_be_loaded_is_refused_before_anything_runs(tmp_path: Path) -> None:
     shown = through_the_gates("nope:solve", tmp_path)
-    assert "ERROR: --dda-solver: nope:solve cannot be loaded: ModuleNotFoundError: No module named 'nope'" in shown
+    assert "ERROR: --dda-solver: solver: must be a module that Python finds, got 'nope:solve'" in shown
     assert "failed" not in shown
+
+
+def gate_report(outcome: str, when: str = "call") -> pytest.TestReport:
+    node = "validation/test_gates.py::test_gate[a]"
+    return pytest.TestReport(node, (node, 0, node), {}, outcome, None, when)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("reports", "status"),
+    [
+        ([gate_report("skipped"), gate_report("skipped")], pytest.ExitCode.TESTS_FAILED),
+        ([gate_report("passed", "setup"), gate_report("skipped")], pytest.ExitCode.TESTS_FAILED),
+        ([gate_report("skipped"), gate_report("passed")], pytest.ExitCode.OK),
+        ([], pytest.ExitCode.OK),  # tests of somebody's own, which are no gates
+    ],
+)
+def test_a_session_that_judged_nothing_fails(reports: list[pytest.TestReport], status: pytest.ExitCode) -> None:
+    reporter = SimpleNamespace(stats={"": reports})
+    config = SimpleNamespace(pluginmanager=SimpleNamespace(get_plugin=lambda _: reporter))
+    session = SimpleNamespace(config=config, exitstatus=pytest.ExitCode.OK)
+    plugin.pytest_sessionfinish(session, session.exitstatus)  # type: ignore[arg-type]
+    assert session.exitstatus == status
 
 
 @pytest.mark.long
@@ -528,6 +550,20 @@ def test_a_slip_of_the_scheme_and_a_misread_datum_are_both_named(
     wrong = [line for line in block(told) if line.lstrip().startswith("wrong:")]
     assert [line.split(" - ")[0] for line in wrong] == ["wrong:  damping", "wrong:  block data"]
     assert "load.eccentricity is not read" in wrong[1]
+
+
+@pytest.mark.parametrize("is_discount_judged", [False, True])
+def test_a_discount_is_suspected_where_no_other_scene_has_one(is_discount_judged: bool) -> None:
+    """The scenes of the data are damped by gg: a discount that is applied twice shows in them alone."""
+    rectangle = block_data.scenes()[0].name
+    failed = of(scene=rectangle, study="own-solver", group=gates.BLOCK_DATA, metric="displacement.max", status="FAIL")
+    others = [
+        of(scene=scene.name, study="own-solver", group="digits", metric="displacement.max")
+        for scene in gates.starts()
+        if is_discount_judged or scene.time.discount == 1
+    ]
+    (line,) = [line for line in block([failed, *others]) if "the moment of inertia" in line]
+    assert ("gg" in line) is not is_discount_judged
 
 
 @pytest.mark.long

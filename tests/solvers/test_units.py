@@ -53,9 +53,9 @@ def test_every_unit_of_the_table_is_tested() -> None:
 def test_another_unit_at_a_height_is_named(scene: Scene, column: str) -> None:
     expected = np.sin(np.linspace(0.1, 9.0, 50))
     for unit, times in AT_HEIGHTS[column].items():
-        told = factor(column, 1.1 * times * expected, expected, scene)
+        told = factor(column, 1.1 * times * expected, expected)
         assert told is not None and told.endswith(f"{unit}?")
-    assert factor(column, 1.1 * expected, expected, scene) is None
+    assert factor(column, 1.1 * expected, expected) is None
 
 
 @pytest.mark.parametrize(
@@ -99,6 +99,7 @@ def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width:
         {"displacement": 10.0},  # no unit is ten times another here
         {"contact_pressure": 1.05},  # nearly one: not the base's length of 2 m
         {"contact_pressure": 1.9, "displacement": 3.0},
+        {"contact_pressure": 2.0, "displacement": 1.5},  # one spring in place of two, on a base of 2 m
         {"contact_pressure": 0.0},
     ],
     ids=str,

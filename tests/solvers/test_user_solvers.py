@@ -94,6 +94,20 @@ def test_names(scene: Scene) -> None:
         get_solver("femm:2")
 
 
+@pytest.mark.parametrize("name", ["nowhere:solve", "nowhere.py:solve", "my_solver.py:solve", "my_solver.inner:solve"])
+def test_a_module_that_is_not_found_is_bad_input(scene: Scene, name: str) -> None:
+    with pytest.raises(InputError) as told:
+        get_solver(name).check_module()  # type: ignore[attr-defined]
+    assert (told.value.field, told.value.value) == ("solver", repr(name))
+    assert ("without .py" in told.value.rule) is (".py" in name)
+    assert os.getcwd() in str(told.value.advice)
+
+
+@pytest.mark.parametrize("command", [("judge", "locked"), ("solve", SCENE)])
+def test_a_command_ends_on_a_module_that_is_not_found(command: tuple[object, ...]) -> None:
+    assert cli(*command, "--solver", "nowhere:solve").returncode == 2
+
+
 def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
     from validation.engine.run import run_study
 

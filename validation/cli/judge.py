@@ -232,6 +232,8 @@ def _judge_solver(target: str, solver: str, assignments: list[str] | None, progr
     case = one_case(source, assignments)
     posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
     adapter = get_solver(solver)
+    if isinstance(adapter, UserSolver):
+        adapter.check_module()
     progress(0, 3, f"{case.name} {solver}")
     run = completed(adapter, case)
     history = _completed_history(run, case.name, solver)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ HALF = 0.5  # steps late: a mean of two
 UNEXPLAINED = "unexplained"
 SWAPPED = "swapped"
 DIVERGED = "diverged"
+SINGLE_ROWS = "single-rows"
 
 
 @dataclass(frozen=True)
@@ -54,12 +55,22 @@ CAUSES = {name: cause for name, cause in LISTED.items() if not cause.outside}
 CONTACT_METHODS = frozenset(
     {"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"}
 )
+FORMULAS = {
+    "velocity": "velocity, V1 = gg V + ...",
+    "displacement": "displacement, d = gg dt V + ...",
+    "(6)": "acceleration, (6) as printed",
+    "(7)": "velocity, (7) as printed",
+}
+INTERCHANGED = ": alpha and delta are interchanged"
+SAME_WEIGHT = 1e-4  # of alpha and delta, as noise leaves them
+BAND_FIELDS = {"dead-band": "band", "opening-tension": "hold"}  # limits of the contact, of which rows tell an interval
 DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that are no field of a variant
     "reported-point": lambda c, v: v.point * c.height / 2,
     "poisson": lambda c, v: c.poisson + v.poisson,
     "springs-factor": lambda _, v: math.exp(-v.softness),
     "load-factor": lambda _, v: v.load if v.load != 1 else v.displacement_factor,
     "base-compliance": lambda c, v: compliance(c, v),
+    "opening-tension": lambda c, v: c.normal * math.exp(-v.softness) * v.hold / c.width,
 }
 
 
@@ -119,7 +130,7 @@ def causes_of(
     names = set(ids)
     if "springs-factor" in names and is_base(rectangle, variant, softness_error):
         names = names - {"springs-factor"} | {"base-compliance"}
-    if "dead-band" in names and not scene.opens:
+    if names & {*BAND_FIELDS} and not scene.opens:
         names |= {"contact-opened"}
     if names & {"scheme", "contact-dashpot", "rigid-contact"} and variant.family == "newmark":
         if (scene.family, scene.alpha, scene.delta) != ("newmark", variant.alpha, variant.delta):
@@ -157,22 +168,24 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
         for cause, value in values.items():
             if elsewhere[cause] != value:
                 ends[cause] = (min(low[cause], high[cause]), max(low[cause], high[cause]))
-    if "dead-band" in values:
-        ends["dead-band"] = band_interval(target, explanation.variant)
+    for name in BAND_FIELDS.keys() & values.keys():
+        ends[name] = band_interval(target, explanation.variant, name)
     return ends
 
 
-def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
-    """Return the penetrations between which a dead band gives the same rows: it lies between two that happened."""
+def band_interval(target: Target, variant: Variant, cause: str = "dead-band") -> tuple[float, float]:
+    """Return the penetrations, or tensions, that give the same rows: a limit lies between two that happened."""
     least = fit_one(target, variant).misfit
+    field = BAND_FIELDS[cause]
+    fitted = float(getattr(variant, field))
 
     def same(bands: Sequence[float]) -> list[bool]:
-        misfits = [one.misfit for one in fit(target, [(replace(variant, band=band), ()) for band in bands])]
+        misfits = [one.misfit for one in fit(target, [(changed(variant, {field: band}), ()) for band in bands])]
         return [abs(misfit - least) <= SAME_MISFIT * max(least, target.floor) for misfit in misfits]
 
     def end(farthest: float) -> float:
-        trials = np.geomspace(variant.band, variant.band * farthest, TRIALS)[1:].tolist()
-        inner = variant.band
+        trials = np.geomspace(fitted, fitted * farthest, TRIALS)[1:].tolist()
+        inner = fitted
         outer = trials[-1]
         for band, alike in zip(trials, same(trials), strict=True):
             if not alike:
@@ -185,7 +198,8 @@ def band_interval(target: Target, variant: Variant) -> tuple[float, float]:
                 inner = middle
             else:
                 outer = middle
-        return significant(inner, 4)
+        at_end = changed(variant, {field: inner})
+        return significant(values_of(target.column, [cause], at_end)[cause], 4)
 
     return end(1 / WIDEST_BAND), end(WIDEST_BAND)
 
@@ -228,17 +242,27 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
         "scheme": "",
         "open_steps": "",
         "between": "",
+        "rows": "",
+        "interchanged": "",
     }
     if v is not None and scene is not None:
         squared = scene.gg < 1 and abs(v.gg - scene.gg**2) < 1e-6
         words |= {
             "square": ", its square" if squared else "",
-            "formula": {"velocity": "velocity (7)", "displacement": "displacement (6)"}.get(v.discounted, ""),
+            "formula": FORMULAS.get(v.discounted, ""),
+            "interchanged": INTERCHANGED if _is_interchanged(v, scene) else "",
             "place": {1.0: ", the top edge", -1.0: ", the base"}.get(round(v.point, 6), ""),
             "carried": "force of the springs" if v.kept == "springs" else "stress",
             "split": f"split {split_of(v):.4g}",
         }
     return cause.sentence.format(value=value, per_cent=100 * value, v=v, scene=scene, **(words | further))
+
+
+def _is_interchanged(v: Variant, scene: Variant) -> bool:
+    """Whether a scheme has the scene's alpha and delta in each other's place."""
+    if {v.family, scene.family} != {"newmark"} or scene.alpha == scene.delta:
+        return False
+    return abs(v.alpha - scene.delta) <= SAME_WEIGHT and abs(v.delta - scene.alpha) <= SAME_WEIGHT
 
 
 def _lateness(steps: float) -> str:

@@ -30,6 +30,7 @@ NOISE = 4.0  # standard deviations
 BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
 GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
 CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
+ROWS_IN_WORDS = 3
 LEAST_DAMPING = 1e-3  # damping ratios below differ by nothing that a history shows
 
 
@@ -150,6 +151,26 @@ def reading_stage(reading: Reading) -> Stage:
     note = reading.stepping.note
     words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
     return Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})
+
+
+def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
+    """Return single rows by column and step, with their errors over the column's largest value."""
+    words = [f"{name.replace('_', ' ')} in step {step}, {100 * error:.2g} % off" for name, step, error in single_rows]
+    more = len(words) - ROWS_IN_WORDS
+    return "; ".join(words[:ROWS_IN_WORDS]) + (f"; and {more} more" if more > 0 else "")
+
+
+def single_rows_stage(single_rows: Sequence[tuple[str, int, float]]) -> Stage:
+    """Return the stage of single rows that stand out of what the rest of the history says."""
+    return Stage("rows", False, words_of_rows(single_rows), {"rows": float(len(single_rows))})
+
+
+def earlier(departure: Departure | None, single_rows: Sequence[tuple[str, int, float]]) -> Departure:
+    """Return the first departure, of the motion or of a single row."""
+    first = min(step for _, step, _ in single_rows)
+    if departure is None or first <= departure.step:
+        return Departure(first, "amplitude")
+    return departure
 
 
 def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:

@@ -11,11 +11,11 @@ import numpy as np
 
 from validation.diagnosis import causes, evidence, families, schemes, sentences
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, DIVERGED, SWAPPED, UNEXPLAINED, all_benign
+from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import significant
-from validation.diagnosis.fits.fit import explains, fit_one, intervals, untold
+from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
@@ -32,8 +32,9 @@ from validation.diagnosis.readings import (
 from validation.diagnosis.scene_keys import assignments
 from validation.diagnosis.search import Verdict, beside, discounted, paired, simple
 from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import OPENING, Histories, Rectangle, Variant, own_variant, rectangle_of
+from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
+from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -55,13 +56,46 @@ class Case:
     reading: Reading
     column: Rectangle
     scene_variant: Variant
+    left_out: Flags | None = None  # single rows, of all columns below one another, that are none of the motion's
+    as_read: Reading | None = None  # with those rows as the file has them; in `reading` they are as explained
 
     @cached_property
     def target(self) -> Target:
         """What is to be explained."""
         r = self.reading
         columns = r.displacement, r.pressure, r.rounding, r.pressure_rounding
-        return Target(self.column, r.stepping.steps, r.stepping.rows, *columns)
+        return Target(self.column, r.stepping.steps, r.stepping.rows, *columns, self.left_out)
+
+    @property
+    def single_rows(self) -> list[tuple[str, int, float]]:
+        """Column, step and error over the largest value of each row that is none of the motion's."""
+        if self.left_out is None or self.as_read is None:
+            return []
+        rows = []
+        pairs = (DISPLACEMENT, self.as_read.displacement), (PRESSURE, self.as_read.pressure)
+        flags_of_columns = self.left_out.reshape(-1, len(self.target.rows))
+        for flags, (name, values), mended in zip(flags_of_columns, pairs, self.target.recorded, strict=False):
+            for row in np.flatnonzero(flags):
+                error = abs(float(values[row] - mended[row])) / largest(mended) if values is not None else 0.0
+                rows.append((name, int(self.target.rows[row]) + 1, error))
+        return rows
+
+    def without_single_rows(self, explanation: Fit) -> Case | None:
+        """Return the case without the single rows that stand out of what a fit leaves; None where none do."""
+        target = self.target
+        left_out = target.outlying(explanation.residual)
+        if left_out is None:
+            return None
+        remainder = target.parts(np.where(left_out, explanation.residual, 0.0))
+        mended = [values - rest for values, rest in zip(target.recorded, remainder, strict=True)]
+        reading = replace(
+            self.reading,
+            displacement=mended[0],
+            pressure=None if target.pressure is None else mended[1],
+            rounding=target.bars[0].rounding,
+            pressure_rounding=None if target.pressure is None else target.bars[1].rounding,
+        )
+        return replace(self, reading=reading, left_out=left_out, as_read=self.reading)
 
     @property
     def time(self) -> Array:
@@ -190,6 +224,8 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
+    if not verdict.explains:
+        case, verdict = _without_single_rows(case, verdict)
     theirs: RivalVerdict | None = None
     has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark"
     if not verdict.explains and has_rivals:
@@ -235,6 +271,18 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     return sound[0] if sound else min(verdicts, key=lambda pair: pair[1].best.fit.misfit)
 
 
+def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
+    """Return case and verdict without single rows that stand out, if without them a cause, or none, explains it."""
+    for explanation in (verdict.scene_fit, verdict.best.fit):
+        rest = case.without_single_rows(explanation)
+        if rest is None:
+            continue
+        verdict_on_rest = simple(rest.target, rest.scene_variant)
+        if verdict_on_rest.explains:
+            return rest, verdict_on_rest
+    return case, verdict
+
+
 # ---- answers --------------------------------------------------------------------------------------------------------
 
 
@@ -247,9 +295,9 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     stages = _stages(case)
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
-    all_causes = list(case.reading.slips) + causes.causes_of(
-        target.column, verdict.best.ids, best_fit.variant, scene_variant, error
-    )
+    single_rows = case.single_rows
+    all_causes = list(case.reading.slips) + ([SINGLE_ROWS] if single_rows else [])
+    all_causes += causes.causes_of(target.column, verdict.best.ids, best_fit.variant, scene_variant, error)
     either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
     unexplained = 0.0 if verdict.explained else significant(verdict.left, 4)
     if either:
@@ -260,12 +308,17 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     shown = verdict.best.fit if verdict.explained else verdict.scene_fit
     expected = evidence.expected(target, shown, scene_variant, ids)
     first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
+    if single_rows:
+        stages.insert(1, evidence.single_rows_stage(single_rows))
+        first_departure = evidence.earlier(first_departure, single_rows)
     of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
     refitted = fit_one(target, v, tuple(dict.fromkeys((*of_scheme, *shown.free))))
     values = causes.values_of(target.column, ids, v)
+    if SINGLE_ROWS in ids:
+        values[SINGLE_ROWS] = min(step for _, step, _ in single_rows)
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
-    if "dead-band" in ends:
-        values["dead-band"] = causes.roundest(*ends["dead-band"])
+    limits = [name for name in causes.BAND_FIELDS if name in ends]
+    values |= {name: causes.roundest(*ends[name]) for name in limits}
     alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
     alike = alike or families.relatives(target, ids, values, v)
     nearest: dict[str, Any] | None = None
@@ -274,12 +327,13 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
         nearest = {"causes": all_causes, "values": numbers, "left": unexplained}
     if verdict.explained and ids and all_benign(ids):
         stages = [evidence.surrounded(stage) for stage in stages]
-    further = {"scheme": sentences.scheme_of(scene_variant)}
+    further = {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
     if steps:
         further["open_steps"] = f" in steps {sentences.span(steps)}"
-    if "dead-band" in ends:
-        low, high = ends["dead-band"]
-        further["between"] = f" ({low:.3g} to {high:.3g} m give the same rows)"
+    for name in limits:
+        low, high = ends[name]
+        unit = "m" if name == "dead-band" else "Pa"
+        further["between"] = f" ({low:.3g} to {high:.3g} {unit} give the same rows)"
     further |= _undecided(target, v, ids)
     words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
     subject = sentences.Subject(
@@ -294,8 +348,13 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     else:
         sentence = sentences.sentence(subject)
     best = histories(target.column, [best_fit.variant], target.steps)
-    curves = {"the file": target.displacement, DDA: expected[0][target.rows], "best": best.displacement[target.rows, 0]}
-    pressures = {"the file": target.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
+    as_read = case.as_read or case.reading
+    curves = {
+        "the file": as_read.displacement,
+        DDA: expected[0][target.rows],
+        "best": best.displacement[target.rows, 0],
+    }
+    pressures = {"the file": as_read.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         scheme=schemes.scheme_numbers(v),
         ranking=ranking(DDA, target, v, shown.free, others),

@@ -53,6 +53,7 @@ PLAIN_CONTACT: dict[str, Any] = {
 UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
 BANDS = np.geomspace(1e-4, 2.0, 44).tolist()  # over the static displacement
 FINE_BANDS = np.geomspace(1e-4, 2.0, 131).tolist()  # between closings of successive steps
+OPENING_TENSION = "opening-tension"
 REOPENINGS = (0.0, 1e-3, 1.0)  # gap that opens over the penetration that closes; ntdda has 1e-3
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
@@ -107,6 +108,8 @@ def _conditions(target: Target, scene: Variant) -> dict[str, bool]:
         "poisson": has_poisson,
         "no poisson": not has_poisson,
         "discounted": scene.gg < 1,
+        "discounted newmark": scene.gg < 1 and is_newmark and scene.alpha > 0,
+        "interchangeable": is_newmark and scene.alpha != scene.delta,
         "started": has_start(scene),
         "weighted": is_newmark and scene.delta not in (0.5, 1.0),
         "other schemes": has_equal_steps and not (scene.opens and has_poisson),
@@ -126,6 +129,7 @@ def _options(target: Target, scene: Variant) -> dict[str, list[dict[str, Any]]]:
         "other start": [{"start": other_start}],
         "named": named,
         "unnamed": [{"alpha": a, "delta": d, "family": "newmark"} for a, d in pairs],
+        "interchanged": [{"alpha": scene.delta, "delta": scene.alpha}],
         "swapped weights": [{"delta": 1 - scene.delta}],
         "discount": [{"gg": gg} for gg in (scene.gg**2, math.sqrt(scene.gg), 1.0)],
         "form": [{"contact": name} for name in ("springs", "mean gap")] if scene.opens else [{}],
@@ -144,14 +148,19 @@ def has_start(v: Variant) -> bool:
 
 
 def dead_bands(target: Target, scene: Variant, shares: Sequence[float]) -> Iterator[Move]:
-    """Yield dead bands by their shares of the static displacement; none where the contact never pulls."""
+    """Yield dead bands and tensions that a contact bears; none where the contact never pulls.
+
+    Bands are shares of the static displacement, tensions of the static pressure.
+    """
     if not (scene.opens or pulls(target, scene)):
         return
     opens = {} if scene.opens else {"opens": True}
     size = abs(target.column.static)
+    penetration = abs(target.column.force) / target.column.normal
     for share in shares:
         for part in REOPENINGS:
             yield Move("dead-band", {**opens, "band": share * size, "reopening": part})
+        yield Move(OPENING_TENSION, {**opens, "hold": share * penetration, "band": 0.0, "reopening": 0.0})
 
 
 def pulls(target: Target, variant: Variant) -> bool:

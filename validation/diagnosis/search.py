@@ -18,7 +18,7 @@ from validation.diagnosis.causes import CONTACT_METHODS, LISTED, benign_springs
 from validation.diagnosis.fits.bar import MARGIN
 from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
+from validation.diagnosis.moves import FINE_BANDS, OPENING_TENSION, Move, dead_bands, moves
 from validation.diagnosis.schemes import SHARED
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
@@ -45,6 +45,7 @@ ROUND = 3  # significant digits of a round number
 EXACT = 1e-7  # relative error of a round number
 LARGEST_EXPONENT = 7.0  # of a factor that is fitted by its logarithm
 WITHOUT_BAND = (("contact-opened",), ("contact-locked",))
+SWITCHING = (("dead-band",), (OPENING_TENSION,), ("late-opening",), ("late-contact",))
 MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
 # share of the difference, at most, that noise may hide where one usual cause is named, one that is rare, or two: what
 # is in no catalogue comes as near to one of them as that, but not nearer
@@ -175,7 +176,8 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     """Return the verdict over candidates, the scene as it is among them or not."""
     scores = {id(f): score(target, f.fit, f.moves) for f in explanations}
     ranked = sorted(explanations, key=lambda f: scores[id(f)])
-    fine = [f for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
+    fine = [_with_effect(target, f) for f in ranked if accepted(target, scene_fit, f.fit) and _sensible(f)]
+    scores |= {id(f): score(target, f.fit, f.moves) for f in fine}
     if not fine:
         return Verdict(
             scene_fit,
@@ -186,19 +188,32 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     near = scores[id(fine[0])] + CLEAR
     close = _rounder([f for f in fine if scores[id(f)] < near])
     best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
-    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band without effect
+    best = next((f for f in close if f.ids in WITHOUT_BAND), best)  # a dead band or a lag without effect
     # not the best one with a further part that has no effect
     others = [f for f in close if f.ids != best.ids and not set(best.ids) < set(f.ids)]
-    alike = {f.ids: f for f in reversed(others) if best.ids not in WITHOUT_BAND or f.ids != ("dead-band",)}
+    alike = {f.ids: f for f in reversed(others) if best.ids not in WITHOUT_BAND or f.ids not in SWITCHING}
     best, aliases = _canonical(target, best, close)
     alike = {ids: f for ids, f in alike.items() if ids not in aliases}
     is_named = not alike and _nameable(target, scene_fit, best)
     if target.explained(scene_fit.residual) and not (
         is_named and score(target, scene_fit) - score(target, best.fit) >= NEEDED
     ):
-        return Verdict(scene_fit, Explanation((), scene_fit), True)
+        return Verdict(scene_fit, Explanation((), scene_fit), True, reached=True)
     names = tuple(f for ids, f in aliases.items() if ids != best.ids)
     return Verdict(scene_fit, best, is_named, tuple(alike.values())[:MOST_ALIKE], reached=True, aliases=names)
+
+
+def _with_effect(target: Target, explanation: Explanation) -> Explanation:
+    """Return a dead band that also opens beyond a gap as the tension that this is, where the closing has no effect."""
+    v = explanation.fit.variant
+    if explanation.ids != ("dead-band",) or v.reopening == 0:
+        return explanation
+    opening = {"hold": v.band * v.reopening, "band": 0.0, "reopening": 0.0}
+    alone = fit_one(target, changed(v, opening))
+    if alone.misfit > explanation.fit.misfit * (1 + SAME_PROGRAM) + target.floor:
+        return explanation
+    changes = {**explanation.moves[0].changes, **opening}
+    return Explanation((Move(OPENING_TENSION, changes),), alone)
 
 
 def _rounder(close: list[Explanation]) -> list[Explanation]:
@@ -287,16 +302,21 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
     if target.explained(target.inner(candidate.residual, v)):
         return True
     if candidate is scene_fit or v == scene_fit.variant:
-        return candidate.misfit <= NEGLIGIBLE
+        return _is_negligible(target, candidate, NEGLIGIBLE)
     # rounded constants leave that much, and the passes of an augmented Lagrangian; of the other schemes and contact
     # methods some come as near to another one by chance
     is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
-    if is_usual and candidate.misfit <= min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE):
+    if is_usual and _is_negligible(target, candidate, min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE)):
         return True
     noise = MARGIN * target.spread
     around = AROUND_OPEN if v.opens else AROUND
     loose = min(math.hypot(around, noise), SHARE * scene_fit.misfit)
     return candidate.misfit <= loose and _surrounded(target, candidate)
+
+
+def _is_negligible(target: Target, candidate: Fit, least: float) -> bool:
+    """Whether a fit leaves next to nothing, as rounded constants do, and no row by itself that is another one."""
+    return candidate.misfit <= least and not target.has_lone_row(candidate.residual)
 
 
 def _surrounded(target: Target, candidate: Fit) -> bool:
@@ -382,7 +402,7 @@ def simple(target: Target, scene: Variant) -> Verdict:
     """
     scene_fit = fit_one(target, scene)
     nothing = Explanation((), scene_fit)
-    if target.within_digits(scene_fit.residual) or scene_fit.misfit <= NEGLIGIBLE:
+    if target.within_digits(scene_fit.residual) or _is_negligible(target, scene_fit, NEGLIGIBLE):
         return Verdict(scene_fit, nothing, True)
     single = fitted(target, scene, [(move,) for move in moves(target, scene)])
     verdict = decided(target, scene_fit, [nothing, *single])

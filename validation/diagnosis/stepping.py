@@ -143,8 +143,15 @@ class Stepper:
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
         self.stages = [Stage(*one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]  # (variants, 1) each
         self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
-        self.gg_displacement = np.where(of.discounted == "velocity", 1.0, of.gg)[:, None]
+        self.gg_displacement = np.where(np.isin(of.discounted, ("velocity", "(7)")), 1.0, of.gg)[:, None]
         self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
+        # by the increment d, (6) is A1 = d / (alpha dt^2) - gg V / (alpha dt) - ... and (7) V1 = delta d / (alpha dt)
+        # + gg (1 - delta / alpha) V + ...: with gg in one of them V1 has another share of V
+        is_printed = np.isin(of.discounted, ("(6)", "(7)"))
+        if np.any(is_printed):
+            ratio = of.delta / np.where(is_printed, of.alpha, 1.0)
+            share = np.where(of.discounted == "(6)", 1 - ratio * (1 - of.gg), ratio + (1 - ratio) * of.gg)
+            self.gg_velocity = np.where(is_printed[:, None], share[:, None], self.gg_velocity)
         self.keeps_springs = of.kept != "stress"
         self.gravity = of.gravity * rectangle.gravity + of.weight * GRAVITY
         has_base = (of.base > 0) & (of.softness > 0)
@@ -451,6 +458,8 @@ class Stepper:
         middle: Array | None = None
         for stage, c in enumerate(self.stages):
             start = state if middle is None else np.concatenate([state, middle], axis=-1)
+            if np.any(of.lags != ""):
+                closed = np.where(of.lags == "", closed, _closed_by_start(of.lags, moving.closed, moving.state[:, 0]))
             for _ in range(OPEN_CLOSE_ITERATIONS):
                 if matrices:
                     T = np.where(closed[:, None, None], *matrices[stage])
@@ -458,10 +467,12 @@ class Stepper:
                 else:
                     q = self.equations(closed, moving.wide, moving.high)
                     end = self.step(q, c, dt, state, middle)
-                limit = np.where(closed, of.band * of.reopening, -of.band)
+                limit = np.where(closed, of.band * of.reopening + of.hold, -of.band)
                 a_f = c.mean_force[:, 0]
                 gap = np.where(by_mean_gap, (1 - a_f) * end[:, 0] + a_f * state[:, 0], end[:, 0])
                 now_closed = np.where(of.opens, gap < limit, True)
+                now_closed = np.where(of.lags == "opening", closed | now_closed, now_closed)
+                now_closed = np.where(of.lags == "switching", closed, now_closed)
                 if np.array_equal(now_closed, closed):
                     break
                 closed = now_closed
@@ -480,6 +491,12 @@ class Stepper:
         moving.closed = closed
         pressing = np.where(by_mean_gap, end[:, 0] < 0, closed)
         return np.where(pressing, np.sum(pressure_row * end, axis=-1), 0.0), ~pressing
+
+
+def _closed_by_start(lags: Array, closed: Flags, gap: Array) -> Flags:
+    """Return which contacts that lag are closed in a step, by how the step before ended."""
+    closes = (lags == "switching") & (gap < 0)
+    return np.asarray((closed & (gap <= 0)) | (~closed & closes))
 
 
 def _shear_from_touch(T: Array, state: Array, end: Array) -> Array:

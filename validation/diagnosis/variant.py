@@ -56,8 +56,11 @@ class Variant:
     opens: bool = False  # the contact carries no tension
     band: float = 0.0  # penetration beyond which an open contact closes [m]
     reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
+    hold: float = 0.0  # gap beyond which a closed contact opens, in addition: what tension it bears over stiffness [m]
+    lags: Literal["", "opening", "switching"] = ""  # a contact opens, or also closes, by the gap at the step's start
     reset: bool = False  # a closing contact is sheared from the start of the step on, not from where it touched
-    discounted: Literal["both", "velocity", "displacement"] = "both"  # formulas in which gg stands
+    # formulas in which gg stands: those by the new acceleration, or the paper's by the increment of the displacement
+    discounted: Literal["both", "velocity", "displacement", "(6)", "(7)"] = "both"
     secant: bool = False  # the velocity at the end of a step is d/dt
     strain_load: float = 1.0  # share of the load in the row of ey [-]
     coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from validation.runs.history import History
@@ -115,3 +115,24 @@ def from_history(
         return compute(case, finished.needed_history(case.name, solver))
 
     return Derived(case.name, name, ((case.name, solver),), compute_row)
+
+
+def from_metrics(
+    case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Mapping[str, Value]]
+) -> Derived:
+    """Return a row that is computed from the metrics of some solvers of a case, or from the case alone.
+
+    Parameters
+    ----------
+    case, solvers
+        The case, and the solvers whose rows are read.
+    name
+        Of the row.
+    compute
+        Function of the case and of the rows that returns metrics.
+    """
+
+    def compute_row(finished: Finished) -> Mapping[str, Value]:
+        return compute(case, *(finished.rows[case.name, solver] for solver in solvers))
+
+    return Derived(case.name, name, tuple((case.name, solver) for solver in solvers), compute_row)

@@ -18,6 +18,7 @@ import pytest
 from .siblings import shadowed
 
 STATEMENT = "dda-validation"  # the property of a report that holds what a gate said of a user's solver, as JSON
+GATE = "test_gates.py::test_gate["  # in the id of a gate's test
 FAILED = "failed gates"  # how pytest counts them; the block at the end tells them, once, in the place of its own list
 BLOCK_WIDTH = 110  # characters
 
@@ -57,11 +58,18 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def _check_loads(user: str) -> None:
     """Refuse a solver that cannot be loaded, once and in one line, before any gate is run."""
+    from validation.errors import InputError
     from validation.solvers.registry import get_solver
     from validation.solvers.user import UserSolver
 
     solver = get_solver(user)
-    if isinstance(solver, UserSolver) and (reason := solver.load_error()):
+    if not isinstance(solver, UserSolver):
+        return
+    try:
+        solver.check_module()
+    except InputError as error:
+        raise pytest.UsageError(f"--dda-solver: {error}") from None
+    if reason := solver.load_error():
         raise pytest.UsageError(f"--dda-solver: {user} cannot be loaded: {reason}")
 
 
@@ -88,12 +96,31 @@ def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] 
     return (FAILED, "F", "FAILED") if report.failed and _statements(report) else None
 
 
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Fail a session in which gates were selected and none was judged: what judged nothing is not green."""
+    if exitstatus == pytest.ExitCode.OK and _judged_nothing(session.config):
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def _judged_nothing(config: pytest.Config) -> bool:
+    """Whether every gate of a session was skipped; a worker of pytest-xdist, which sees a part, does not tell."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    if reporter is None or hasattr(config, "workerinput"):
+        return False
+    every = itertools.chain.from_iterable(reporter.stats.values())
+    of_gates = [report for report in every if isinstance(report, pytest.TestReport) and GATE in report.nodeid]
+    judged = [report for report in of_gates if report.failed or (report.when == "call" and report.passed)]
+    return not judged and any(report.skipped for report in of_gates)
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_terminal_summary(
     terminalreporter: pytest.TerminalReporter, config: pytest.Config
 ) -> Generator[None, None, None]:
     """Write what the gates tell of a user's solver, after everything else."""
     yield
+    if _judged_nothing(config):
+        terminalreporter.write_line("no gate was judged: exit status 1")
     user = config.getoption("--dda-solver", None)
     statements: list[str] = []
     for report in itertools.chain.from_iterable(terminalreporter.stats.values()):

@@ -19,9 +19,9 @@ from validation.problems.pack import TIME
 from validation.problems.questions import BoxQuestion, Question
 from validation.problems.stated import read_text
 from validation.runs.columns import split, unit_of
-from validation.runs.history import DISPLACEMENT, Array, History
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes.unknown import did_you_mean
-from validation.solvers.user import UNITS, factor
+from validation.solvers.user import UNITS, factor, force
 
 LARGEST_FILE = 100_000_000  # bytes
 FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
@@ -280,6 +280,8 @@ def _differences(history: History, problem: Question) -> Iterator[tuple[str, str
         plain = split(column)[0]
         if plain not in UNITS or column not in exact.columns:
             continue
-        difference = factor(plain, values, exact.columns[column], problem.scene)
+        difference = factor(plain, values, exact.columns[column])
+        if difference is None and column == PRESSURE:
+            difference = force(problem.scene, history, exact)
         if difference is not None:
             yield column, difference.replace(plain, "it", 1)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -70,6 +70,7 @@ HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which 
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
+MOST_STEPS = 200_000  # of a run by which the step is found at which a scheme passes
 NOTHING = 1e-7  # of the exact motion: an answer that is smaller does not move; in other units it is 1e-3 or 1e-6
 
 
@@ -194,6 +195,10 @@ class Cause:
         Sentences of other causes that give the same rows.
     left
         What the cause leaves of the answer, over the band, in the worst column [1].
+    base
+        The scheme, where that is the cause.
+    passing_step
+        Halved step of that scheme at which it passes [s]; None where none was found.
     """
 
     sentence: str = NOT_EXPLAINED
@@ -201,6 +206,8 @@ class Cause:
     values: dict[str, float] = field(default_factory=dict)
     alike: tuple[str, ...] = ()
     left: float = math.inf
+    base: Base | None = None
+    passing_step: float | None = None
 
     @property
     def would_tell(self) -> str:
@@ -220,8 +227,22 @@ def cause(problem: Problem, history: History, reference: Standard) -> Cause:
         return units
     causes = Search(runs, answer).causes()
     if causes:
-        return _named(causes)
+        return _with_passing_step(_named(causes), runs)
     return compared(problem.scene, history) or Cause()
+
+
+def _with_passing_step(scheme: Cause, runs: Runs) -> Cause:
+    """Return a cause that is a scheme with the step at which that scheme would pass."""
+    if scheme.base is None or scheme.ids != ("scheme",) or not features.linear(runs.scene):
+        return scheme
+    t = runs.scene.time
+    every = 2 * scheme.base.every
+    while every * t.steps <= MOST_STEPS:
+        finer = runs.sampled(replace(scheme.base, every=every))
+        if finer is not None and runs.apart(finer, runs.standard.exact.columns) <= 1:
+            return replace(scheme, passing_step=significant(t.step / every, 4))
+        every *= 2
+    return scheme
 
 
 def _plain(answer: Columns, reference: Standard) -> Cause | None:
@@ -295,7 +316,7 @@ class Search:
             remainder = self._left(self.runs.sampled(base))
             if remainder <= BAR:
                 values = {"alpha": base.alpha(t), "delta": base.delta(t), "step": t.step / base.every}
-                yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), remainder)
+                yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), remainder, base)
 
     def _laws(self, base: Base) -> Iterable[Cause]:
         """Yield other laws of the contact under which a base gives the answer back."""
@@ -383,7 +404,7 @@ def _named(causes: Sequence[Cause]) -> Cause:
     first, joint, _ = best.sentence.partition("; and ")
     same_rows = tuple(cause.sentence.removeprefix(first + joint) if joint else cause.sentence for cause in others)
     sentence = f"{best.sentence} (the same rows: {'; or '.join(same_rows)})"
-    return Cause(sentence, best.ids, best.values, same_rows, best.left)
+    return Cause(sentence, best.ids, best.values, same_rows, best.left, best.base)
 
 
 def _short(cause: Cause) -> str:

@@ -30,6 +30,7 @@ FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is 
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
 PARTS = 8  # of a step of the scene, at which an exact solution is kept: answers between steps are seen in it
 ACCURATE = 0.06  # of the band: what a run that stands for the exact motion may be away from it
+INTERCHANGED = "alpha and delta are interchanged"
 AHEAD = 0.12  # of the duration, that such a run goes on: a motion that is too fast is seen in it
 MOST_SAMPLES = 20_000  # runs that are kept: some 100 MB of the longest
 Columns = Mapping[str, Array]
@@ -152,6 +153,11 @@ class Runs:
                     usual = (pair, start) == (NAMED["average acceleration"], "consistent")
                     words = f"{scheme_words(*pair, t.discount)}, initial acceleration {start}"
                     yield Base(words, {"time.alpha": pair[0], "time.delta": pair[1], "time.start": start}, usual=usual)
+        for pair in dict.fromkeys([scene_pair, NAMED["constant acceleration"], NAMED["average acceleration"]]):
+            alpha, delta = reversed(pair)
+            if alpha != delta:
+                words = f"{INTERCHANGED}, {scheme_words(alpha, delta, t.discount)}"
+                yield Base(words, {"time.alpha": alpha, "time.delta": delta})
         for every in (2, 4):
             for pair in dict.fromkeys([scene_pair, (0.25, 0.5)]):
                 values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}

@@ -10,6 +10,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.scenes.tables import GateSection
 from validation.solvers.registry import FULL, get_solver, is_solver, replacement, solver_names
+from validation.solvers.user import UserSolver
 
 
 def check_names(scene: Scene, source: str) -> None:
@@ -26,7 +27,10 @@ def check_names(scene: Scene, source: str) -> None:
         if not is_solver(solver):
             rule = f"must be among {', '.join(solver_names())}"
             raise InputError(rule, source=source, field="run.solvers", value=repr(name), advice=replacement(name))
-        solver_columns |= dict.fromkeys(get_solver(solver).columns() or scene.run.columns)
+        adapter = get_solver(solver)
+        if isinstance(adapter, UserSolver):
+            adapter.check_module()
+        solver_columns |= dict.fromkeys(adapter.columns() or scene.run.columns)
     for column in scene.run.columns:
         if column not in solver_columns:
             raise InputError(

@@ -5,11 +5,13 @@ The solver runs in a process of its own, so that one that hangs, exits or crashe
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from importlib.machinery import PathFinder
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -56,6 +58,8 @@ UNITS = {  # what a value in another unit is, over the value in SI
     "slip": LENGTHS,
 }
 FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
+FORCE_TOLERANCE = 0.02  # of the length of the base, and of the motion that a force in place of a pressure leaves right
+NEAR_ONE = 0.1  # m: on such a base force and pressure are one number
 SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
 LONGEST_NOTE = 400  # characters of what a user's solver says
 # The first argument is the directory of this package. It is on the path for the import of `validation` alone: neither
@@ -98,6 +102,34 @@ class UserSolver(Solver):
     def parts(self) -> frozenset[str]:
         """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""
         return frozenset(self._asked({"parts": sorted(PARTS)}).get("parts", PARTS))
+
+    def check_module(self) -> None:
+        """Refuse a solver whose module is nowhere where its process looks; nothing is imported for it.
+
+        Raises
+        ------
+        InputError
+            There is no such module.
+        """
+        module = self.target.partition(":")[0]
+        folders: Sequence[str] | None = [os.getcwd(), *filter(None, sys.path)]
+        parts = module.split(".")
+        for depth, part in enumerate(parts):
+            name = ".".join(parts[: depth + 1])
+            spec = None if folders is None else PathFinder.find_spec(name, folders)
+            if spec is None and depth == 0:
+                spec = importlib.util.find_spec(part)  # what an editable install finds by a hook of its own
+            if spec is None:
+                stated = [os.getcwd(), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+                looked_in = f"looked in {', '.join(stated)} and the installed packages"
+                plain = ", without .py" if parts[-1] == "py" else ""
+                raise InputError(
+                    f"must be a module that Python finds{plain}",
+                    field="solver",
+                    value=repr(self.name),
+                    advice=looked_in,
+                )
+            folders = None if spec.submodule_search_locations is None else [*spec.submodule_search_locations]
 
     def load_error(self) -> str | None:
         """Return None, or why the solver cannot be loaded."""
@@ -217,16 +249,35 @@ def _run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
 
 def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
     """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (difference := factor("time", history.time, expected, scene)) is not None:
+    if (difference := factor("time", history.time, expected)) is not None:
         return difference
     for name, values in history.columns.items():
         if reference is not None and name in UNITS and name in reference.columns:
             expected_values = reference.columns[name]
-            if (
-                np.isfinite(expected_values).all()
-                and (difference := factor(name, values, expected_values, scene)) is not None
-            ):
+            if np.isfinite(expected_values).all() and (difference := factor(name, values, expected_values)) is not None:
                 return difference
+    return None if reference is None else force(scene, history, reference)
+
+
+def force(scene: Scene, history: History, reference: History) -> str | None:
+    """Say that the pressure is a force, if it is larger by the length of the base and the motion is the expected one.
+
+    With one spring in place of two the pressure is larger by two, and so is the gap: no force on a base of 2 m.
+    """
+    if DISPLACEMENT not in history.columns or PRESSURE not in history.columns or PRESSURE not in reference.columns:
+        return None
+    expected = reference.columns[DISPLACEMENT]
+    size = norm(expected)
+    if not (0 < size < math.inf and norm(history.columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
+        return None
+    width = scene.block.base_length if scene.kind == "block" else 1.0
+    values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
+    sizes = norm(values), norm(pressure)
+    if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:
+        return None
+    is_alike = float((values / sizes[0]) @ (pressure / sizes[1])) >= LEAST_CORRELATION
+    if is_alike and abs(sizes[0] / sizes[1] / width - 1) < FORCE_TOLERANCE:
+        return f"wrong units: {PRESSURE} is {width:g} times what is expected, the length of the base: a force?"
     return None
 
 
@@ -239,7 +290,7 @@ def _reference(scene: Scene) -> History | None:
         return None
 
 
-def factor(name: str, values: Array, expected: Array, scene: Scene) -> str | None:
+def factor(name: str, values: Array, expected: Array) -> str | None:
     """Say by which known factor a column of `UNITS` differs from what is expected, if by one."""
     norms = norm(values), norm(expected)
     if min(norms) == 0 or not np.isfinite(norms).all():
@@ -253,7 +304,4 @@ def factor(name: str, values: Array, expected: Array, scene: Scene) -> str | Non
             return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
     if correlation < 0:
         return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
-    width = scene.block.base_length if scene.kind == "block" else 1.0
-    if name == PRESSURE and abs(width - 1) > 0.1 and abs(ratio / width - 1) < 0.02:
-        return f"wrong units: {name} is {width:g} times what is expected, the length of the base: a force?"
     return None

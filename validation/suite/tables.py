@@ -33,7 +33,8 @@ which is the half width of the band and the uncertainty of the reference; a numb
 ``rounding`` times the value, and ``slack``, widen the band alone, ``above`` its upper edge. Scale, start, slack and
 above are numbers or functions of the case. All other keys are those of a `Gate`.
 
-An entry ``[[row]]`` is a row that a function computes from each history of a solver.
+An entry ``[[row]]`` is a row that a function computes from each history of a ``solver``, from the metrics of some
+``solvers``, or without either from the case alone: closed forms that stand beside the runs.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Derived, from_history
+from validation.engine.finished import Derived, from_history, from_metrics
 from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
@@ -140,7 +141,10 @@ class StudyTable:
         for entry in self.entries.get("row", ()):
             compute = self.formulas[entry["compute"]]
             for case in self.declared_cases(entry):
-                declared.append(from_history(case, entry["solver"], entry["name"], compute))
+                if "solver" in entry:
+                    declared.append(from_history(case, entry["solver"], entry["name"], compute))
+                else:
+                    declared.append(from_metrics(case, entry.get("solvers", ()), entry["name"], compute))
         return (*declared, *self._further("derived"))
 
     def _further(self, field: str) -> Iterable[Any]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validation.metrics.values import largest
 from validation.runs.history import Array
@@ -26,6 +27,11 @@ LONGEST = 600  # samples that the noise is estimated from
 MARGIN = 1.6  # of the estimated noise: some tens of singular values tell it to a fifth, least squares take some more
 LAGS = 10
 SHAPELESS = 4.0  # standard deviations of Ljung and Box's statistic: one white remainder in ten thousand exceeds it
+MEDIAN = 1.4826  # standard deviation of normal noise over the median of its absolute values
+OUTLYING = 6.0  # spreads: of ten million rows of normal noise none is farther away
+ROUNDED = 0.5  # last digits: the most that rounding leaves
+LOST_ROWS = 20  # rows of which at most one is told as a wrong one; of more the whole history is in question
+AROUND = 2  # rows on either side of one that stands alone, and at the start, where what dies out stands out too
 
 
 def last_digits(values: Array) -> Array:
@@ -102,6 +108,16 @@ def white(remainder: Array) -> bool:
     return statistic <= lags + SHAPELESS * math.sqrt(2 * lags) + SHAPELESS**2 / 2
 
 
+def spread_of_most(remainder: Array) -> float:
+    """Return the spread of most rows of a remainder, by their median: a few wrong rows do not excuse themselves."""
+    return MEDIAN * float(np.median(np.abs(remainder))) if len(remainder) else 0.0
+
+
+def outlying(remainder: Array, spread: float, unit: Array) -> NDArray[np.bool_]:
+    """Return which rows of a remainder are farther away than noise of a spread, and units of last digits, have them."""
+    return np.asarray(np.abs(remainder) > OUTLYING * np.hypot(spread, ROUNDED * unit))
+
+
 @dataclass(frozen=True, eq=False)
 class Bar:
     """What digits and noise may leave of a column, in its unit."""
@@ -110,17 +126,40 @@ class Bar:
     size: float  # largest value
     norm: float  # root of the sum of squares, one for zeros throughout
     spread: float  # standard deviation of the noise
+    moving: NDArray[np.bool_]  # which rows are not zero: an open contact has neither pressure nor noise
 
     @classmethod
     def of(cls, values: Array, rounding: Array | None) -> Bar:
         """Derive it from the column itself."""
         rounding = last_digits(values) if rounding is None else rounding
-        return cls(rounding, largest(values), norm(values) or 1.0, noise(values))
+        return cls(rounding, largest(values), norm(values) or 1.0, noise(values), values != 0)
 
     @property
     def unit(self) -> Array:
         """Rounding of the printed digits and of double precision."""
         return np.asarray(self.rounding + ARITHMETIC * self.size)
+
+    def _spread_of_most(self, remainder: Array) -> float:
+        """Return the spread of most of the rows that are not at rest."""
+        return spread_of_most(remainder[self.moving])
+
+    def outlying(self, remainder: Array) -> NDArray[np.bool_]:
+        """Return which rows of a remainder are farther away than the noise of most of its rows would have them."""
+        return outlying(remainder, self._spread_of_most(remainder), self.unit)
+
+    def has_lone_row(self, remainder: Array) -> bool:
+        """Whether a row stands out of a remainder alone, whose neighbours do not.
+
+        Constants that were rounded in another way leave a motion that dies out: it stands out over some rows, and has
+        neighbours, or is at the start.
+        """
+        size = np.abs(remainder)
+        padded = np.pad(size, AROUND)
+        n = len(size)
+        shifts = [shift for shift in range(2 * AROUND + 1) if shift != AROUND]
+        beside = np.max([padded[shift : shift + n] for shift in shifts], axis=0)
+        alone = self.outlying(remainder) & (size > OUTLYING * beside)
+        return bool(np.any(alone[AROUND:]))
 
     @property
     def allowed(self) -> float:
@@ -132,12 +171,18 @@ class Bar:
         """Whether a remainder is no more than rounding."""
         if self.size == 0:  # a column at rest has no digits
             return not np.any(remainder)
-        return float(np.sqrt(np.mean((remainder / self.unit) ** 2))) <= WITHIN
+        if float(np.sqrt(np.mean((remainder / self.unit) ** 2))) > WITHIN:
+            return False
+        return not self.has_lone_row(remainder)
 
     def holds(self, remainder: Array) -> bool:
         """Whether a remainder is digits and noise."""
         if self.within_digits(remainder):
             return True
+        if np.any(self.outlying(remainder)):
+            return False
+        # one wrong row widens the spread of the column itself, and so does a part of many: not that of most rows
+        spread = min(self.spread, self._spread_of_most(remainder))
         rest = float(np.sqrt(np.mean(remainder**2)))
         unit = float(np.sqrt(np.mean(self.rounding**2)))
-        return rest <= MARGIN * math.hypot(self.spread, unit / math.sqrt(12)) and white(remainder)
+        return rest <= MARGIN * math.hypot(spread, unit / math.sqrt(12)) and white(remainder)

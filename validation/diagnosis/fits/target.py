@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
-from validation.diagnosis.fits.bar import Bar
+from validation.diagnosis.fits.bar import AROUND, LOST_ROWS, Bar
 from validation.diagnosis.fits.bar import norm as size_of
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
@@ -44,6 +45,7 @@ class Target:
     pressure: Array | None = None  # [Pa]
     rounding: Array | None = None  # of the displacement [m], seen from the values if not given
     pressure_rounding: Array | None = None  # [Pa]
+    left_out: NDArray[np.bool_] | None = None  # which of the joined rows are not to be explained
 
     @property
     def recorded(self) -> list[Array]:
@@ -57,7 +59,10 @@ class Target:
 
     def join(self, displacement: Array, pressure: Array | None) -> Array:
         """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
-        return joined((self.displacement, self.pressure), displacement, pressure)
+        rows = joined((self.displacement, self.pressure), displacement, pressure)
+        if self.left_out is not None:
+            rows[self.left_out] = 0.0
+        return rows
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories scaled as `values` is, one column each."""
@@ -90,6 +95,23 @@ class Target:
         """Whether nothing but rounding remains in every column."""
         return all(bar.within_digits(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
 
+    def has_lone_row(self, joined: Array) -> bool:
+        """Whether a row of some column stands out alone of what remains."""
+        return any(bar.has_lone_row(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
+
+    def outlying(self, joined: Array) -> NDArray[np.bool_] | None:
+        """Return the joined rows that stand out of what remains; None where there are none, or not as single rows.
+
+        Single rows are few, no more than two beside one another, and not the first ones, where any motion begins.
+        """
+        outlying = [bar.outlying(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)]
+        counts = [int(np.sum(rows)) for rows in outlying]
+        if not any(counts) or max(counts) > max(1, len(self.rows) // LOST_ROWS):
+            return None
+        if any(np.any(rows[:AROUND]) or np.any(rows[2:] & rows[1:-1] & rows[:-2]) for rows in outlying):
+            return None
+        return np.concatenate(outlying)
+
     def inner(self, joined: Array, variant: Variant) -> Array:
         """Return joined rows without those that a shift leaves open: a program may write anything there."""
         late, n = max(abs(variant.shift), math.ceil(abs(variant.late))), len(self.rows)
@@ -120,4 +142,7 @@ class Target:
             None if c is None else c[:length] for c in (self.pressure, self.rounding, self.pressure_rounding)
         )
         columns = self.displacement[:length], pressure, rounding, other
-        return Target(self.column, self.steps[:last], self.rows[:length], *columns)
+        left_out = self.left_out
+        if left_out is not None:
+            left_out = left_out.reshape(-1, len(self.rows))[:, :length].ravel()
+        return Target(self.column, self.steps[:last], self.rows[:length], *columns, left_out)

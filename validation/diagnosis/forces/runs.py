@@ -14,7 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, significant, white
+from validation.diagnosis.fits.bar import (
+    ARITHMETIC,
+    WITHIN,
+    outlying,
+    significant,
+    spread_of_most,
+    white,
+)
 from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
@@ -97,7 +104,10 @@ def agreement(scene: Scene, place: Array, rounding: Array) -> Agreement:
     rest, size = place - scene_run, _size(place)
     misfit = float(np.max(np.sqrt(np.mean(rest**2, axis=0)) / size))
     unit = rounding + ARITHMETIC * size
-    if _within(rest / unit) or (misfit <= NOISE and len(rest) >= NOISY and all(white(column) for column in rest.T)):
+    is_noise = misfit <= NOISE and len(rest) >= NOISY and all(white(column) for column in rest.T)
+    if is_noise:  # a row that is wrong by itself has no shape either
+        is_noise = not any(np.any(outlying(x, spread_of_most(x), u)) for x, u in zip(rest.T, unit.T, strict=True))
+    if _within(rest / unit) or is_noise:
         return Agreement(True, misfit)
     if not _within((rest / unit)[: max(4, len(rest) // 20)]):
         return Agreement(False, misfit)

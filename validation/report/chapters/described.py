@@ -30,12 +30,27 @@ from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.runs.row import Value
 
+
+def _brief(value: float, _: int) -> str:
+    """Return a number that fits into a cell of a map."""
+    if abs(value) < 1e-9:
+        return "0"
+    if abs(value) < 1e-3:
+        return "<0.001"
+    return short(value, 3) if value < 100 else f"{value:.0f}"
+
+
 FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written with some digits
     "plain": plain,
     "short": short,
     "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
     "power": lambda value, _: bounded(value, power(value)),
     "g": lambda value, _: f"{value:g}",
+    "brief": _brief,
+    # Signed; without a power of ten where it is large.
+    "signed": lambda value, _: f"{value:{'+.0f' if abs(value) >= 1000 else '+.3g'}}".replace("-", "−"),
+    "three": lambda value, _: f"{value:.3g}",
+    "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
 }
 CaseValue = Value | Callable[[CaseResults], Value]
@@ -92,8 +107,17 @@ class CaseColumn:
 class Description:
     """The description of a chapter."""
 
-    def __init__(self, module: str) -> None:
+    def __init__(self, module: str | Path) -> None:
         self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
+
+    def has(self, kind: str, name: str) -> bool:
+        """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
+        return name in self._data.get(kind, {})
+
+    def described(self, kind: str, name: str) -> dict[str, Any]:
+        """Return what the description says of a thing of a kind."""
+        described: dict[str, Any] = self._data[kind][name]
+        return described
 
     def entries(self, name: str) -> list[dict[str, Any]]:
         """Return the entries of a list."""
@@ -139,6 +163,7 @@ class Description:
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
         """Return a panel with these lines; `parts` stand beside or in place of the described ones."""
         described = {"title": "", "x_label": "", "y_label": ""} | self._data["panel"][name] | parts
+        described.pop("lines", None)
         for axis in ("x_ticks", "y_ticks"):
             if isinstance(described.get(axis), list):
                 described[axis] = dict(described[axis])
@@ -152,5 +177,5 @@ class Description:
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
         file = described["file"].format_map(values)
-        caption = described["caption"].format_map(values) if values else described["caption"]
+        caption = values.get("caption") or described["caption"].format_map(values)
         return histories.saved(figure, directory, file, caption, scene)

@@ -98,7 +98,9 @@ def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
 
 
 def _cause_data(cause: Cause) -> dict[str, Any]:
-    statement = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    statement: dict[str, Any] = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+    if cause.passing_step is not None:
+        statement["passing_step_s"] = cause.passing_step
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
 
 
@@ -112,7 +114,9 @@ def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
         missing = ", ".join(map(united, judgement.withheld))
         blocks.append(Paragraph(f"No full PASS: the problem asks for {missing} too; report it to be judged."))
     if answer.cause is not None:
-        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
+        passing_step = answer.cause.passing_step
+        passes = "" if passing_step is None else f" This scheme passes at a step of {short(passing_step)} s."
+        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}.{passes} {reached(answer)}"))
         if answer.cause.would_tell:
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
     return [

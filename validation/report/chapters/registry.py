@@ -1,15 +1,25 @@
-"""Which function writes the chapter of which study: that of its folder, or the one of a scene."""
+"""Which chapter a study has: what its folder describes or computes, or the one of a scene."""
 
 from __future__ import annotations
 
+import functools
+
 from validation.report.blocks import Chapter
 from validation.report.chapters.scene import scene_chapter
+from validation.report.chapters.written import written_chapter
 from validation.suite.folders import study_folders
 
 
 def chapter_of(study: str) -> Chapter:
     """Return the function that writes a study's chapter, importing its module now."""
     folder = study_folders().get(study)
-    module = None if folder is None else folder.module("chapter")
-    chapter: Chapter = scene_chapter if module is None else module.chapter
-    return chapter
+    if folder is None:
+        return scene_chapter
+    module = folder.module("chapter")
+    if hasattr(module, "chapter"):
+        chapter: Chapter = module.chapter
+        return chapter
+    description = folder.path / "chapter.toml"
+    if not description.exists():
+        return scene_chapter
+    return functools.partial(written_chapter, description=description, module=module)

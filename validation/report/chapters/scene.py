@@ -29,7 +29,6 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
-from validation.report.figures.charts import DOTS, ChartLine, ChartPanel
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
 from validation.report.scene.differences import difference_table
 from validation.report.scene.page import SceneDescription
@@ -374,29 +373,3 @@ def _panel(
     finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
     title = "" if case.label == AS_STATED else case.label
     return HistoryPanel(title, drawn, static, reference, finer=finer_drawn, of_boxes=case.scene.rigid is not None)
-
-
-def drift_values(group: CaseGroup) -> list[tuple[int, float]]:
-    """Return elements a side and static displacement [m] of fem on corner point springs, where meshes vary."""
-    cases = [case for case in group.cases if case.scene.fem.foundation == "corner" and case.scene.fem.mesh is None]
-    displacements = {case.scene.fem.per_side: case.number("fem", "displacement.static") for case in cases}
-    return sorted((n, v) for n, v in displacements.items() if v is not None)
-
-
-def drift_panel(group: CaseGroup, drift: Sequence[tuple[int, float]]) -> tuple[ChartPanel, str]:
-    """Return the drift of fem on corner point springs as a panel, and the sentence that it carries."""
-    n, v = np.array(drift, dtype=float).T
-    v = 1e3 * v  # mm
-    slope = float(np.polyfit(np.log2(n), v, 1)[0])
-    lines = [ChartLine("fem", n, v, dots=DOTS)]
-    dda = group.cases[0].number("dda", "displacement.static")
-    if dda is not None:
-        lines.append(ChartLine("dda", n, np.full(n.size, 1e3 * dda)))
-    low = 1.1 * min(float(v.min()), 1e3 * (dda or 0.0))
-    title = "v at rest on corner point springs [mm]"
-    x_range = (n[0] / 1.3, n[-1] * 1.3)
-    panel = ChartPanel(title, "elements a side n", "", lines, x_range, (low, 0.0), (True, False))
-    return panel, (
-        f"On corner point springs the displacement at rest changes by {plain(slope, 3)} mm with every halving of the "
-        "mesh and has no limit: a point force moves its own point of an elastic body infinitely."
-    )

@@ -22,6 +22,7 @@ from validation.solvers.columns.names import column_of
 from validation.suite import tables
 from validation.suite.bands import Band, cases, fitted_order
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 DDA = "dda"
 EVENTS = "column-events"
@@ -33,7 +34,7 @@ JOINT = "columns-joint"
 SLIPS = "columns-slips-steps"
 SETTLE = "columns-settle"
 STIFF = 1264.911064  # 2 sqrt(k/m) of the stacks of rigid blocks [rad/s]
-STEPS = (0.1, 0.5, 2.0, 10.0)  # these times their step
+PART_NAMES = ("transmitted", "reflected", "absorbed")
 
 
 def exact_parts() -> dict[float, list[float]]:
@@ -165,6 +166,32 @@ def settlement(scene: Scene) -> float:
 def residual(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the slips that remain of the lowest and the highest joint [m]."""
     return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
+
+
+def exact_joint(case: Scene) -> Mapping[str, Value]:
+    """Return the strength of a joint over the stress of the wave, and its parts in closed form."""
+    strength = float(case.name.rpartition("-")[2])
+    return {"strength": strength} | dict(zip(PART_NAMES, exact_parts()[strength], strict=True))
+
+
+def stiffness_of_steps(case: Scene) -> Mapping[str, Value]:
+    """Return w dt of the stiffest mode of a stack of rigid blocks."""
+    return {"omega dt": round(STIFF * case.time.step, 3)}
+
+
+def blocks_of_pieces(case: Scene) -> Mapping[str, Value]:
+    """Return how many blocks stand for a piece."""
+    column = column_of(case)
+    return {"blocks a piece": column.layer[0].blocks // len(column.heights)}
+
+
+def settling(case: Scene) -> Mapping[str, Value]:
+    """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
+    column = column_of(case)
+    layer = column.layer[0]
+    mass = layer.density * layer.thickness / layer.blocks
+    lowest = columns.lowest_frequency(column.contacts[0].stiffness, mass, layer.blocks)
+    return {"settling": columns.ring_down(lowest, Stepping.of(case))}
 
 
 def one_contact_a_solve(case: Scene) -> Band:

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.metrics.catalogue import pair
+from validation.metrics.values import or_nan
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
-from validation.studies.core.damping import derived as damping_rows  # noqa: F401
+from validation.studies.core.damping import derived as damping_rows
 from validation.studies.core.damping import ratio as ratio
-from validation.suite.bands import Band, about, near
+from validation.suite.bands import Band, about, cases, fitted_order, near
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
+
+MESHES = "mesh-convergence"
+POINT_SPRINGS = "corner-springs"
 
 
 def static_displacement(case: Scene) -> Band:
@@ -91,3 +103,37 @@ def distance_from_the_finest_mesh(case: Scene) -> dict[str, Band]:
 def same_recursion(case: Scene) -> Band:
     """Distance of the printed recursion from the robust form."""
     return 0.0, spectra.rounding(case)
+
+
+def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+    """Return how far DDA's displacement at rest is from that of the elements, relative to it."""
+    first, second = (or_nan(row.metrics.get("displacement.static")) for row in (dda, fem))
+    return {"displacement": abs(first / second - 1)}
+
+
+def drift(finished: Finished) -> Mapping[str, Value]:
+    """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
+    levels = tuple(cases(POINT_SPRINGS))
+    settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
+    return {"halving": float(np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0])}
+
+
+def order(finished: Finished) -> Mapping[str, Value]:
+    """Return the power of the elements a side with which the error against the bar falls."""
+    levels = tuple(cases(MESHES))
+    errors = []
+    for case in levels:
+        histories = (finished.needed_history(case.name, solver) for solver in ("fem", "bar"))
+        errors.append(or_nan(pair("displacement.l2", *histories)))
+    return {"power": fitted_order([case.fem.per_side for case in levels], errors)}
+
+
+def further_rows() -> tuple[Derived, ...]:
+    """Return the rows of damping, of the order of elements, and of their drift on point springs."""
+    points = tuple((case.name, "fem") for case in cases(POINT_SPRINGS))
+    meshes = tuple(itertools.product((case.name for case in cases(MESHES)), ("fem", "bar")))
+    return (
+        *damping_rows(),
+        Derived(MESHES, "order", meshes, order),
+        Derived(POINT_SPRINGS, "drift", points, drift, ("displacement.static",)),
+    )

@@ -98,3 +98,13 @@ def lagged_creep(case: Scene) -> Band:
 def lag(case: Scene) -> Band:
     """Return how far DDA lags behind the exact block."""
     return APART, friction.lag(case)
+
+
+def closed(case: Scene) -> Mapping[str, Value]:
+    """Return p/E, and the speed g / w_n that the creep scales with [m/s]."""
+    return {"p/E": case.contact.stiffness / case.block.young, "scale": friction.creep_scale(case)}
+
+
+def program(case: Scene) -> Mapping[str, Value]:
+    """Return the slip in a second under lagged friction by an established program [m]."""
+    return {"slip": PROGRAM[case.time.step]}

@@ -259,14 +259,21 @@ def relative_error(values: Array, expected: Array) -> float:
     return float(np.linalg.norm(values - expected) / np.linalg.norm(expected))
 
 
+def error_of_steps(case: Scene, finished: Finished) -> float:
+    """Return the relative L2 error of the displacement at the coarsest steps."""
+    stride = case.time.steps // COARSEST
+    displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
+    return relative_error(displacement, finished.needed_history(*BLOCK_EVENTS).displacement)
+
+
+def refined_error(one: Method, case: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the error of a run, and its steps times the solves of one."""
+    return {"error": error_of_steps(case, finished), "solves": case.time.steps * one.solves}
+
+
 def order(one: Method, finished: Finished) -> Mapping[str, Value]:
     """Return the order of the last halving, and the steps times solves that reach the target."""
-    expected = finished.needed_history(*BLOCK_EVENTS).displacement
-    errors = {}
-    for case in expanded(refined(one)):
-        stride = case.time.steps // COARSEST
-        displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
-        errors[case.time.steps] = relative_error(displacement, expected)
+    errors = {case.time.steps: error_of_steps(case, finished) for case in expanded(refined(one))}
     *_, coarse, fine = errors.values()
     reached = [count for count, error in errors.items() if error <= TARGET]
     values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
@@ -377,6 +384,8 @@ def derived() -> tuple[Derived, ...]:
         for case in expanded(unlocked(one)):
             declared.append(row(case, "energy at the end", [case], final_energy, case, reads=ENERGIES))
         declared.append(row(refined(one), "order", expanded(refined(one)), order, one, exact=(BLOCK_EVENTS,)))
+        for case in expanded(refined(one)):
+            declared.append(row(case, "refined", [case], refined_error, one, case, exact=(BLOCK_EVENTS,)))
     for one in IMPLICIT:
         declared.append(row(impacts(one), "rebound map", expanded(impacts(one)), compared_map, one))
         if one.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
@@ -398,19 +407,18 @@ MAP_PHASES = 40
 
 @functools.cache
 def data() -> Mapping[str, Any]:
-    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt."""
-    curves: dict[str, dict[str, list[float | None]]] = {}
-    for name in CURVES:
-        one = method(name)
+    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
+    damping = []
+    landings = []
+    for one in map(method, CURVES):
+        named = {"method": one.id, "label": one.label}
         ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
-        curves[name] = {"damping": [_short(ratio) for ratio in ratios]}
-        if name not in MAP_CURVES:
-            continue
-        rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
-        for part in ("mean", "least", "most"):
-            curves[name][part] = [_short(getattr(row, part)) for row in rows]
-    omegas = {"damping": [_short(x) for x in DAMPED_OMEGAS], "impact": [_short(x) for x in MAP_OMEGAS]}
-    return {"omega": omegas, "methods": curves, "labels": {one.id: one.label for one in METHODS}}
+        damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
+        if one.id in MAP_CURVES:
+            rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
+            parts = {part: [_short(getattr(row, part)) for row in rows] for part in ("mean", "least", "most")}
+            landings.append(named | {"omega": [*map(_short, MAP_OMEGAS)]} | parts)
+    return {"damping": damping, "impacts": landings, "labels": {one.id: one.label for one in METHODS}}
 
 
 def _short(value: float) -> float | None:

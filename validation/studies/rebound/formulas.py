@@ -18,10 +18,11 @@ import numpy as np
 from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Value
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.suite.bands import Band, about, cases, gate, short
+from validation.theory import landing
 
 KINDS = ("constant", "average", "implicit", "conserving")
 IMPACTS = tuple(f"rebound-{kind}" for kind in KINDS)
@@ -74,7 +75,8 @@ def derived() -> tuple[Derived, ...]:
         needs = tuple((case.name, "dda") for case in impacts)
         rows.append(Derived(name, MAP, needs, functools.partial(compared, impacts), READS))
     statistics = [Derived(MAP, label(scheme), (), functools.partial(stiff, scheme)) for scheme in STIFF]
-    return (*rows, *statistics)
+    own = [Derived(MAP, f"p = {r:g}E", (), functools.partial(own_landing, r)) for r in EXACT_SWITCHES]
+    return (*rows, *statistics, *own)
 
 
 def label(scheme: tuple[float, float]) -> str:
@@ -144,10 +146,29 @@ def data() -> Mapping[str, Any]:
         rows = np.ones((len(PARTS), len(grid)))
         if scheme is not None:
             rows = np.array([impact_statistics(*scheme, 1.0, float(x)) for x in grid]).T
-        curves[kind] = {part: short(row) for part, row in zip(PARTS, rows, strict=True)}
-    return {"omega": short(grid), "schemes": curves}
+        curves[kind] = {"omega": short(grid)} | {part: short(row) for part, row in zip(PARTS, rows, strict=True)}
+    return {"schemes": curves}
 
 
 def exact_cases() -> tuple[tuple[str, str], ...]:
     """Return the cases of which the exact motion is run too."""
     return tuple((case.name, "block-events") for case in finest())
+
+
+def landing_data(case: Scene) -> Mapping[str, Value]:
+    """Return w_c dt and the phase of a landing."""
+    return {"omega": omega(case), "phase": phase(case)}
+
+
+def springs(case: Scene, dda: Row) -> Mapping[str, Value]:
+    """Return p/E, the switches over those of the exact motion, and the energy that the scheme itself has damped."""
+    lost, given, switches = (
+        or_nan(dda.metrics.get(name)) for name in ("energy.lost_algorithmic", "energy.given", "switches.count")
+    )
+    exact = 2.0 * EXACT_SWITCHES[ratio(case)]
+    return {"p/E": ratio(case), "switches over exact": switches / exact, "lost": lost / given}
+
+
+def own_landing(stiffness_ratio: float, _: Finished) -> Mapping[str, Value]:
+    """Return the restitution of a square block of one strain, without a time step, by p/E."""
+    return {"restitution": landing.own_landing(2 * stiffness_ratio).restitution}

@@ -33,6 +33,7 @@ BASE = "response-base"
 DAMPING = "response-damping"
 VISCOUS = "viscous"
 FREQUENCIES = (20.0, 52.0, 80.0, 150.0)  # Hz
+RESONANCE = 52.0  # Hz, next to the first frequency
 LOW = (5.0, 10.0, 20.0)  # Hz
 WINDOWS = {BASE: 250, DAMPING: 200}  # last steps, whole periods of all frequencies of a record
 MESH = 8  # elements along the height, linear: their closed form is that of a column of welded blocks
@@ -101,6 +102,12 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Mappi
             bar = complex(answer.reported("bar", frequency).columns[column][0])
             values[f"{part}.mesh"] = abs(amplitude) / abs(bar) - 1
     return values
+
+
+def _removed(_: Finished) -> Mapping[str, Value]:
+    """Return the share of the displacement near the first frequency that the step takes."""
+    exact, stepped, _average = (abs(one.reported("dda", RESONANCE).columns[DISPLACEMENT][0]) for one in answers())
+    return {"removed": float(1 - stepped / exact)}
 
 
 def loaded_gates() -> Iterator[Gate]:
@@ -288,6 +295,7 @@ def derived() -> tuple[Derived, ...]:
     for case in cases(BASE):
         for solver in SOLVERS:
             rows += [_row(case.name, solver, f, _stepped, case, solver) for f in FREQUENCIES]
+    rows.append(Derived("response-constant", "resonance", (), _removed))
     return (*rows, *(_row(DAMPING, "dda", f, _hidden) for f in LOW))
 
 

@@ -14,8 +14,7 @@ from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 from validation.theory.rocking import rectangle, settlement
 
-LET_GO = ("rocking-release", "rocking-swing")
-PULSE = "rocking-pulse"
+PULSED = "rocking-pulse"
 # The record of the base
 PUSH = 5.0  # acceleration [m/s2]
 DURATION = 0.36  # s
@@ -46,6 +45,20 @@ def passage(scene: Scene, history: History) -> Mapping[str, Value]:
     if overturns(scene):
         return {"time": crossing(history.time, rotation, rectangle(scene).alpha) / exact(1.0)}
     return {"peak": float(np.max(rotation)) / exact(1.0), "tipping": float(np.max(rotation)) / rectangle(scene).alpha}
+
+
+def rigid(scene: Scene) -> Mapping[str, Value]:
+    """Return the rigid block: its shape and its tilt, or the pulse over the least one that overturns it."""
+    block = rectangle(scene)
+    values: dict[str, Value] = {"slenderness": block.height / block.width, "tipping": block.alpha}
+    if scene.name.startswith(PULSED):
+        return values | {"size": PUSH / block.gravity / block.pulse_threshold(DURATION)}
+    tilt = math.radians(scene.block.tilt)
+    return values | {
+        "tilt": tilt,
+        "tilt over tipping": tilt / block.alpha,
+        "quarter period": block.quarter_period(tilt),
+    }
 
 
 def overturns(scene: Scene) -> bool:

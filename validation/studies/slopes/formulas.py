@@ -11,16 +11,18 @@ import functools
 import itertools
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
+from validation.metrics.values import or_nan
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
-from validation.studies.slopes import closed
-from validation.suite.bands import APART, Band, about, cases, near
+from validation.studies.slopes import closed as closed_forms
+from validation.suite.bands import APART, Band, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -40,6 +42,7 @@ RINGING = 1e-3  # of the error by ringing: the own vibration of a block whose st
 SETTLED = 1e-4  # of the penalty offset, what still swings after a second of constant acceleration
 RIGID = "sliding block"
 # The shaking
+STANDS = 1e-9  # m/s of slip, below which a block stands
 CYCLES = 4
 RATE = 2.0  # Hz
 
@@ -89,7 +92,7 @@ def identity(scene: Scene, history: History) -> Mapping[str, Value]:
 def ringing(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the largest error of a sliding block over its exact way, from a start on."""
     way = friction.sliding_acceleration(scene) * history.time**2 / 2
-    late = history.time >= RINGS_FROM - closed.TOLERANCE
+    late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
     return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
 
 
@@ -98,14 +101,14 @@ def rigid_ringing(finished: Finished) -> Mapping[str, Value]:
     scene = next(iter(cases(STIFFNESS)))
     numbers: dict[str, Value] = {}
     for p, step in itertools.product((1e8, 1e9), FACT_STEPS):
-        numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed.normal_ringing_error(scene, p, step)
+        numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed_forms.normal_ringing_error(scene, p, step)
     return numbers
 
 
 def late_friction(finished: Finished) -> Mapping[str, Value]:
     """Return the error after a second of a sliding block whose friction is that of the step before."""
     scene = next(iter(cases(STIFFNESS)))
-    return {f"dt = {1e3 * step:g} ms": closed.lagging_friction_error(scene, step, 1.0) for step in FACT_STEPS}
+    return {f"dt = {1e3 * step:g} ms": closed_forms.lagging_friction_error(scene, step, 1.0) for step in FACT_STEPS}
 
 
 def discounted(finished: Finished) -> Mapping[str, Value]:
@@ -118,10 +121,10 @@ def discounted(finished: Finished) -> Mapping[str, Value]:
         for hertz in (1.0, 5.0, 10.0):
             ratio = Stepping(step, 0.25, 0.5, gg=gg).damping_ratio(2 * math.pi * hertz * step)
             numbers[f"xi at {hertz:g} Hz, dt = {1e3 * step:g} ms"] = ratio
-    exact = closed.shaken_way(closed.FINE, 1.0)
+    exact = closed_forms.shaken_way(closed_forms.FINE, 1.0)
     for step in (1e-2, 5e-3, 2.5e-3, 1e-3, 1e-4):
-        numbers[f"way kept at dt = {1e3 * step:g} ms"] = closed.shaken_way(step, gg) / exact
-    return numbers | {"way without a discount at dt = 10 ms": closed.shaken_way(1e-2, 1.0) / exact}
+        numbers[f"way kept at dt = {1e3 * step:g} ms"] = closed_forms.shaken_way(step, gg) / exact
+    return numbers | {"way without a discount at dt = 10 ms": closed_forms.shaken_way(1e-2, 1.0) / exact}
 
 
 def against_rigid(scene: Scene, history: History) -> Mapping[str, Value]:
@@ -160,7 +163,7 @@ def ringing_way(case: Scene) -> Band:
     width, height = size(case)
     modulus, _ = moduli(case)
     own_strain = case.contact.stiffness * height / (2 * modulus * width)
-    rigid = closed.normal_ringing_error(case, case.contact.stiffness, case.time.step)
+    rigid = closed_forms.normal_ringing_error(case, case.contact.stiffness, case.time.step)
     return near(rigid * (1 + own_strain), RINGING)
 
 
@@ -203,3 +206,42 @@ def lag(case: Scene) -> Band:
 
 def _beside(slide: float, allowed: float) -> dict[str, Band]:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
+
+
+def closed(case: Scene) -> Mapping[str, Value]:
+    """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
+    acceleration = friction.sliding_acceleration(case)
+    displacement, _ = friction.free_motion(case, acceleration)
+    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": float(displacement[-1])}
+
+
+def beside_closed(case: Scene, dda: Row) -> Mapping[str, Value]:
+    """Return how far a run is beyond the closed form [m], and its displacement over that without drag."""
+    final = or_nan(dda.metrics.get("horizontal.final"))
+    displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+    return {"ahead": final - float(displacement[-1]), "share": final / friction.run_out(case, case.time.duration)}
+
+
+def start(case: Scene, dda: Row) -> Mapping[str, Value]:
+    """Return the slip a second [m/s], and that a block stands whose corners do not slip."""
+    slip_rate = or_nan(dda.metrics.get("contact.slip_rate"))
+    if friction.sliding_acceleration(case) < 0 and slip_rate < STANDS:
+        return {"state": "stands", "slip": 0.0}
+    return {"slip": slip_rate}
+
+
+def beside_rigid(case: Scene) -> Mapping[str, Value]:
+    """Return the slide of a rigid mass at the end, and by how much a block may differ from it [m]."""
+    low, high = (in_an_earthquake if case.name.startswith(QUAKE) else shaken)(case)["slide"]
+    return {"slide": (low + high) / 2, "allowed": (high - low) / 2}
+
+
+def data() -> Mapping[str, Any]:
+    """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
+    free = []
+    for case in (*tuple(cases(SLIDING))[-1:], *cases(DRAG)):
+        displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
+        instants = np.unique(np.linspace(0, case.time.steps - 1, 200).round().astype(int))
+        free.append({"time": short((instants + 1) * case.time.step), "distance": short(displacement[instants])})
+    x = np.geomspace(0.1, 100.0, 61)  # of a drag, 1/s times a second
+    return {"free": free, "drag": {"rate": short(x), "share": short(2 * (x + np.expm1(-x)) / x**2)}}

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from scipy.linalg import eigh
 
+from validation.metrics.values import or_nan
+from validation.runs.row import Row, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, near
 from validation.theory import spectra, statics
@@ -42,3 +46,15 @@ def rocking_frequency(case: Scene) -> Band:
     K[2, 2] += a * a * case.block.young / 2
     squares = eigh(K, M, eigvals_only=True)
     return near(float(np.sqrt(squares[0])), 1e-12)
+
+
+def cut(case: Scene) -> Mapping[str, Value]:
+    """Return how many sub-blocks stand on each other, and the width of the patches that carry elements [m]."""
+    _, n = case.block.subdivide or (1, 1)
+    return {"n": n, "patch": case.fem.patch_width or case.block.base_length}
+
+
+def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+    """Return the first frequency of DDA over that of elements, less one."""
+    first, second = (or_nan(row.metrics.get("mode1.frequency")) for row in (dda, fem))
+    return {"first frequency": first / second - 1}

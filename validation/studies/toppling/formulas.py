@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from validation.metrics.rotation import crossing, increments
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, about
+from validation.suite.bands import Band, about, cases, short
 from validation.theory.friction import coefficient, sliding_acceleration
 from validation.theory.rocking import rectangle, settlement
 
@@ -125,3 +127,12 @@ def slowed(scene: Scene) -> float:
 def growth(scene: Scene) -> float:
     """Return the growth of the area by first-order rotation of a rigid block, dt times the integral of psi'^2 [-]."""
     return scene.time.step * rectangle(scene).squared_rate(beyond(scene), scene.time.duration)
+
+
+def data() -> Mapping[str, Any]:
+    """Return the fall of the rigid tower that is released on its corner, over the time that is run."""
+    (case,) = cases("toppling-fall")
+    block = rectangle(case)
+    last = brentq(lambda turn: block.fall_time(beyond(case), turn) - case.time.duration, 1e-6, math.pi / 2)
+    turns = np.linspace(0.0, last, 101)[1:]
+    return {"rigid": {"turn": short(turns), "time": short([block.fall_time(beyond(case), turn) for turn in turns])}}

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
 
 from validation.engine.finished import Derived
 from validation.gates.gate import Gate
+from validation.runs.history import History
+from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.columns.names import column_of
 from validation.studies.waves import oblique, rows
 from validation.studies.waves.rows import curves as curves
 from validation.suite.bands import APART, gate
@@ -63,3 +69,37 @@ def fem_too() -> tuple[tuple[str, str], ...]:
     return tuple(
         dict.fromkeys((w.scene.name, w.solver) for w in (*rows.travelling(), *rows.jointed()) if w.solver == "fem")
     )
+
+
+def all_cases() -> Iterator[Scene]:
+    """Yield all cases."""
+    for declared in scenes():
+        yield from (load_scene(declared) if isinstance(declared, str) else declared).expand()
+
+
+def closed(case: Scene) -> Mapping[str, Value]:
+    """Return c dt/h of the lowest layer, its glue over that of its own blocks, and the weights of the scheme."""
+    column = column_of(case)
+    layer = column.layer[0]
+    height = layer.thickness / layer.blocks
+    speed = math.sqrt(column.modulus(layer) / layer.density)
+    time = case.time
+    values: dict[str, Value] = {
+        "courant": round(speed * time.step / height, 6),
+        "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
+    }
+    return values | {"glue": column.glue * height / column.modulus(layer)} if column.glue else values
+
+
+def sites() -> Iterator[Scene]:
+    """Yield the site under both schemes."""
+    yield from load_scene(SITE).expand()
+    yield from usual_site().expand()
+
+
+def largest(case: Scene, history: History) -> Mapping[str, Value]:
+    """Return the largest displacement of the surface [m] and the largest stress on the base [Pa]."""
+    return {
+        "displacement": float(np.abs(history.displacement).max()),
+        "pressure": float(np.abs(history.contact_pressure).max()),
+    }

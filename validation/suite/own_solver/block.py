@@ -163,9 +163,18 @@ def _block_data(
                 "which datum is misread is not known, print those that your solver takes from this scene"
             )
     if not any(t.group in ("digits", "pressure") for t in plain):
+        suspects = "the moment of inertia, or where width and height enter"
+        if not any(_is_discounted(t) for t in judged if t.group == "digits"):
+            suspects = f"gg, which is below 1 in no other scene that was judged, {suspects}"
         for t in _moving(wrong):
             words = f"{data[t.scene].words}: {t.metric.partition('.')[0]} before it rests"
-            yield f"wrong:  {BLOCK_DATA} - {words}: the moment of inertia, or where width and height enter"
+            yield f"wrong:  {BLOCK_DATA} - {words}: {suspects}"
+
+
+def _is_discounted(result: GateReport) -> bool:
+    """Whether a gate is on a scene whose velocities are discounted."""
+    case = gates.cases(result.study).get((result.scene, gates.JUDGED))
+    return case is not None and case.scene.time.discount < 1
 
 
 def _moving(failed: Sequence[GateReport]) -> list[GateReport]:

@@ -1,0 +1,63 @@
+"""Rows that are wrong by themselves, and noise that is nothing but noise: neither makes an excuse for the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
+
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+
+STIFF = Plain(steps=120, p=5e9, dt=0.001)
+
+
+def printed(values: np.ndarray, digits: int) -> np.ndarray:
+    return np.array([float(f"{v:.{digits - 1}e}") for v in values])
+
+
+def answer_of(base: Plain, columns: tuple[np.ndarray, np.ndarray]) -> Answer:
+    time = base.dt * np.arange(1, base.steps + 1)
+    return compare(scene_of(base), Foreign(time, *columns))
+
+
+@pytest.mark.parametrize("digits", [8, 15])
+@pytest.mark.parametrize(
+    ("slip", "causes"), [({}, ["single-rows"]), ({"rho": 2970.0}, ["single-rows", "density-factor"])]
+)
+def test_a_row_printed_twice_is_told_by_its_step(digits: int, slip: dict[str, Any], causes: list[str]) -> None:
+    displacement, pressure = (printed(values, digits) for values in run(replace(STIFF, **slip)))
+    displacement[40] = displacement[39]
+    pressure[40] = pressure[39]
+    answer = answer_of(STIFF, (displacement, pressure))
+    assert answer.causes == causes
+    assert answer.values["single-rows"] == 41
+    assert {stage.name: stage.agrees for stage in answer.evidence}["rows"] is False
+
+
+@pytest.mark.parametrize("error", [1e-2, 3e-6])
+def test_one_wrong_row_does_not_pass_however_small_it_is_in_the_mean(error: float) -> None:
+    displacement, pressure = (printed(values, 9) for values in run(replace(STIFF, steps=400)))
+    displacement[200] = float(f"{displacement[200] * (1 + error):.8e}")
+    answer = answer_of(replace(STIFF, steps=400), (displacement, pressure))
+    assert (answer.causes, answer.values) == (["single-rows"], {"single-rows": 201})
+
+
+@pytest.mark.parametrize(
+    ("base", "size", "seed"),
+    [
+        (replace(STIFF, steps=80), 1e-6, 2),
+        (Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-6, 0),
+        (Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-5, 0),
+        (Plain(steps=60), 1e-3, 1),
+    ],
+)
+def test_white_noise_on_a_right_history_is_noise(base: Plain, size: float, seed: int) -> None:
+    noise = np.random.default_rng(seed).standard_normal((2, base.steps))
+    columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
+    assert answer_of(base, (columns[0], columns[1])).causes == []
