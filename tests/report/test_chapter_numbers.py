@@ -20,7 +20,6 @@ from validation.studies.paper import chapter as chapters_paper
 from validation.studies.paper.chapter import PaperFigure
 from validation.studies.stability import chapter as chapters_stability
 from validation.studies.stability.chapter import ExtremeRun
-from validation.studies.stiff_contact import chapter as chapters_contact
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
 GREY = "#6b6b6b"
@@ -123,53 +122,6 @@ def test_the_register_counts_and_words_each_verdict() -> None:
 
 
 # ---- stiff contacts -----------------------------------------------------------------------------------------------
-
-
-def contact_case(ratio: float, alpha: float, displacement: Any, pressure: Any, radius: float) -> Any:
-    scene = BASE.with_values({"contact.stiffness": 2e9 * ratio, "block.young": 2e9, "time.alpha": alpha}, label=True)
-    metrics = {
-        "displacement.fine_settling_step": displacement,
-        "pressure.fine_settling_step": pressure,
-        "displacement.settling_step": 1.0,
-        "pressure.settling_step": 2.0,
-        "contact.spectral_radius": radius,
-    }
-    return made_case(scene, {"dda": metrics})
-
-
-CONTACT = made_group(
-    contact_case(100.0, 0.5, 60.0, "undefined", 0.98),
-    contact_case(100.0, 0.5625, 61.0, 62.0, 0.34),
-    contact_case(1.0, 0.5, 50.0, 530.0, 0.5),
-    contact_case(1.0, 0.5625, 51.0, 55.0, 0.4),
-)
-
-
-def test_steps_to_settle_stand_under_their_scheme_and_beside_their_stiffness() -> None:
-    table = chapters_contact.settling_table(chapters_contact.by_ratio(CONTACT))
-    heads = [(c.group, c.title) for c in table.columns]
-    constant, complex_ = ("α, δ = (1/2, 1)", "α, δ = (9/16, 1)")
-    assert heads[0] == ("", "p / E") and [g for g, _ in heads[1:]] == [constant] * 3 + [complex_] * 3
-    assert [t for _, t in heads[1:]] == ["displ.", "press.", "|λ| of the contact"] * 2
-    assert table.rows == (
-        ("1", "50", "530", "0.50000000", "51", "55", "0.40000000"),
-        ("100", "60", "–", "0.98000000", "61", "62", "0.34000000"),
-    )
-
-
-def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme() -> None:
-    table = chapters_contact.by_ratio(CONTACT)
-    drawn = chapters_contact.curves(table, 1000.0)
-    lines = {line.name: (list(line.x), list(line.y)) for line in drawn if line.name}
-    assert [(list(line.x), list(line.y)) for line in drawn if line.hollow and line.x.size] == [([100.0], [1000.0])]
-    assert lines == {
-        "displacement (1/2, 1)": ([1.0, 100.0], [50.0, 60.0]),
-        "pressure (1/2, 1)": ([1.0, 100.0], [530.0, 1000.0]),  # the last has not settled within the run
-        "displacement (9/16, 1)": ([1.0, 100.0], [51.0, 61.0]),
-        "pressure (9/16, 1)": ([1.0, 100.0], [55.0, 62.0]),
-    }
-    said = chapters_contact.conclusion(table)
-    assert "under (1/2, 1) up to 530 steps (at p = 1E) and under (9/16, 1) up to 62 steps (at p = 100E)" in said
 
 
 # ---- extremes -----------------------------------------------------------------------------------------------------

@@ -177,5 +177,5 @@ class Description:
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
         file = described["file"].format_map(values)
-        caption = values.get("caption") or described["caption"].format_map(values)
+        caption = values.get("whole_caption") or described["caption"].format_map(values)
         return histories.saved(figure, directory, file, caption, scene)

@@ -202,7 +202,7 @@ class StudyTable:
         return True
 
     def grouped(self, lines: Sequence[Line], expressions: Sequence[str]) -> list[list[Line]]:
-        """Return lines in groups of one value in each expression, in the order of their first lines; else one by one."""
+        """Return lines in groups of one value in each expression, in the order of first lines; else one by one."""
         if not expressions:
             return [[line] for line in lines]
         groups: dict[tuple[Value, ...], list[Line]] = {}

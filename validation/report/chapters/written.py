@@ -16,12 +16,12 @@ and is left out where a table or figure that it names shows nothing:
 and ``when``, a list of scenes that must be there. `validation.report.chapters.queries` has queries and expressions:
 
     [text]          paragraphs and captions; ``{name}`` stands for a number or a list
-    [number.NAME]   a query, an expression ``of_`` as those of columns, and how it is written
+    [number.NAME]   a query, its ``value``, an expression, and how it is written
     [list.NAME]     a query, ``group_by``, the numbers of each line, its ``text``, what joins them
     [table.NAME]    a query, ``group_by``, columns; caption, notes, dense, ruled
     [figure.NAME]   panels, file, caption
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
-    [maps.NAME]     file, caption; ``of`` a list, a line of maps for each; rows, columns, and the maps, each an expression
+    [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ from validation.runs.row import Value
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
+NO_QUERY: Query = {}
 COLUMN_FIELDS = {one.name for one in fields(CaseColumn)}
 LINE_FIELDS = {one.name for one in fields(ChartLine)} - {"name", "x", "y", "shaded", "notes"}
 
@@ -94,7 +95,7 @@ class WrittenChapter:
                 blocks += self._part(part)
         return blocks
 
-    def _part(self, part: Query, query: Query = {}) -> Blocks:
+    def _part(self, part: Query, query: Query = NO_QUERY) -> Blocks:
         if "opening" in part:
             return self._opening(part)
         if "call" in part:
@@ -180,7 +181,7 @@ class WrittenChapter:
 
     # ---- tables -----------------------------------------------------------------------------------------------------
 
-    def _table(self, name: str, query: Query = {}) -> list[Table]:
+    def _table(self, name: str, query: Query = NO_QUERY) -> list[Table]:
         described = self.page.described("table", name) | query
         columns = [({"title": one} if isinstance(one, str) else one) for one in described["columns"]]
         rows: list[list[str]] = []
@@ -226,7 +227,7 @@ class WrittenChapter:
         if not panels:
             return []
         caption = self._caption(described["caption"])
-        return [self.page.figure(name, panels, self.directory, described.get("scene", ""), caption=caption)]
+        return [self.page.figure(name, panels, self.directory, described.get("scene", ""), whole_caption=caption)]
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:
         """Yield the lines of one entry of a panel: one, or one for each value of ``each``, or for each history."""
