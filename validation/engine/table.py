@@ -58,7 +58,7 @@ def tidy(results: Results, manifest: Manifest) -> Iterator[TidyRow]:
 
     for record in manifest["cases"]:
         row = rows[record["key"]]
-        cost = {f"work.{name}": value for name, value in row.work.items()}
+        cost: dict[str, Value] = {f"work.{name}": value for name, value in row.work.items()}
         cost |= {f"seconds.{name}": value for name, value in row.seconds.items()}
         numbers: dict[str, Value] = {"outcome": str(row.outcome), **row.metrics, **cost}
         if row.estimate is not None:

@@ -40,7 +40,7 @@ from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Value
 
-Query = Mapping[str, Any]
+Query = dict[str, Any]
 PLACEHOLDER = re.compile(r"\\\{(\w+)\\\}")
 
 
@@ -115,7 +115,7 @@ class StudyTable:
     def _with_rows(self, query: Query) -> Iterator[Line]:
         """Yield the derived rows whose names follow a pattern, by their owners' order in the query."""
         pattern = _pattern(query["row"])
-        for wanted in _listed(query.get("scene", query.get("of", "*"))):
+        for wanted in _listed(query.get("scene") or query.get("of") or "*"):
             for (owner, name), metrics in self.derived.items():
                 match = pattern.fullmatch(name)
                 words = _words_of_owner(owner, wanted)
@@ -184,7 +184,7 @@ class StudyTable:
         if pick is None:
             values = (self.value(line, expression) for line in chosen)
             return next((value for value in values if value is not None), None)
-        among = column.get("among", expression)
+        among = column.get("among") or expression
         numbered = []
         for line in chosen:
             number = self.number(line, among)

@@ -208,7 +208,8 @@ class WrittenChapter:
         if value is None:
             return text
         others = [self._cell(one, group) for one in column.get("also", ())]
-        return column.get("pattern", "{}").format(text, *others)
+        pattern: str = column.get("pattern", "{}")
+        return pattern.format(text, *others)
 
     def _caption(self, text: str) -> str:
         values = {word: self._word(word) for _, word, _, _ in string.Formatter().parse(text) if word}
@@ -257,7 +258,7 @@ class WrittenChapter:
         for name, number in line.get("numbers", {}).items():
             words[name] = self._number(number, [first]) or DASH
         for part in ("name", "note"):
-            look[part] = look.get(part, line.get(part, "")).format(each=_key(key), **words)
+            look[part] = str(look.get(part, line.get(part, ""))).format(each=_key(key), **words)
         return replace(drawn, **look)
 
     def _points(self, line: Query, group: Sequence[Line]) -> ChartLine:
@@ -345,7 +346,7 @@ class WrittenChapter:
     ) -> NumberMap:
         """Return a map: the number of each cell, shaded from ``from`` to ``to``."""
         values = np.full((len(rows), len(columns)), np.nan)
-        texts = []
+        texts: list[list[str]] = []
         for i, row in enumerate(rows):
             texts.append([])
             for j, column in enumerate(columns):
@@ -366,8 +367,8 @@ def _shade(shade: Query, value: float) -> float:
     low, high = shade["from"], shade["to"]
     if shade.get("logarithmic"):
         value, low, high = (math.log(max(one, 1e-300)) for one in (value, low, high))
-    share = (value - low) / (high - low)
-    return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share)) * shade.get("most", 1.0)
+    share: float = (value - low) / (high - low)
+    return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share))
 
 
 def _is_measured(column: Query) -> bool:
