@@ -21,7 +21,7 @@ report-all: $(READY)  ## every study and one PDF
 
 gallery: $(READY)  ## the results as a static site with calculators, in reports/gallery; runs the core study if there are none
 	@test -d reports/results/studies || $(BIN)/dda-validate run core
-	@$(BIN)/dda-validate gallery --out reports/gallery
+	@$(BIN)/dda-validate report --site reports/gallery
 
 field: $(PEERS)  ## other people's programs on the problems, and their table; minutes. FIELD='--require yade' insists on one
 	@$(BIN)/dda-validate run field --results reports/field $(FIELD); status=$$?; \
@@ -46,7 +46,7 @@ portable: $(READY)  ## the tests under other kernels, versions and Pythons, and 
 
 docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the results that are there
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
-	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate gallery --out site/gallery --docs ..; \
+	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate report --site site/gallery --docs ..; \
 	else echo "no results for the gallery: make report, then make docs again"; fi
 	@echo site/index.html
 

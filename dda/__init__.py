@@ -25,6 +25,7 @@ from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_u
 from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
+from dda.system.glued import GluedBlocks, Traction, glued_blocks
 from dda.system.joints import FIXED, Joint, shared_edges
 from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
 from dda.system.response import system_response
@@ -45,6 +46,7 @@ __all__ = [
     "ContactResult",
     "Diagnostics",
     "GapForm",
+    "GluedBlocks",
     "Joint",
     "Load",
     "Material",
@@ -55,12 +57,14 @@ __all__ = [
     "Scheme",
     "Section",
     "SurfaceLoad",
+    "Traction",
     "TwoBlockModel",
     "Unilateral",
     "UnilateralModel",
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
+    "glued_blocks",
     "highest_frequency",
     "modal_form",
     "modes",

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
+from validation.runs.columns import unit_of
 from validation.runs.files import check_ending
 from validation.runs.history import DISPLACEMENT
 from validation.runs.run import Outcome, Run
-from validation.scenes import rigid
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 
@@ -43,7 +43,8 @@ class Solution(Run):
             name = DISPLACEMENT if DISPLACEMENT in self.history.columns else next(iter(self.history.columns))
             values = self.history.columns[name]
             peak = max(map(float, values), key=abs, default=0.0)
-            parts.append(f"peak {name} {peak:.4g}{_unit(name, self.scene)}")
+            unit = unit_of(name, self.scene.rigid is not None)
+            parts.append(f"peak {name} {peak:.4g} {unit}".rstrip())
         parts.append(f"{sum(self.seconds.values()):.2g} s")
         return f"<Solution: {', '.join(parts)}>"
 
@@ -85,12 +86,6 @@ class Solution(Run):
         return figure
 
 
-def _unit(column: str, scene: Scene) -> str:
-    kind = column.removeprefix("horizontal_").partition("_")[0]
-    unit = {"displacement": "m", "velocity": "m/s", "rotation": "rad", "contact": "Pa", "stress": "Pa"}.get(kind)
-    if scene.rigid is not None:
-        unit = rigid.UNITS.get(kind)
-    return f" {unit}" if unit else ""
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Solution:

@@ -278,7 +278,7 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
     F = _pushed(system, equations)
     D, _ = solve(F, np.zeros(len(equations.pressure)))
     while True:
-        squares, shapes, forces = _lowest(equations, solve, count)
+        squares, shapes, forces = lowest_modes(equations, solve, count)
         shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
         if len(squares) < count or np.max(shares) > 1 - np.sum(shares):
             break
@@ -303,7 +303,7 @@ def _pushed(system: BlockSystem, equations: Equations) -> Array:
     return np.asarray(equations.blockwise(equations.mass) @ axes[equations.kept % 6])
 
 
-def _lowest(
+def lowest_modes(
     equations: Equations, solve: Callable[[Array, Array], tuple[Array, Array]], count: int
 ) -> tuple[Array, Array, Array]:
     """Return the lowest w^2, their mass-normalised shapes and the joint forces of the shapes.

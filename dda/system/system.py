@@ -48,8 +48,8 @@ class BlockSystem:
 
     blocks: Sequence[Block]
     joints: Sequence[Joint]
-    observed: tuple[float, float]  # point whose displacement is reported, the mean where blocks meet [m]
-    base_length: float  # a, over which the supports' normal force is spread [m]
+    observed: tuple[float, float] | None = None  # point whose displacement is reported, the mean where blocks meet [m]
+    base_length: float = 1.0  # a, over which the supports' normal force is spread [m]
     loads: Sequence[SurfaceLoad] = ()
     gravity: float = 0.0  # downwards [m/s^2]
     motion: BaseMotion | None = None  # of all that is fixed
@@ -63,7 +63,7 @@ class BlockSystem:
         unknown = [b for b in joined if not 0 <= b < len(self.blocks)]
         if unknown:
             raise ValueError(f"joints: must name blocks from 0 to {len(self.blocks) - 1}, got {unknown[0]!r}")
-        if not self._blocks_at_point:
+        if self.observed is not None and not self.blocks_at(self.observed):
             raise ValueError(f"observed: must lie in a block, got {self.observed!r}")
 
     @cached_property
@@ -108,15 +108,18 @@ class BlockSystem:
             F[load.block] += without_rounding(acting, np.max(np.abs(acting)) * lever)
         return F.ravel()
 
-    @cached_property
-    def _blocks_at_point(self) -> list[int]:
-        return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(self.observed))]
+    def blocks_at(self, point: tuple[float, float]) -> list[int]:
+        """Return the numbers of the blocks that hold a point, their boundaries included."""
+        return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(point))]
 
     def _observers(self) -> dict[str, Array]:
         """Return the rows of the displacements, rotation and strains at the observed point."""
+        if self.observed is None:
+            return {}
         rows = np.zeros((6, len(self.blocks), 6))
-        share = 1 / len(self._blocks_at_point)
-        for i in self._blocks_at_point:
+        numbers = self.blocks_at(self.observed)
+        share = 1 / len(numbers)
+        for i in numbers:
             block = self.blocks[i]
             rows[:2, i] = share * without_rounding(block.T(*self.observed), _levers(block))
             rows[2:, i, 2:] = share * np.eye(4)

@@ -18,13 +18,37 @@ from .model import COMM, Block, Inapplicable, Request
 from .newmark import Factor, Newmark
 from .opening import COLUMNS as OPENING
 from .opening import Opening
+from .plane import PlaneBody, statics
 
 IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
 
 
 def run(request: Request) -> dict[str, Any]:
     """Answer one request; every rank runs this, and all return the same."""
+    if "tractions" in request:
+        return run_plane(request)
     return run_open(request) if request["law"] == "unilateral" else run_locked(request)
+
+
+def run_plane(request: Request) -> dict[str, Any]:
+    """Answer a request for a plane body without springs."""
+    Factor.factorisations = Factor.solves = 0
+    began = time.perf_counter()
+    body = PlaneBody(request)
+    scheme = Newmark(body, request)
+    ready = time.perf_counter()
+    (row,) = body.observers.values()
+    history = [float(row.dot(scheme.advance())) for _ in range(request["steps"])]
+    counted = _counted(began, ready, time.perf_counter())
+    return {
+        "outcome": "completed",
+        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
+        "columns": {"displacement": history},
+        "static": statics(body),
+        "unknowns": body.K.getSize()[0],
+        "nonzeros": scheme.nonzeros,
+        **counted,
+    }
 
 
 def run_open(request: Request) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def test_failures_stand_first_and_in_full_and_the_rest_is_counted(made: Results)
         "2 of 4 runs did not complete, as their studies allow: 1 overflow, 1 not applicable",
         "alarms: hidden tension in 2 cases, contact ringing in 1 case",
         f"results: {made.directory}",
-        f"next: dda-validate figures made --results {made.directory} draws the histories",
+        f"next: dda-validate report made --figures figures --results {made.directory} draws the histories",
     ):
         assert words in text
     assert "it rings" not in text

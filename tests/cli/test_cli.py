@@ -80,7 +80,7 @@ BAD = [
     ),
     (["solve", "corner-springs", "--set", "fem.elements=4", "--solver", "bar"], "foundation"),
     (["report", "--results", "nowhere"], "nowhere"),
-    (["figures", "core", "--results", "nowhere"], "nowhere"),
+    (["report", "core", "--figures", "f", "--results", "nowhere"], "nowhere"),
     (["frob"], "No such command 'frob'"),
     (["solve"], "Missing argument"),
 ]

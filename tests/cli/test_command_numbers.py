@@ -18,6 +18,7 @@ from validation.cli.printing import tables
 from validation.cli.run import _status
 from validation.gates.changes import against, changes, markdown
 from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.report.render.terminal import lines
 from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -47,29 +48,21 @@ def test_solve_says_what_a_solver_does_not_report(scene_file: Path) -> None:
 
 
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     results, scene = Results(tmp_path), load_scene("figures-3-4").with_values({"time.step": 0.002}, label=True)
     rows = [made_row("dda", {}, scene.name, seconds={"setup": 1.25, "stepping": 2.5}),
             made_row("bar", {}, scene.name, seconds={"a": 7.0}, outcome=Outcome.OVERFLOW, notes=("at 3",))]  # fmt: skip
     kept_study(results, [(scene, row, None) for row in rows])
     gate = Gate(scene.name, ("dda", "bar"), "displacement.l2", 0.031, 0.042, "the reason", until=0.2)
-    tables.print_verdicts([judge(gate, 0.0512), judge(gate, 0.04)], results, ["made"])
-    lines = capsys.readouterr().out.splitlines()
-    shown = [line.split() for line in lines if line.strip().startswith("time.step=0.002")]
-    middle = ["dda", "|", "bar", "displacement.l2@0.2s"]
-    assert [row[1:] for row in shown] == [
-        [*middle, "0.0512", "0.031", "..", "0.042", "FAIL", "3.75"],
-        [*middle, "0.04", "0.031", "..", "0.042", "PASS", "3.75"],
-    ]
-    monkeypatch.setattr("validation.cli.printing.output.PAGE", 60)
-    tables.print_verdicts([judge(gate, 0.0512), judge(gate, 0.04)], results, ["made"])
-    narrow = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert narrow == [
-        [scene.name],
-        ["FAIL", *middle, "0.0512", "0.031", "..", "0.042"],
-        ["PASS", *middle, "0.04", "0.031", "..", "0.042"],
-    ]
+    printed = tables.verdict_table([judge(gate, 0.0512), judge(gate, 0.04)], results, ["made"])
+    middle = ("time.step=0.002", "dda | bar", "displacement.l2@0.2s")
+    assert printed.rows == (
+        (*middle, "0.0512", "0.031 .. 0.042", "FAIL", "3.75"),
+        (*middle, "0.04", "0.031 .. 0.042", "PASS", "3.75"),
+    )
+    wide, narrow = ([text for text, _ in lines([printed], width)] for width in (150, 60))
+    assert len(wide) == 3 and max(map(len, narrow)) <= 60
     tables.print_ends(results, ["made"])
     assert capsys.readouterr().out == f"{scene.name} bar: overflow: {Outcome.OVERFLOW.sentence} at 3\n"
 
@@ -134,15 +127,14 @@ def test_a_baselines_other_studies_are_not_lost_gates(tmp_path: Path) -> None:
     assert [(c.kind, c.id) for c in against(tmp_path / "old.json", NEW[:3])] == [("worse", "a"), ("value", "b")]
 
 
-def test_differences_are_printed_as_before_and_after(capsys: pytest.CaptureFixture[str]) -> None:
-    tables.print_changes(changes(OLD, NEW[:3]))
-    lines = [line.split() for line in capsys.readouterr().out.splitlines() if line.strip()]
-    assert lines[0] == ["change", "study", "gate", "before", "after"]
-    assert lines[2:4] == [
-        ["worse", "s", "a", "PASS", "0.5", "FAIL", "0.875"],
-        ["value", "s", "b", "FAIL", "0.125", "FAIL", "0.1"],
-    ]
-    assert " ".join(lines[-1]) == "2 gates differ: 1 worse, 1 value"
+def test_differences_are_printed_as_before_and_after() -> None:
+    differing, count = tables.change_blocks(changes(OLD, NEW[:3]))
+    assert [column.title for column in differing.columns] == ["change", "study", "gate", "before", "after"]
+    assert differing.rows == (
+        ("worse", "s", "a", "PASS 0.5", "FAIL 0.875"),
+        ("value", "s", "b", "FAIL 0.125", "FAIL 0.1"),
+    )
+    assert count.text == "2 gates differ: 1 worse, 1 value"
 
 
 # ---- rows and plot ------------------------------------------------------------------------------------------------

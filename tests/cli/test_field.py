@@ -1,4 +1,4 @@
-"""``judge`` of folders and ``field``: verdicts of all answers, their site, and defects that leave nothing behind."""
+"""``judge`` of folders and of submissions: verdicts, their site, and defects that leave nothing behind."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def test_a_folder_is_judged_and_each_problem_told(tmp_path: Path, undrawn: None)
 
 
 def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_path: Path, undrawn: None) -> None:
-    done = typed("field", "--from", layout, "--out", tmp_path / "site")
+    done = typed("judge", layout, "--site", tmp_path / "site")
     assert done.returncode == 0, done.stderr
     files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "site").iterdir()}
     stems = ("bob-s-code-co_1.0_default", "bob-s-code-co_1.0_fine-step", "other_2.0_default")
     pages = {"index.html", "program_bob-s-code-co.html", "program_other.html", *(f"answers_{s}.html" for s in stems)}
-    assert set(files) == pages | {f"badge_{stem}.svg" for stem in stems} | {"verdicts.json", "gallery.css"}
+    assert set(files) == pages | {f"badge_{stem}.svg" for stem in stems} | {"verdicts.json", "page.css", "filter.js"}
     for name, text in files.items():
         assert str(tmp_path) not in text
         if name.endswith(".html"):
@@ -66,14 +66,15 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_pa
             ElementTree.fromstring(text)
     index = unescape(re.sub(r"\s+", " ", files["index.html"]))
     assert "Not answered by any of them: opening, rebound," in index
-    assert "FAIL</span> <small>4 % of 1.5 %</small>" in index and "PASS</span> <small>1 % of 5.7 %</small>" in index
-    assert "rotation_rad: cause: a <cause> & more." in index
+    assert '<td class="outcome fail">FAIL 4 % of 1.5 %</td>' in index
+    assert '<td class="outcome pass">PASS 1 % of 5.7 %</td>' in index
+    assert "rotation_rad; cause: a <cause> & more" in index
     program = unescape(re.sub(r"\s+", " ", files["program_bob-s-code-co.html"]))
     assert "4 % of 1.5 %" in program and "fine-step" in program  # of both settings
 
 
 def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path: Path, undrawn: None) -> None:
-    typed("field", "--from", layout, "--out", tmp_path / "site")
+    typed("judge", layout, "--site", tmp_path / "site")
     verdicts = json.loads((tmp_path / "site/verdicts.json").read_text(encoding="utf-8"))
     assert (verdicts["format"], verdicts["pack"]) == ("dda-validation verdicts", PACK)
     rows = {(row["program"], row["settings_name"], row["problem"]): row for row in verdicts["answers"]}
@@ -104,7 +105,7 @@ def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(
 
 def test_each_exact_motion_is_computed_once(layout: Path, undrawn: None, tmp_path: Path) -> None:
     bands._standard.cache_clear()
-    typed("field", "--from", layout, "--out", tmp_path / "site")
+    typed("judge", layout, "--site", tmp_path / "site")
     assert bands._standard.cache_info().misses == 3
 
 
@@ -112,8 +113,9 @@ def test_all_defects_are_printed_and_nothing_is_written(layout: Path, tmp_path: 
     folder = layout / "other/2.0/default"
     (folder / "locked.csv").write_text("time_s;displacement_m\n")
     (folder / "rokcing.csv").write_text("")
-    for arguments in (("field", "--from", layout), ("judge", layout, "--keep", tmp_path / "kept")):
-        done = typed(*arguments, "--out", tmp_path / "site")
+    site = tmp_path / "site"
+    for arguments in (("--site", site), ("--keep", tmp_path / "kept", "--out", site)):
+        done = typed("judge", layout, *arguments)
         assert done.returncode == 2 and done.stdout == ""
         *lines, last = done.stderr.splitlines()
         assert [line.partition(f"{folder}/")[2].split(" ")[0] for line in lines] == ["locked.csv:1:7:", "rokcing.csv:"]
@@ -125,7 +127,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) 
     answered(tmp_path / "mine", 1.001, ("locked",))
     done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
     assert done.returncode == 0 and "kept in " in done.stdout
-    assert typed("field", "--from", tmp_path / "submissions", "--out", tmp_path / "site").returncode == 0
+    assert typed("judge", tmp_path / "submissions", "--site", tmp_path / "site").returncode == 0
     answered(tmp_path / "mine", 1.002, ("locked",))
     done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
     assert done.returncode == 2 and "holds another answer, which is not overwritten" in done.stderr
@@ -135,7 +137,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) 
     ("arguments", "said"),
     [
         (("judge", "locked", "--solver", "dda", "--keep", "kept"), "--keep: goes with a folder of answers"),
-        (("field", "--from", "none"), "must be a directory with submission.json"),
+        (("judge", "none", "--site", "s"), "must be a directory with submission.json"),
         (("judge", "mine", "--set", "time.step=1"), "--set: goes with --scene or --solver"),
         (("judge", "mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
     ],

@@ -8,7 +8,6 @@ import re
 import pytest
 from conftest import SCENE, typed
 
-from validation.gallery.pages import _data, environment
 from validation.runs.text import visible
 
 CLEAR, OVERRIDE, SCRIPT = "\x1b[2J", "\u202e", "<script>alert(1)</script>"
@@ -27,18 +26,18 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     ran = typed("run", "evil.toml", "--verbose", "--results", "r", "--summary", summary, cwd=place)
     assert ran.returncode == 1
     shown = typed("show", "evil.toml", cwd=place)
-    assert typed("gallery", "--results", "r", "--out", "g", cwd=place).returncode == 0
+    assert typed("report", "--results", "r", "--site", "g", cwd=place).returncode == 0
     html = "\n".join(path.read_text() for path in (place / "g").glob("*.html"))
-    return {"terminal": ran.stdout + ran.stderr + shown.stdout, "summary": summary.read_text(), "gallery": html}
+    return {"terminal": ran.stdout + ran.stderr + shown.stdout, "summary": summary.read_text(), "site": html}
 
 
-@pytest.mark.parametrize("page", ["terminal", "summary", "gallery"])
+@pytest.mark.parametrize("page", ["terminal", "summary", "site"])
 def test_control_characters_and_overrides_of_direction_are_escapes(pages: dict[str, str], page: str) -> None:
     assert "\x1b" not in pages[page] and OVERRIDE not in pages[page]
     assert "alert(1)" in pages[page]
 
 
-@pytest.mark.parametrize("page", ["summary", "gallery"])
+@pytest.mark.parametrize("page", ["summary", "site"])
 def test_markup_is_text(pages: dict[str, str], page: str) -> None:
     assert "<script>alert" not in pages[page]
 
@@ -47,16 +46,6 @@ def test_a_cell_of_the_summary_ends_where_it_should(pages: dict[str, str]) -> No
     rows = [line for line in pages["summary"].splitlines() if "alert" in line]
     assert rows
     assert all(len(re.findall(r"(?<!\\)\|", row)) == 5 for row in rows)
-
-
-def test_data_of_a_page_hold_visible_text() -> None:
-    assert OVERRIDE not in json.loads(str(_data({"a": [EVIL, {EVIL: 1.0}], "b": (1.0, 2.0)})))["a"][0]
-
-
-def test_a_template_writes_visible_text_and_leaves_markup() -> None:
-    template = environment().from_string("{{ text }}{{ markup|safe }}")
-    written = template.render(text=OVERRIDE, markup="<b>1</b>")
-    assert written == r"\u202e<b>1</b>"
 
 
 def test_lines_and_tabs_stay() -> None:

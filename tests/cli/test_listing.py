@@ -7,6 +7,7 @@ import pytest
 from conftest import refused, typed
 
 from validation.advice.plain import in_columns
+from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
 from validation.scenes.keys import default_of, keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
@@ -36,12 +37,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
         found[cells[0]] = cells[1:]
     for metric in CATALOGUE.values():
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
-def assert_grouped(lines: list[str]) -> None:
-    groups = "\n".join(lines).split("\n\n")
-    names = [{line.split()[0].partition(".")[0] for line in group.splitlines()} - {"metric"} for group in groups]
-    assert all(len(name) == 1 for name in names) and len(set.union(*names)) == len(names) > 5
 
 
 def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> None:
@@ -76,15 +71,19 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch: pyte
     assert last == ["theirs", "other", "their_package.adapter:solve", "decides", "itself"]
 
 
-def test_the_plain_list_names_all_four_with_their_titles() -> None:
-    shown = typed("list").stdout
-    words = shown.replace(",", "").split()
-    for name in (*study_names(), *scene_names(), *solver_names(), *CATALOGUE):
-        assert name in words
-    lines = [line.split(maxsplit=1) for line in shown.splitlines()]
-    for name, title in (("core", get_study("core").title), ("figures-3-4", load_scene("figures-3-4").title)):
-        assert [name, title] in lines
-    assert_grouped(shown.partition("metrics\n")[2].splitlines()[:-2])
+@pytest.mark.parametrize("word", ["", "keys", "metrics", "scenes", "schemes", "solvers", "studies"])
+def test_lists_fit_a_terminal_and_the_plain_one_a_screen(word: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(output, "terminal_width", lambda: 80)
+    lines = typed("list", *filter(None, [word])).stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert word or len(lines) <= 24
+
+
+def test_the_plain_list_counts_what_the_others_hold() -> None:
+    lines = [line.split(maxsplit=2) for line in typed("list").stdout.splitlines() if line]
+    counts = {name: int(count) for name, count, *_ in lines[:6]}
+    known = {"studies": study_names(), "scenes": scene_names(), "solvers": solver_names(), "metrics": CATALOGUE}
+    assert {name: counts[name] for name in known} == {name: len(names) for name, names in known.items()}
 
 
 def test_another_word_is_bad_input() -> None:

@@ -12,7 +12,8 @@ from conftest import refused, typed
 
 from validation import solve
 from validation.report.chapters.text import parameter_items
-from validation.report.figures.curves import HistoryPanel, axis_of, common_range
+from validation.report.figures.curves import HistoryPanel, common_range
+from validation.runs.columns import axis_of
 from validation.runs.history import History
 from validation.scenes.scene import Scene, parse_scene
 
@@ -126,11 +127,10 @@ def test_a_scene_of_boxes_is_run_reported_and_drawn(rigid_file: Path, tmp_path: 
     assert done.returncode == 0, done.stderr
     assert "displacement" not in done.stdout  # no metric and no gate of a block is advised
     assert typed("report", *results, "--out", tmp_path / "report.pdf").returncode == 0
-    drawn = typed("figures", "boxes", *results, "--out", tmp_path / "figures")
+    drawn = typed("report", "boxes", *results, "--figures", tmp_path / "figures")
     assert drawn.returncode == 0, drawn.stderr
-    assert typed("gallery", *results, "--out", tmp_path / "gallery").returncode == 0
-    page = (tmp_path / "gallery" / "scene-boxes.html").read_text()
-    assert '"x_1":["x, box 1","m"]' in page
+    assert typed("report", *results, "--site", tmp_path / "gallery").returncode == 0
+    assert "boxes-history.svg" in (tmp_path / "gallery" / "scene-boxes.html").read_text()
 
 
 @pytest.mark.parametrize(

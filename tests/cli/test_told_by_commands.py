@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import typer
-from rich.console import Console
 
 from validation import load_scene, response
 from validation.advice import rayleigh
 from validation.advice.rayleigh import scheme_of
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
-from validation.cli.printing import numbers, tables
+from validation.cli.printing import tables
 from validation.gates.changes import changes
 from validation.report.figures import response as figures
+from validation.report.render.terminal import STYLES, lines
+from validation.report.scene import numbers
 from validation.runs.run import Outcome, Run
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
@@ -42,14 +42,12 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
 # ---- counts and colours -------------------------------------------------------------------------------------------
 
 
-def test_what_got_worse_is_red_and_what_got_better_green(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = io.StringIO()
-    terminal = Console(file=told, force_terminal=True, width=150, color_system="standard")
-    monkeypatch.setattr(tables, "console", lambda: terminal)
+def test_what_got_worse_is_red_and_what_got_better_green() -> None:
     records = [[{"study": "s", "id": name, "verdict": word, "value": 1.0, "band": [0.0, 1.0]}
                 for name, word in (("a", a), ("b", b))] for a, b in (("PASS", "FAIL"), ("FAIL", "PASS"))]  # fmt: skip
-    tables.print_changes(changes(*records))  # type: ignore[arg-type]
-    assert "\x1b[1;31mworse" in told.getvalue() and "\x1b[32mbetter" in told.getvalue()
+    blocks = tables.change_blocks(changes(*records))  # type: ignore[arg-type]
+    styles = {text.split()[0]: STYLES[word] for text, word in lines(blocks, 150) if word}
+    assert styles == {"worse": "bold red", "better": "green"}
 
 
 # ---- show ---------------------------------------------------------------------------------------------------------

@@ -329,7 +329,7 @@ def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> 
     done = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "r.pdf").read_bytes().startswith(b"%PDF-")
-    done = typed("figures", stem, "--results", tmp_path / "r", "--out", tmp_path / "f")
+    done = typed("report", stem, "--results", tmp_path / "r", "--figures", tmp_path / "f")
     assert done.returncode == 0, done.stderr
 
 
@@ -345,4 +345,4 @@ def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(
     (said,) = [block.text for block in blocks if isinstance(block, Callout) and block.tone == "fail"]
     assert "the chapter of other cannot be drawn from these results (IndexError: list index out of range)" in said
     assert Heading("A small scene", 2) in blocks or any(isinstance(block, FigureBlock) for block in blocks)
-    assert "IndexError" in refused("figures", "other", "--results", tmp_path / "r", "--out", tmp_path / "f")
+    assert "IndexError" in refused("report", "other", "--results", tmp_path / "r", "--figures", tmp_path / "f")

@@ -25,7 +25,7 @@ from dda.one_block import response as dda_vibration
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
 from dda.scheme import blocked, newmark
-from dda.system import joints, subdivision, system
+from dda.system import glued, joints, subdivision, system
 from dda.system import solution as system_solution
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
@@ -37,6 +37,7 @@ from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
+from fem_reference.plane import model as plane_model
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
@@ -118,6 +119,12 @@ SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
 SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
+
+# Glued blocks in the plane, and the body of their outline
+GLUED_EDGES = Seam(glued, glued.shared_edges)
+GLUED_LOAD = Seam(glued, glued._traction_of)
+PLANE_MATERIAL = Seam(dda, dda.Material)
+FEM_PLANE_STIFFNESS = Seam(plane_model.PlaneModel, plane_model.PlaneModel.elastic)
 
 # Blocks that turn
 ROLLING_SETTING = Seam(rolling.RollingModel, rolling.RollingModel.setting)

@@ -13,7 +13,7 @@ from faults.seams import Seam
 from validation.solvers.registry import BUILT_IN
 
 ROOT = Path(__file__).parents[2]
-KNOWING = ("solvers/", "studies/", "suite/", "report/", "gallery/", "cli/")  # that declare, draw and tell solvers
+KNOWING = ("solvers/", "studies/", "suite/", "report/", "cli/")  # rooms that declare, draw and tell named solvers
 # What the other modules name today; it may only become less.
 NAMED = {
     "entry/siblings.py": {"dda"},  # the package

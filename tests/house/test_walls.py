@@ -143,7 +143,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
 
 def test_only_figures_import_matplotlib_and_only_one_module_the_pdf_writer() -> None:
     assert {path for path in importers("validation", "matplotlib") if not path.startswith("report/figures/")} == set()
-    assert importers("validation", "typst") == {"report/typesetting.py"}
+    assert importers("validation", "typst") == {"report/render/pdf.py"}
 
 
 def test_rooms_say_what_they_are_for() -> None:

@@ -41,10 +41,10 @@ def test_each_column_has_its_error_and_what_is_allowed_in_per_cent(drawn: dict[s
     (said,) = [block.text for block in blocks if isinstance(block, Callout)]
     assert said == "FAIL; rotation not judged: it is 12 % off in displacement_m, where 5 % is allowed."
     columns, beside, about = [block for block in blocks if isinstance(block, Table)]
-    assert [column.title for column in columns.columns][2:] == ["Error [%]", "Allowed [%]", "Set by", "Until [s]"]
+    assert [column.title for column in columns.columns][2:] == ["Error", "Allowed", "Set by", "Until [s]"]
     assert columns.rows == (
-        ("displacement_m", "FAIL", "12", "5", "block.young", "0.3000"),
-        ("contact_pressure_Pa", "PASS", "1.2", "2.5", "load.pressure", "0.2000"),
+        ("displacement_m", "FAIL", "12 %", "5 %", "block.young", "0.3000"),
+        ("contact_pressure_Pa", "PASS", "1.2 %", "2.5 %", "load.pressure", "0.2000"),
         ("rotation_rad", "not judged", "–", "–", "–", "0.3000"),
     )
     assert columns.notes[-1] == "rotation_rad: it is zero throughout."

@@ -16,7 +16,7 @@ from validation.report.book import build, ordered_studies
 from validation.report.figures import histories
 from validation.report.front.groups import groups_of_studies
 from validation.report.front.pages import front_pages
-from validation.report.typesetting import write_document
+from validation.report.render.pdf import write_document
 from validation.suite.folders import get_study, judged_studies
 
 pytestmark = pytest.mark.long  # runs small studies; numbers of rows made by hand are read in the short tests

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from validation.gallery.pages import _cited
 from validation.report import front
-from validation.report.blocks import Paragraph, Part, References
+from validation.report.blocks import Block, Paragraph, References
+from validation.report.names import quoted
 from validation.report.references import PAPER, identity, references
-from validation.report.typesetting import typeset
+from validation.report.render.html import page
+from validation.report.render.pdf import typeset
 from validation.suite.folders import sources_of, study_names
 
 PLACES = {"book": "publisher", "phdthesis": "school", "mastersthesis": "school", "inproceedings": "booktitle"}
@@ -40,7 +41,7 @@ def test_every_source_says_who_wrote_what_when_and_where() -> None:
 @pytest.mark.parametrize("lists", [True, False])
 def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: Path) -> None:
     """A key that is none stays as it stands, as every key does in a document without a list."""
-    blocks: list[Part] = [Paragraph("As @housner1963 has it, and me@nowhere2020."), *[References()] * lists]
+    blocks: list[Block] = [Paragraph("As @housner1963 has it, and me@nowhere2020."), *[References()] * lists]
     (tmp_path / "r.pdf").write_bytes(typeset(tmp_path, blocks))
     (page,) = PdfReader(tmp_path / "r.pdf").pages
     text = " ".join(page.extract_text().split())
@@ -48,8 +49,9 @@ def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: P
     assert ("inverted pendulum" in text) == lists and ("@housner1963" in text) != lists
 
 
-def test_the_gallery_links_keys_and_nothing_else() -> None:
-    assert _cited("<b> @kane1999 @me2020") == ('&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020')
+def test_the_site_links_keys_and_nothing_else() -> None:
+    text = page("t", [Paragraph("<b> @kane1999 @me2020 " + quoted("@kane1999"))])
+    assert '&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020 @kane1999</p>' in text
 
 
 def test_the_first_page_names_what_the_runs_know() -> None:

@@ -133,6 +133,12 @@ def test_a_figure_compares_cases_over_the_time_that_all_of_them_run(drawn: dict[
     assert names_at(figure.axes[1])["dda"][0] == pytest.approx(-11)
 
 
+def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """Ten steps of 1e-4 s end before the first of 0.02 s."""
+    cases = [made_case(stepped(step), {"dda": {}}, {"dda": made_history(step, np.ones(10))}) for step in (0.02, 1e-4)]
+    assert chapters.history_block(made_group(*cases), ["displacement"], tmp_path).caption.startswith("1 of 2 cases.")
+
+
 def test_pictures_take_differences_under_the_same_scheme_where_they_can() -> None:
     history, names = made_history(0.1, [1.0]), ("dda", "continuum", "fem", "bar")
     found = [made_case(BASE, {}, dict.fromkeys(names[:count], history)).reference for count in (4, 3, 2, 1)]

@@ -22,7 +22,7 @@ import dda
 from dda.one_block.natural_modes import ModalForm
 from validation.engine.run import run_study
 from validation.gates.gate import Gate, Status
-from validation.report.book import build, figures
+from validation.report.book import build, write_figures
 from validation.suite.folders import get_study
 
 # ---- columns ---------------------------------------------------------------------------------------------------------
@@ -256,4 +256,4 @@ def test_every_gate_passes_and_the_chapter_is_written(name: str, tmp_path: Path,
     results = beside(finished_cases, tmp_path / "results")
     assert {verdict.status for verdict in run_study(get_study(name), results)} == {Status.PASS}
     assert build(results, tmp_path / "report.pdf").stat().st_size > 20_000
-    assert all(path.exists() for path in figures(name, results, tmp_path / "figures"))
+    assert all(path.exists() for path in write_figures(results, tmp_path / "figures", [name]))

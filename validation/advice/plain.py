@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 Line = tuple[str, ...]
@@ -30,27 +31,52 @@ def plain(value: Any) -> Any:
 
 
 def in_columns(lines: Sequence[Line], width: int | None = None, indent: str = "") -> str:
-    """Return lines with their columns aligned.
+    """Return lines with their columns aligned, as `in_rows` sets them."""
+    return "\n".join(itertools.chain.from_iterable(in_rows(lines, width, indent)))
 
-    The last column is as long as it likes, or wrapped to a width: beside the others, or below where there is no room.
+
+def in_rows(
+    lines: Sequence[Line], width: int | None = None, indent: str = "", right: Collection[int] = ()
+) -> list[list[str]]:
+    """Return the rows of a table, a list of lines each, with their columns aligned.
+
+    The last column is as long as it likes, or wrapped to a width: beside the others, or, where there is no room, below
+    the columns that the width has room for, with those that it has none for.
+
+    Parameters
+    ----------
+    lines
+        The cells of each row; no cells are an empty line.
+    width
+        Characters of a line; None where lines are not broken.
+    indent
+        What each line begins with.
+    right
+        Which columns end, and do not begin, below one another.
     """
-    widths = [max(map(len, column)) for column in zip(*filter(None, lines), strict=True)][:-1]
-    offset = len(indent) + sum(n + 2 for n in widths)
-    rows: list[str] = []
+    columns = [*zip(*filter(None, lines), strict=True)]
+    widths = [max(map(len, column)) for column in columns]
+    offsets = [len(indent), *itertools.accumulate((n + 2 for n in widths), initial=len(indent))][1:]
+    count = max(len(columns) - 1, 0)  # columns beside which the last one is wrapped
+    fits_beside = not columns or width is None or offsets[count] + NARROW <= width
+    if width is not None and not fits_beside:
+        count = max(1, sum(offset - 2 <= width for offset in offsets[1:count + 1]))
+    rows: list[list[str]] = []
     for line in lines:
-        if not line:
-            rows.append("")
-            continue
-        *cells, last = line
-        start = indent + "".join(cell.ljust(n + 2) for cell, n in zip(cells, widths, strict=True))
-        if width is None or offset + len(last) <= width:
-            rows.append((start + last).rstrip())
-        elif width - offset >= NARROW:
-            rows += textwrap.wrap(
-                last, width, initial_indent=start, subsequent_indent=" " * offset, break_on_hyphens=False
+        padded = zip(line, widths, strict=False)  # no cells are an empty line
+        cells = [cell.rjust(n) if i in right else cell.ljust(n) for i, (cell, n) in enumerate(padded)]
+        whole = (indent + "  ".join(cells)).rstrip() if line else ""
+        start = indent + "".join(f"{cell}  " for cell in cells[:count])
+        rest = "  ".join(filter(None, line[count:]))
+        if width is None or len(whole) <= width:
+            rows.append([whole])
+        elif fits_beside:
+            follow = " " * offsets[count]
+            rows.append(
+                textwrap.wrap(rest, width, initial_indent=start, subsequent_indent=follow, break_on_hyphens=False)
             )
         else:
             below = indent + "    "
-            rows.append(start.rstrip())
-            rows += textwrap.wrap(last, max(width, NARROW), initial_indent=below, subsequent_indent=below)
-    return "\n".join(rows)
+            wrapped = textwrap.wrap(rest, max(width, NARROW), initial_indent=below, subsequent_indent=below)
+            rows.append([start.rstrip(), *wrapped])
+    return rows

@@ -16,8 +16,6 @@ from validation.cli import (
     compare,
     contact,
     damping,
-    field,
-    gallery,
     judge,
     report,
     run,
@@ -36,21 +34,19 @@ COMMANDS = (
     run,
     show,
     report,
-    gallery,
     claims,
     damping,
     contact,
     compare,
     judge,
-    field,
     verdicts,
     waves,
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("list", "show", "run", "solve"),
-    "Results": ("report", "figures", "gallery", "rows", "claims", "diff"),
-    "Your own code or program": ("judge", "field", "compare", "export-pack"),
+    "Results": ("report", "rows", "claims", "diff"),
+    "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))

@@ -10,15 +10,15 @@ import typer
 
 from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOption, _progress, app, one_case
 from validation.cli.judging import all_defects, judged_answer, judged_sets, made_directory
-from validation.cli.printing.output import echo, echo_json
+from validation.cli.printing.output import echo, echo_json, print_blocks
 from validation.errors import InputError
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
 if TYPE_CHECKING:
-    from validation.gallery.answers import JudgedSet
     from validation.problems.problem import Problem
     from validation.report.chapters.judged import JudgedAnswer
+    from validation.report.site.submissions import JudgedSet
     from validation.runs.history import History
     from validation.runs.run import Run
 
@@ -52,6 +52,14 @@ def judge(
         Path | None,
         typer.Option(help="Copy the judged answers to DIR/PROGRAM/VERSION/SETTINGS, see docs.", metavar="DIR"),
     ] = None,
+    site: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write the site of all submissions below the directory, PROGRAM/VERSION/SETTINGS: a table, a page a "
+            "program, badges, verdicts.json; verdicts leave the exit status alone.",
+            metavar="DIR",
+        ),
+    ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -69,6 +77,13 @@ def judge(
     Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
     my_solver:solve[/bold]
     """
+    if site is not None:
+        given = {"--solver": solver, "--scene": scene, "--out": out, "--keep": keep, "--set": assignments}
+        for option, value in given.items():
+            if value:
+                raise InputError("excludes --site", field=option, value=value)
+        _write_submissions(Path(target), site)
+        return
     if solver is None and scene is None and _has_answers(Path(target)):
         _refuse_set(assignments)
         with all_defects():
@@ -82,7 +97,7 @@ def judge(
         directory = Path(target) if out is None and solver is None else out
         written: list[Path] = []
         if directory is not None:
-            from validation.gallery.judged import write_judged
+            from validation.report.site.judged import write_judged
 
             progress(3, 3, "page and badge")
             written = write_judged(judged, program, made_directory(directory))
@@ -119,9 +134,9 @@ def _refuse_set(assignments: list[str] | None) -> None:
 
 def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool) -> None:
     """Judge folders of answers, write their site and keep them where that is asked for."""
-    from validation.gallery.answers import summary, verdicts, write_site
     from validation.problems import answers
     from validation.problems.judge import Word
+    from validation.report.site.submissions import summary, verdicts, write_site
 
     with _progress("judge", between_calls=True) as progress:
         sets = answers.read_sets(root, progress=progress)
@@ -141,18 +156,31 @@ def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool
         raise typer.Exit(GATE_FAILED)
 
 
+def _write_submissions(source: Path, out: Path) -> None:
+    """Judge all submitted answers and write their site."""
+    from validation.problems.answers import read_sets
+    from validation.report.site.submissions import write_site
+
+    with all_defects(), _progress("judge", between_calls=True) as progress:
+        sets = read_sets(source, in_layout=True, progress=progress)
+        page = write_site(judged_sets(sets, progress), out, progress)
+    echo(f"wrote {page}: {len(sets)} folder{'s' if len(sets) > 1 else ''} of answers")
+
+
 def _print_set(judged: JudgedSet) -> None:
     """Print the verdict on each answer of a folder, then how many passed."""
-    from validation.gallery.answers import NOT_ANSWERED, cells, headline
+    from validation.report.blocks import TableColumn, table
+    from validation.report.site.submissions import NOT_ANSWERED, cells, headline
 
     name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
     echo(f"{name}: {headline(judged)}\n")
     answered_cells = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
-    width = max(len(text) for text in ["problem", *(cell.problem for cell in answered_cells)])
-    echo(f"  {'problem':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what decides, and the cause")
+    rows = []
     for cell in answered_cells:
         explanation = "; ".join(text for text in (cell.column, cell.reason) if text)
-        echo(f"  {cell.problem:<{width}} {cell.word:<12} {cell.error:>11} {cell.allowed:>8}  {explanation}".rstrip())
+        rows.append((cell.problem, cell.word, cell.error, cell.allowed, explanation))
+    error, allowed = (TableColumn(title, "decimal") for title in ("error", "allowed"))
+    print_blocks([table(("problem", "verdict", error, allowed, "what decides, and the cause"), rows)])
     missing = len(cells(judged)) - len(answered_cells)
     echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
@@ -249,29 +277,8 @@ def _completed_history(run: Run, case: str, solver: str) -> History:
 
 def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
     """Print the verdict first, then what it rests on."""
-    from validation.problems.data import united
-    from validation.problems.judge import Word
-    from validation.report.chapters.judged import datum, headline, per_cent, reached
+    from validation.report.chapters.judged import verdict_blocks
 
-    echo(f"{program} on {judged.problem.name}: {headline(judged)}")
-    if judged.judgement.word is Word.PARTIAL:
-        missing = ", ".join(map(united, judged.judgement.withheld))
-        echo(f"no full PASS (exit status {GATE_FAILED}): the problem asks for {missing} too; report it to be judged")
-    for sentence in judged.warnings:
-        echo(f"warning: {sentence}")
-    if judged.cause is not None:
-        echo(f"cause: {judged.cause.sentence}")
-        if judged.cause.passing_step is not None:
-            echo(f"this scheme passes at a step of {judged.cause.passing_step:g} s")
-        echo(reached(judged))
-        if judged.cause.would_tell:
-            echo(f"what would tell: {judged.cause.would_tell}")
-    width = max([25, *(len(united(column.name)) for column in judged.judgement.columns)])
-    echo(f"\n  {'column':<{width}} {'verdict':<12} {'error':>11} {'allowed':>8}  what one per cent changes")
-    for column in judged.judgement.columns:
-        why = datum(column, judged.standard) or column.reason
-        error = per_cent(column.error)
-        allowed = per_cent(column.band)
-        echo(f"  {united(column.name):<{width}} {column.word:<12} {error:>11} {allowed:>8}  {why}")
+    print_blocks(verdict_blocks(judged, f"{program} on {judged.problem.name}: "))
     for path in written:
         echo(f"wrote {path}")

@@ -1,4 +1,4 @@
-"""What the commands `judge` and `field` share: answers judged, defects of submitted files printed."""
+"""What `judge` does with files: answers judged, defects of submitted files printed."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from validation.cli.printing.output import echo
 from validation.errors import InputError
 
 if TYPE_CHECKING:
-    from validation.gallery.answers import JudgedSet
     from validation.problems.answers import AnswerSet
     from validation.problems.problem import Problem
     from validation.report.chapters.judged import JudgedAnswer
     from validation.report.chapters.judged_boxes import JudgedBoxes
+    from validation.report.site.submissions import JudgedSet
     from validation.runs.history import History
 
 Progress = Callable[[int, int, str], None]
@@ -71,11 +71,11 @@ def judged_answer(
 
 def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet]:
     """Judge all answers of folders."""
-    from validation.gallery.answers import JudgedSet
     from validation.problems.boxes import measured
     from validation.problems.problem import Problem
     from validation.problems.questions import BoxQuestion
     from validation.report.chapters.judged_boxes import JudgedBoxes
+    from validation.report.site.submissions import JudgedSet
 
     total = sum(len(answer_set.answers) for answer_set in sets)
     number = 0

@@ -1,4 +1,4 @@
-"""Commands that render: ``report`` and ``figures``."""
+"""The command ``report``: the results as PDF, as a site, as figures."""
 
 from __future__ import annotations
 
@@ -13,30 +13,67 @@ if TYPE_CHECKING:
 from validation.cli.app import RESULTS, ResultsOption, _progress, app
 from validation.cli.printing.output import echo
 
+PDF = Path("reports/report.pdf")
+
 
 @app.command()
 def report(
-    out: Annotated[Path, typer.Option(help="PDF file to write.", metavar="FILE.pdf")] = Path("reports/report.pdf"),
+    studies: Annotated[
+        list[str] | None,
+        typer.Argument(help="Studies or scenes with results (default: all).", metavar="[STUDY]..."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help=f"PDF file to write, by default {PDF}.", metavar="FILE.pdf")
+    ] = None,
+    site: Annotated[
+        Path | None,
+        typer.Option(help="Write a static site instead: a new directory, or a site to replace.", metavar="DIR"),
+    ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
+    ] = None,
+    docs: Annotated[
+        str,
+        typer.Option(help="With --site: folder of the documentation's pages, seen from it.", metavar="ADDRESS"),
+    ] = "",
     appendix: Annotated[
-        bool, typer.Option("--appendix", help="List the gates that passed, by the reason of their band.")
+        bool, typer.Option("--appendix", help="List the gates that passed, by the reason of their band, in the PDF.")
     ] = False,
     results: ResultsOption = RESULTS,
 ) -> None:
-    """Write the PDF report: a chapter for each study in the results directory; nothing is computed.
+    """Write the results as PDF, as a site with calculators, or as figures; nothing is computed.
 
-    Example: [bold]dda-validate report --out report.pdf[/bold]
+    A site works from its files, without a network; open index.html.
+
+    Example: [bold]dda-validate report --out report.pdf[/bold] or [bold]dda-validate report figures-3-4 --figures
+    figures[/bold]
     """
     from validation.errors import InputError
-    from validation.report.book import build
+    from validation.report.book import build, write_figures
     from validation.runs.results import Results
 
-    if out.suffix.lower() != ".pdf":
+    if docs and site is None:
+        raise InputError("goes with --site", field="--docs", value=repr(docs))
+    if out is None and site is None and figures is None:
+        out = PDF
+    if out is not None and out.suffix.lower() != ".pdf":
         raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
     store = Results(results)
-    with _progress("report", between_calls=True):
-        page = build(store, out, appendix)
+    names = studies or None
+    if out is not None:
+        with _progress("report", between_calls=True):
+            build(store, out, names, appendix)
+        echo(f"wrote {out}")
+    if site is not None:
+        from validation.report.site import pages
+
+        with _progress("site") as progress:
+            first = pages.build(store, site, names, progress, docs.rstrip("/"))
+        echo(f"wrote {first} ({pages.size(site) / 1e6:.1f} MB in all)")
+    if figures is not None:
+        for path in write_figures(store, figures, names):
+            echo(f"wrote {path}")
     print_unread(store)
-    echo(f"wrote {page}")
 
 
 def print_unread(results: Results) -> None:
@@ -45,20 +82,3 @@ def print_unread(results: Results) -> None:
 
     for study, reason in unread_studies(results, ordered_studies(results)).items():
         echo(f"note: {study} is left out: {reason}", err=True)
-
-
-@app.command()
-def figures(
-    study: Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")],
-    out: Annotated[Path, typer.Option(help="Directory for the SVG and PNG files.", metavar="DIR")] = Path("figures"),
-    results: ResultsOption = RESULTS,
-) -> None:
-    """Write a study's figures as SVG and PNG.
-
-    Example: [bold]dda-validate run figures-3-4 && dda-validate figures figures-3-4 --out figures[/bold]
-    """
-    from validation.report.book import figures as write_figures
-    from validation.runs.results import Results
-
-    for path in write_figures(study, Results(results), out):
-        echo(f"wrote {path}")

@@ -74,25 +74,21 @@ def list_command(
         typer.Argument(help="keys, metrics, schemes, scenes, solvers or studies: that list in full.", metavar="LIST"),
     ] = None,
 ) -> None:
-    """List studies, built-in scenes, solvers and metrics; or one of these, or all keys of a scene, in full.
+    """List what there is: studies, scenes, solvers, schemes, metrics, keys of a scene; or one of these in full.
 
     Example: [bold]dda-validate list[/bold] or [bold]dda-validate list metrics[/bold]
     """
     from validation.advice.limits import check_choice
-    from validation.advice.plain import in_columns
     from validation.cli.printing.listing import LISTS, short
-    from validation.cli.printing.output import columns, terminal_width
+    from validation.cli.printing.output import broken, columns
 
     if what is not None:
         check_choice("list", what, sorted(LISTS))
         echo(columns(LISTS[what]()))
         return
-    for title, lines in short().items():
-        echo(f"{title}\n{in_columns(lines, terminal_width(), '  ')}\n")
-    echo(
-        "dda-validate list NAME shows one of the four in full, list keys what a scene may state,\n"
-        "dda-validate show SCENE a scene and its numbers"
-    )
+    echo(columns(short()))
+    echo()
+    echo(broken("dda-validate list NAME shows one of them in full, dda-validate show SCENE a scene and its numbers"))
 
 
 @app.command()
@@ -272,20 +268,21 @@ def _print_answer(answer: RunAnswer, verbose: bool) -> None:
     """Print every gate where there are few or all are asked for, then the answer, then what to do with a scene."""
     from validation.cli.printing import tables
     from validation.cli.printing.answer import lines
-    from validation.cli.printing.output import width
+    from validation.cli.printing.output import print_blocks, print_lines, width
     from validation.scenes.scene import scene_names
 
     if answer.verdicts and (verbose or (answer.user_scenes and len(answer.verdicts) <= GATES_LISTED)):
-        tables.print_verdicts(answer.verdicts, answer.results, answer.names)
+        print_blocks([tables.verdict_table(answer.verdicts, answer.results, answer.names)])
+        echo()
     if verbose:
         tables.print_ends(answer.results, answer.names)
-    tables.print_lines(lines(answer, width()))
+    print_lines(lines(answer, width()))
     if answer.changes is not None:
-        tables.print_changes(list(answer.changes))
+        print_blocks(tables.change_blocks(answer.changes))
     for judged in answer.runs:
         name = judged.study.name
         if name in answer.user_scenes and not judged.verdicts:
-            tables.print_differences(answer.results, name, name not in scene_names())
+            print_blocks(tables.difference_blocks(answer.results, name, name not in scene_names()))
 
 
 @app.command()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from validation.cli.app import JsonOption, SceneArgument, SetOption, app, print_warnings, stated_scene
-from validation.cli.printing.output import echo, echo_json
+from validation.cli.printing.output import echo_json
 
 
 @app.command()
@@ -15,12 +15,15 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
     Example: [bold]dda-validate show figures-3-4[/bold] or [bold]dda-validate show my-scene.toml --set
     time.step=0.001[/bold]
     """
-    from validation.cli.printing import scene_page
-    from validation.cli.printing.output import terminal_width
+    from validation.cli.printing.output import print_blocks, terminal_width
+    from validation.report.blocks import Heading, Paragraph
+    from validation.report.scene.page import SceneDescription, as_data
 
     stated = stated_scene(scene, assignments)
     print_warnings(stated)
     if as_json:
-        echo_json(scene_page.as_data(stated))
-    else:
-        echo("\n".join(scene_page.page(stated, scene, terminal_width())))
+        echo_json(as_data(stated))
+        return
+    title = Heading(f"{stated.name}: {stated.title or 'a scene'}")
+    description = SceneDescription.of(stated).blocks(terminal_width())
+    print_blocks([title, *description, Paragraph(f"next: dda-validate run {scene}")])

@@ -20,13 +20,13 @@ def diff(
 
     Example: [bold]dda-validate diff main/verdicts.json reports/results[/bold]
     """
-    from validation.cli.printing.output import tolerate_closed_pipe
-    from validation.cli.printing.tables import print_changes
+    from validation.cli.printing.output import print_blocks, tolerate_closed_pipe
+    from validation.cli.printing.tables import change_blocks
     from validation.gates.changes import changes, read_verdicts
 
     differences = changes(read_verdicts(before), read_verdicts(after))
     with tolerate_closed_pipe():
-        print_changes(differences)
+        print_blocks(change_blocks(differences))
     status = GATE_FAILED if any(change.worse for change in differences) else PASSED
     raise typer.Exit(status)
 

@@ -70,3 +70,9 @@ def measured(m: Measurable, part: str) -> Value:
     if m.modes and m.modes[0].alias(m.step) is not None:
         return ALIAS
     return float(getattr(m.pole, part)) if isinstance(m.pole, Pole) else m.pole
+
+
+def natural(m: Measurable, number: int) -> Value:
+    """Return the natural frequency of a number from 1 on, in rising order [Hz]."""
+    frequencies = sorted(mode.frequency for mode in m.modes)
+    return frequencies[number - 1] / (2 * math.pi) if len(frequencies) >= number else NOT_REPORTED

@@ -12,12 +12,13 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.problems.bands import standard
-from validation.problems.data import in_names, kind, unit, united
+from validation.problems.data import in_names, united
 from validation.problems.defects import Defects, Place
 from validation.problems.judge import SAME_INSTANT
 from validation.problems.pack import TIME
 from validation.problems.questions import BoxQuestion, Question
 from validation.problems.stated import read_text
+from validation.runs.columns import split, unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes.unknown import did_you_mean
 from validation.solvers.user import UNITS, factor, force
@@ -132,7 +133,7 @@ def _is_header(path: Path, rows: Sequence[Row], problem: Question, columns: Sequ
     before = len(defects)
     header = rows[0]
     names = [cell.text for cell in header]
-    unit_by_name = {TIME: "s"} | {united(column): unit(column) for column in columns}
+    unit_by_name = {TIME: "s"} | {united(column): unit_of(column) for column in columns}
     expected = ",".join(unit_by_name)
     first = header[0]
     for mark, separator in SEPARATORS.items():
@@ -267,7 +268,7 @@ def _differences(history: History, problem: Question) -> Iterator[tuple[str, str
     """Yield the columns that are the exact ones, or begin where they do, in another unit or of another sign."""
     if isinstance(problem, BoxQuestion):
         for column, values in history.columns.items():
-            plain, number = kind(column)
+            plain, number = split(column)
             start = problem.scene.rigid.starts[int(number) - 1][1] if plain == "y" and problem.scene.rigid else 0.0
             for ratio, other_unit in UNITS[DISPLACEMENT].items():
                 if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
@@ -276,7 +277,7 @@ def _differences(history: History, problem: Question) -> Iterator[tuple[str, str
         return
     exact = standard(problem).exact
     for column, values in history.columns.items():
-        plain = kind(column)[0]
+        plain = split(column)[0]
         if plain not in UNITS or column not in exact.columns:
             continue
         difference = factor(plain, values, exact.columns[column])

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field
 
 from validation.errors import InputError
-from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.columns import kind_of, split, unit_of
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
@@ -17,40 +17,6 @@ PACK: Final = "3.1"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 PROBLEM, SUBMISSION = "dda-validation problem", "dda-validation submission"
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
-UNITS = {
-    DISPLACEMENT: "m",
-    "horizontal_displacement": "m",
-    "rotation": "rad",
-    PRESSURE: "Pa",
-    "stress": "Pa",
-    "velocity": "m/s",
-    "force": "Pa",
-    "gap": "m",
-    "slip": "m",
-    "x": "m",
-    "y": "m",
-    "angle": "rad",
-}
-MEANINGS = {
-    DISPLACEMENT: "vertical displacement of the centroid, upwards positive",
-    "horizontal_displacement": "horizontal displacement of the centroid, towards +x, which is down a slope",
-    "rotation": "rotation since t = 0, counter-clockwise positive",
-    PRESSURE: "sum of the normal forces of the springs over the length of the base, compression positive",
-    "stress": "stress at the {n}. of the heights, compression positive",
-    "velocity": "velocity at the {n}. of the heights, upwards positive (of shear: across the column)",
-    "force": (
-        "stress of the contact at the {n}. of the heights on what is above it: compression positive, 0 while it is "
-        "open (of shear: along the positive displacement)"
-    ),
-    "gap": "opening of the contact at the {n}. of the heights, 0 while it is closed",
-    "slip": "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below",
-}
-OF_BOXES = {
-    "x": "position of the centre of box {n} along the ground, down a slope positive",
-    "y": "height of the centre of box {n} above the ground, normal to it",
-    "angle": "angle of box {n}, counter-clockwise positive, not folded",
-}
-AT_HEIGHT = "displacement at the {n}. of the heights, upwards positive (of shear: across the column)"
 INFINITE: Literal["inf"] = "inf"  # for which JSON has no number
 OrInfinite = Annotated[float, Field(allow_inf_nan=False)] | Literal["inf"]
 UNIT_OF_NAME = re.compile(r"_(m|kg_per_m3|Pa|m_per_s2?|deg|N_per_m|Pa_per_m|Pa_s_per_m|Hz|s)$")
@@ -59,16 +25,10 @@ PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Ver
 Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 
-def unit(column: str) -> str:
-    """Return the unit of a history's column."""
-    return UNITS[kind(column)[0]]
-
-
 def united(column: str) -> str:
     """Return a history's column as the pack names it, with its unit; a number of rigid boxes has its own name."""
-    if kind(column)[0] not in UNITS:
-        return column
-    return f"{column}_{in_names(unit(column))}"
+    unit = unit_of(column)
+    return f"{column}_{in_names(unit)}" if unit else column
 
 
 def in_names(symbol: str) -> str:
@@ -76,18 +36,10 @@ def in_names(symbol: str) -> str:
     return symbol.replace("/", "_per_")
 
 
-def kind(column: str) -> tuple[str, str]:
-    """Return what a column is of, and the number of its height or nothing."""
-    plain, _, number = column.rpartition("_")
-    return (plain, number) if number.isdigit() else (column, "")
-
-
 def meaning(column: str) -> str:
-    """Return what a column means."""
-    plain, number = kind(column)
-    if plain in OF_BOXES:
-        return OF_BOXES[plain].format(n=number)
-    return (AT_HEIGHT if number and plain == DISPLACEMENT else MEANINGS[plain]).format(n=number)
+    """Return what a column of a problem means."""
+    kind = kind_of(column)
+    return "" if kind is None else kind.meaning.format(n=split(column)[1])
 
 
 class Data(BaseModel):

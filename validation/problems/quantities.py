@@ -10,8 +10,8 @@ import numpy as np
 
 from validation.metrics.poles import poles
 from validation.metrics.values import largest
-from validation.problems.data import kind, unit
 from validation.problems.problem import Problem
+from validation.runs.columns import split, unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -88,12 +88,12 @@ def _numbers_of_contacts(scene: Scene) -> Iterator[Number]:
     """Yield what the contacts of a column come to: what opened or slipped in the end, the largest force, the motion."""
     for part in ("slip", "gap", "force", "velocity", DISPLACEMENT):
         for name in reversed(scene.run.columns):  # the uppermost first, which moves most
-            if kind(name)[0] != part:
+            if split(name)[0] != part:
                 continue
             if part == "force":
-                yield Number(f"largest {name}", unit(name), name, lambda t, x: largest(x))
+                yield Number(f"largest {name}", unit_of(name), name, lambda t, x: largest(x))
             else:
-                yield Number(f"{name} in the end", unit(name), name, last)
+                yield Number(f"{name} in the end", unit_of(name), name, last)
 
 
 def last(time: Array, x: Array) -> float:

@@ -1,15 +1,16 @@
-"""Blocks that a chapter is made of."""
+"""What a page is made of, whether it is printed, on a site or in a terminal: blocks of plain data."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from validation.runs.records import Manifest
-from validation.runs.results import Results
+if TYPE_CHECKING:
+    from validation.runs.records import Manifest
+    from validation.runs.results import Results
 
 Kind = Literal["text", "decimal", "verdict", "outcome", "code", "id", "fill"]  # of the cells of a column
 
@@ -149,11 +150,53 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """Lines of characters whose places matter, such as a drawing in text."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A page that others lead to: its file, its name, what is on it, and the file of a picture."""
+
+    target: str
+    title: str
+    text: str = ""
+    image: str = ""
+
+
+@dataclass(frozen=True)
+class Links:
+    """A list of pages."""
+
+    items: tuple[Link, ...]
+
+
+@dataclass(frozen=True)
 class References:
     """The sources that the document cites, numbered; without it keys are not set as numbers."""
 
 
-Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak  # of chapters
-Part = Block | Points | Beside | References  # of the first and the last pages
+Block = (
+    Heading | Paragraph | Table | FigureBlock | Callout | PageBreak | Points | Beside | Listing | Links | References
+)
 Blocks = list[Block]
-Chapter = Callable[[Results, Manifest, Path], Blocks]
+Chapter = Callable[["Results", "Manifest", Path], Blocks]
+
+
+def as_data(block: Block, text: Callable[[str], str]) -> dict[str, Any]:
+    """Return a block as plain data with the name of its kind, those within it as well, every text changed."""
+    data: dict[str, Any] = _changed(block, text)
+    return data
+
+
+def _changed(part: Any, text: Callable[[str], str]) -> Any:
+    if isinstance(part, str):
+        return text(part)
+    if isinstance(part, tuple | list):
+        return [_changed(item, text) for item in part]
+    if is_dataclass(part):
+        parts = {field.name: _changed(getattr(part, field.name), text) for field in fields(part)}
+        return {"block": type(part).__name__, **parts}
+    return part

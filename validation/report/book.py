@@ -7,29 +7,34 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, PageBreak, Part
+from validation.report.blocks import Blocks, Callout, FigureBlock, Heading
 from validation.report.chapters.registry import chapter_of
-from validation.report.names import Readable, escaped, unescaped
-from validation.report.typesetting import png_of, write_document
+from validation.report.names import Readable, page_name, unescaped
+from validation.report.render.pdf import png_of, write_document
 from validation.runs.results import Results
 from validation.runs.text import error_text
 from validation.scenes.scene import parse_scene
 from validation.suite.folders import study_names
 
 
-def ordered_studies(results: Results) -> list[str]:
-    """Return the studies of a directory in the order of their chapters, those of users' scenes last.
+def ordered_studies(results: Results, chosen: Sequence[str] | None = None) -> list[str]:
+    """Return the studies of a directory, or those of some names, in the order of their chapters, users' scenes last.
 
     Raises
     ------
     InputError
-        There is none.
+        There is none, or none of a name.
     """
     order = {name: place for place, name in enumerate(study_names())}
     studies = sorted(results.studies(), key=lambda name: (order.get(name, len(order)), name))
     if not studies:
         raise InputError("no study's results here", source=results.directory, advice="run a study first")
-    return studies
+    names = [*map(page_name, chosen or ())]
+    for name in names:
+        if name not in studies:
+            rule = f"must be one of those in {results.directory} ({', '.join(studies)})"
+            raise InputError(rule, field="study", value=repr(name))
+    return [study for study in studies if study in names] if names else studies
 
 
 def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
@@ -59,8 +64,10 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     return reasons
 
 
-def build(results: Results, out: Path, gates: bool = False) -> Path:
-    """Write the PDF of all studies in a results directory and return its path; `gates` lists those that passed.
+def build(results: Results, out: Path, chosen: Sequence[str] | None = None, gates: bool = False) -> Path:
+    """Write the PDF of all studies in a results directory, or of some of them, and return its path.
+
+    `gates` lists those that passed.
 
     Raises
     ------
@@ -68,32 +75,37 @@ def build(results: Results, out: Path, gates: bool = False) -> Path:
         There are no results, or the file cannot be written.
     """
     results = Readable(results)
-    studies = ordered_studies(results)
+    studies = ordered_studies(results, chosen)
     return write_document(out, lambda root: _all_blocks(results, studies, root, gates))
 
 
-def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> list[Part]:
+def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> Blocks:
     from validation.report.appendix.pages import appendix
     from validation.report.front.groups import groups_of_studies
     from validation.report.front.pages import front_pages
 
     unread = unread_studies(results, studies)
-    chapters: list[Part] = [PageBreak()]
+    chapters: Blocks = []
     for study in studies:
         if study in unread:
             chapters += [Heading(study), Callout(f"{unread[study]}.", "fail")]
         else:
-            try:
-                chapters += _chapter(results, study, figures)
-            except _NotDrawable as error:  # the chapter says so, and does not cost the others
-                chapters += [Heading(study), Callout(f"{error}.", "fail")]
+            chapters += chapter_blocks(results, study, figures)
     readable = [study for study in studies if study not in unread]
     with _damage_named(results, "the first and the last pages"):
         groups = groups_of_studies(results, readable)
-        verdicts = results.verdicts()
+        verdicts = [verdict for verdict in results.verdicts() if verdict["study"] in readable]
         provenances = [results.manifest(study).get("provenance", {}) for study in readable]
         front = front_pages(groups, verdicts, readable, figures, provenances)
         return [*front, *chapters, *appendix(results, groups, verdicts, readable, gates)]
+
+
+def chapter_blocks(results: Results, study: str, figures: Path) -> Blocks:
+    """Return the chapter of a study; where its results give no numbers for it, why, which does not cost the others."""
+    try:
+        return _chapter(results, study, figures)
+    except _NotDrawable as error:
+        return [Heading(study), Callout(f"{error}.", "fail")]
 
 
 def _chapter(results: Results, study: str, figures: Path) -> Blocks:
@@ -118,8 +130,8 @@ def _damage_named(results: Results, what: str) -> Iterator[None]:
         raise _NotDrawable(f"{results.directory}: {what} cannot be drawn from these results ({why})") from error
 
 
-def figures(study: str, results: Results, out: Path) -> list[Path]:
-    """Write the figures of a study's chapter to a directory as SVG and PNG and return their paths.
+def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = None) -> list[Path]:
+    """Write the figures of the chapters to a directory as SVG and PNG and return their paths.
 
     Raises
     ------
@@ -127,18 +139,15 @@ def figures(study: str, results: Results, out: Path) -> list[Path]:
         The directory has no such study, or cannot be made.
     """
     results = Readable(results)
-    study = escaped(study)
-    if study not in results.studies():
-        studies = ", ".join(results.studies()) or "none"
-        raise InputError(f"must be one of those in {results.directory} ({studies})", field="study", value=repr(study))
+    studies = ordered_studies(results, chosen)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
-    blocks = _chapter(results, study, out)
     paths: list[Path] = []
-    for block in blocks:
-        if isinstance(block, FigureBlock):
-            svg = out / block.file
-            paths += [svg, png_of(svg)]
+    for study in studies:
+        for block in _chapter(results, study, out):
+            if isinstance(block, FigureBlock):
+                svg = out / block.file
+                paths += [svg, png_of(svg)]
     return paths

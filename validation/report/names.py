@@ -2,26 +2,39 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
+from validation.runs.history import History
 from validation.runs.records import Manifest, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.text import shown, visible
+from validation.suite.folders import study_names
 
 DOLLAR = "$"  # between two bare ones a figure sets mathematics
-ESCAPED = r"\$"
+KEY = re.compile(r"@(?=[a-z]+[0-9]{4}\b)")  # what would cite a source
 NOT_SHOWN = ("definition", "key", "data")  # parts of a manifest that are read, not shown
 
 
 def escaped(text: str) -> str:
     """Return a text for figures: control characters and lone surrogates as escapes, dollars with a backslash."""
-    return shown(text).replace(DOLLAR, ESCAPED)
+    return shown(text).replace(DOLLAR, rf"\{DOLLAR}")
 
 
-def unescaped(text: str) -> str:
-    """Return a text for pages, which know no escaped dollar."""
-    return visible(text).replace(ESCAPED, DOLLAR)
+def quoted(text: str) -> str:
+    """Return a text of a user's for figures and pages, in which nothing is a citation."""
+    return KEY.sub(r"\\@", escaped(text))
+
+
+def page_name(study: str) -> str:
+    """Return the name of a study as its figures and pages have it: only those of the suite itself cite sources."""
+    return _change(study)(study)
+
+
+def unescaped(text: str, cited: Callable[[str], str] = str) -> str:
+    """Return a text for pages, which know no escaped signs; `cited` marks the citations in it before."""
+    return cited(visible(text)).replace(rf"\{DOLLAR}", DOLLAR).replace(r"\@", "@")
 
 
 class Readable(Results):
@@ -29,7 +42,7 @@ class Readable(Results):
 
     def __init__(self, results: Results) -> None:
         super().__init__(results.directory)
-        self._files = {escaped(name): name for name in results.studies()}
+        self._files = {page_name(name): name for name in results.studies()}
 
     def studies(self) -> list[str]:
         """Return the names of the studies."""
@@ -37,13 +50,28 @@ class Readable(Results):
 
     def manifest(self, study: str) -> Manifest:
         """Return a study's manifest."""
-        manifest: Manifest = with_texts(super().manifest(self._files.get(study, study)), escaped, NOT_SHOWN)
+        name = self._files.get(study, study)
+        manifest: Manifest = with_texts(super().manifest(name), _change(name), NOT_SHOWN)
         return manifest
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        verdicts: list[VerdictRecord] = with_texts(super().readable_verdicts(), escaped, NOT_SHOWN)
+        verdicts: list[VerdictRecord] = [
+            with_texts(v, _change(v["study"]), NOT_SHOWN) for v in super().readable_verdicts()
+        ]
         return [v for v in verdicts if study is None or v["study"] == study]
+
+    def history(self, key: str) -> History | None:
+        """Return a history, whose columns may have names of a user's solver."""
+        history = super().history(key)
+        if history is None:
+            return None
+        return History(history.time, {escaped(name): values for name, values in history.columns.items()})
+
+
+def _change(study: str) -> Callable[[str], str]:
+    """Return what makes the texts of a study fit to be shown."""
+    return escaped if study in study_names() else quoted
 
 
 def with_texts(data: Any, change: Callable[[str], str], skipped: Collection[str] = ()) -> Any:

@@ -1,19 +1,21 @@
 """The paper, the sources of the methods, and who wrote what.
 
 A text cites a source by its key in `references.bib`, as in ``Newmark's scheme @newmark1959``. The report sets keys as
-numbers of its last page, the gallery as links to its page of references.
+numbers of its last page, the site as links to its page of references.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import Any
 
 BIBLIOGRAPHY = Path(__file__).with_name("references.bib")
 ENTRY = re.compile(r"^@(\w+)\{(\w+),\n(.*?)^\}", re.M | re.S)
+CITED = "\ue000"  # stands for the @ of a key that cites a source, once it is told from that of a user's own words
 FIELD = re.compile(r"^\s*(\w+)\s*= \{(.*)\},$", re.M)
 PAPER = (
     "X. Feng, Q. Jiang, A. Wu, W. Wei and X. Zhang, Study on the Damping of the Discontinuous Deformation Analysis "
@@ -29,6 +31,16 @@ def references(text: str | None = None) -> dict[str, dict[str, str]]:
         fields = {name: value.replace("{", "").replace("}", "") for name, value in FIELD.findall(body)}
         entries[key] = {"kind": kind, **fields}
     return entries
+
+
+@cache
+def _key() -> re.Pattern[str]:
+    return re.compile(rf"(?<!\\)@(?=(?:{'|'.join(references())})\b)")
+
+
+def marked(text: str) -> str:
+    """Return a text in which the keys that cite a source are told from those that stand in a user's own words."""
+    return _key().sub(CITED, text)
 
 
 def identity(provenances: Iterable[Mapping[str, Any]]) -> str:

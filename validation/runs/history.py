@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+STRESS_ERROR = "stress_error"  # of a static solution of blocks in the plane
 DISPLACEMENT = "displacement"
 PRESSURE = "contact_pressure"
 

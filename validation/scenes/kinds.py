@@ -1,4 +1,4 @@
-"""The tables that a scene states, of a block, of a column or of rigid boxes, and which of them go together."""
+"""The tables that a scene states, of a block, a column, rigid boxes or blocks in the plane, and which go together."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from validation.errors import InputError
 from validation.scenes.column import ColumnSection, InputSection
 from validation.scenes.keys import Section
+from validation.scenes.plane import PlaneSection
 from validation.scenes.rigid import POSE, RigidSection
 from validation.scenes.tables import (
     BlockSection,
@@ -24,6 +25,7 @@ OF_KIND = {
     "block": ("block", "contact", "load"),
     "column": ("column", "input"),
     "rigid": ("rigid",),
+    "plane": ("plane",),
 }
 # the solvers that run a column's scene which names none, by the law of its springs
 TAKE_COLUMNS = {
@@ -31,6 +33,8 @@ TAKE_COLUMNS = {
     "unilateral": ("dda", "column-events"),
     "frictional": ("dda", "column-events"),
 }
+# what runs a scene of blocks in the plane that does not say, and what is kept
+TAKE_PLANE = {"solvers": ["dda", "fem"], "columns": ["displacement"]}
 TAKE_RIGID = ("rigid-exact",)  # the solvers that run a scene of rigid boxes which names none
 
 
@@ -50,6 +54,7 @@ class SceneTables(Section):
     column: ColumnSection | None = None
     stated_input: InputSection | None = Field(None, alias="input")
     rigid: RigidSection | None = None
+    plane: PlaneSection | None = None
     damping: DampingSection = DampingSection()
     fem: FemSection = FemSection()
 
@@ -80,15 +85,17 @@ class SceneTables(Section):
 
     @property
     def kind(self) -> str:
-        """Kind of the scene: ``"block"``, ``"column"`` or ``"rigid"``."""
-        if self.rigid is not None:
-            return "rigid"
+        """Kind of the scene: ``"block"``, ``"column"``, ``"rigid"`` or ``"plane"``."""
+        for kind, table in (("rigid", self.rigid), ("plane", self.plane)):
+            if table is not None:
+                return kind
         return "block" if self.column is None else "column"
 
     @property
     def kind_in_words(self) -> str:
         """Kind of the scene, for messages."""
-        return "a scene of rigid boxes" if self.kind == "rigid" else f"a scene of a {self.kind}"
+        words = {"rigid": "rigid boxes", "plane": "blocks in the plane"}
+        return f"a scene of {words.get(self.kind, f'a {self.kind}')}"
 
     @model_validator(mode="before")
     @classmethod
@@ -101,6 +108,8 @@ class SceneTables(Section):
             law = str(column.get("law")) if isinstance(column, dict) else ""
             solvers = TAKE_COLUMNS.get(law, TAKE_COLUMNS["bonded"])
             return {**data, "run": {"solvers": list(solvers), **run}}
+        if "plane" in data:
+            return {**data, "run": {**TAKE_PLANE, **run}}
         if "rigid" in data:
             rigid = data["rigid"]
             boxes = rigid.get("box") if isinstance(rigid, dict) else None
@@ -118,6 +127,7 @@ class SceneTables(Section):
             "column": self.column,
             "input": self.stated_input,
             "rigid": self.rigid,
+            "plane": self.plane,
         }
         required = OF_KIND[self.kind]
         for field, table in tables.items():
@@ -131,6 +141,8 @@ class SceneTables(Section):
             raise ValueError(f"fem: {more[0]} does not go with column, got {getattr(self.fem, more[0])!r}")
         if self.rigid is not None and (apart := {"damping", "fem"} & self.model_fields_set):
             raise ValueError(f"{min(apart)}: does not go with rigid, got a table of it")
+        if self.plane is not None and (more := sorted(self.fem.model_fields_set - {"elements", "degree"})):
+            raise ValueError(f"fem: {more[0]} does not go with plane, got {getattr(self.fem, more[0])!r}")
         return self
 
     def _moves_alone(self) -> bool:

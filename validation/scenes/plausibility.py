@@ -14,6 +14,7 @@ import numpy as np
 
 from validation.errors import PlausibilityWarning
 from validation.scenes.column import ColumnSection
+from validation.scenes.plane import PlaneSection
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
@@ -135,6 +136,9 @@ _WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is clea
 def _bodies(scene: Scene) -> Iterator[_Body]:
     if scene.rigid is not None:  # no modulus, and so neither speed nor strain
         return
+    if scene.plane is not None:
+        yield _of_plane(scene.plane)
+        return
     if scene.column is not None:
         yield from _layers(scene, scene.column)
         return
@@ -150,6 +154,12 @@ def _bodies(scene: Scene) -> Iterator[_Body]:
         "load.gravity": block.density * abs(load.gravity) * height / modulus,
     }
     yield _Body("block", block.density, block.young, math.sqrt(modulus / block.density), strains)
+
+
+def _of_plane(plane: PlaneSection) -> _Body:
+    largest = max([*map(abs, plane.stress), *(math.hypot(*load.traction) for load in plane.load)])
+    speed = math.sqrt(plane.young / plane.density)
+    return _Body("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
 
 
 def _layers(scene: Scene, column: ColumnSection) -> Iterator[_Body]:
@@ -172,6 +182,8 @@ def _layers(scene: Scene, column: ColumnSection) -> Iterator[_Body]:
 def _friction_angles(scene: Scene) -> Iterator[tuple[str, float | None]]:
     if scene.rigid is not None:
         yield "rigid.friction", scene.rigid.friction
+        return
+    if scene.plane is not None:
         return
     if scene.column is None:
         yield "contact.friction", scene.contact.friction

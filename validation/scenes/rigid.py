@@ -15,7 +15,6 @@ FrictionAngle = Annotated[Angle, Field(ge=0)]
 Restitution = Annotated[Real, Field(ge=0, le=1)]
 POSE = ("x", "y", "angle")  # of the centre of a box [m, m, rad]
 FORCE = "force"  # normal force between a box and what it stands on [N]
-UNITS = {"x": "m", "y": "m", "angle": "rad", FORCE: "N"}  # of the columns of each box
 
 
 class BoxSection(Section):

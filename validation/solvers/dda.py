@@ -172,7 +172,7 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES}
+        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES, features.PLANE}
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.COURSES
@@ -190,7 +190,10 @@ class DDA(Solver):
         (features.ADAPTIVE, features.COURSES | {features.SUB_BLOCKS}),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = ("block", "contact", "load", "damping", "column", "input", "rigid", "time", "run")
+    sections: tuple[str, ...] = (
+        *("block", "contact", "load", "damping", "column", "input", "rigid", "plane"),
+        *("time", "run"),
+    )
     sources: tuple[str, ...] = ("dda",)
     role = Role.JUDGED
     rank = 0.0
@@ -228,6 +231,10 @@ class DDA(Solver):
             from validation.solvers.boxes import BlocksOfBoxes
 
             return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
+        if scene.plane is not None:
+            from validation.solvers.plane import PlaneBlocks
+
+            return PlaneBlocks(scene, scene.plane, scheme_of(scene))
         if features.ROTATION in features.of(scene):
             return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fem_reference.mesh.model import Model
 
 MESH_SECTIONS = ("block", "contact", "load", "time", "run", "fem")
+OF_CUTS = ("plane.subdivide", "plane.pattern", "plane.glue", "plane.clamp_glue")
 OF_SUB_BLOCKS = ("block.subdivide", "block.pattern", "block.glue_ratio")  # the whole body stands for its parts
 
 
@@ -263,6 +264,7 @@ class FiniteElements(Solver):
                 features.UNILATERAL,
                 features.IMPLICIT,
                 features.COLUMN,
+                features.PLANE,
                 features.UNILATERAL_COLUMN,
                 features.FRICTIONAL_COLUMN,
                 features.RIGID_JOINTS,
@@ -276,8 +278,8 @@ class FiniteElements(Solver):
         (features.ADAPTIVE, features.COURSES),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input")
-    unread = (*OF_SUB_BLOCKS, "column.glue")
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input", "plane")
+    unread = (*OF_SUB_BLOCKS, *OF_CUTS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True
     role = Role.REFERENCE
@@ -299,4 +301,8 @@ class FiniteElements(Solver):
 
             kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
             return kind(scene, scheme_of(scene))
+        if scene.plane is not None:
+            from validation.solvers.plane import PlaneMesh
+
+            return PlaneMesh(scene, scene.plane, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

@@ -25,10 +25,19 @@ from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
+from validation.scenes.plane import PlaneSection
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, locked_frequency, opening_frequency, problem_of
+from validation.solvers.fem import (
+    MESH_SECTIONS,
+    OF_CUTS,
+    OF_SUB_BLOCKS,
+    locked_frequency,
+    opening_frequency,
+    problem_of,
+)
+from validation.solvers.plane import body_of, elastic_model, points_and_cells
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 
@@ -135,9 +144,15 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    handles = frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.SLOPE, features.FRICTION}) | features.LOADS
-    sections = MESH_SECTIONS
-    unread = OF_SUB_BLOCKS
+    handles = features.LOADS | {
+        features.SUB_BLOCKS,
+        features.UNILATERAL,
+        features.SLOPE,
+        features.FRICTION,
+        features.PLANE,
+    }
+    sections = (*MESH_SECTIONS, "plane")
+    unread = (*OF_SUB_BLOCKS, *OF_CUTS)
     sources = ("fem_reference.fenicsx",)
     distributed = True
     meshed = True
@@ -203,6 +218,8 @@ class RemoteMesh(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the same mesh, every point of its base closed [rad/s]."""
+        if self.scene.plane is not None:
+            return elastic_model(self.scene, self.scene.plane).highest_frequency()
         problem = problem_of(self.scene)
         if features.UNILATERAL in features.of(self.scene):
             return opening_frequency(problem, full=True)
@@ -253,9 +270,19 @@ class RemoteMesh(Prepared):
 
 def request(scene: Scene) -> dict[str, Any]:
     """Return a scene as the worker takes it; a mesh file becomes points and cells."""
+    t = scene.time
+    stepping = {
+        "alpha": t.alpha,
+        "delta": t.delta,
+        "gg": t.discount,
+        "step": t.step,
+        "start": t.start,
+        "steps": t.steps,
+    }
+    if scene.plane is not None:
+        return stepping | request_of_plane(scene, scene.plane)
     problem = problem_of(scene)
     c = scene.contact
-    t = scene.time
     record = base_record(scene)
     displacement_of_steps = None
     table = None
@@ -271,12 +298,7 @@ def request(scene: Scene) -> dict[str, Any]:
         "moved": displacement_of_steps,
         "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
-        "alpha": t.alpha,
-        "delta": t.delta,
-        "gg": t.discount,
-        "step": t.step,
-        "start": t.start,
-        "steps": t.steps,
+        **stepping,
         "columns": scene.run.columns,
         "law": c.law,
         "gap": c.gap,
@@ -286,6 +308,21 @@ def request(scene: Scene) -> dict[str, Any]:
         "solve_limit": c.solve_limit,
         "cut": c.cut,
         **(_mesh_of(scene) if problem.mesh else {}),
+    }
+
+
+def request_of_plane(scene: Scene, plane: PlaneSection) -> dict[str, Any]:
+    """Return blocks in the plane as the worker takes them: the elastic body of their outline on the mesh of `fem`."""
+    body = body_of(scene, plane)
+    points, cells = points_and_cells(body)
+    names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
+    observe = plane.observe
+    return {
+        **{name: getattr(body, name) for name in names},
+        "points": points,
+        "cells": cells,
+        "observe": {"place": observe.place, "direction": observe.direction, "less": observe.less},
+        "moved": None,
     }
 
 

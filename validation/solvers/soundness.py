@@ -71,9 +71,9 @@ def reach(scene: Scene) -> float:
     """Return the bound of the displacement that the load and the given energy of a scene can drive [m].
 
     It is infinite where the motion of the base cannot be read: the solver that ran the scene has not read it either;
-    and of rigid boxes, whose columns are positions.
+    of rigid boxes, whose columns are positions, and of blocks in the plane.
     """
-    if scene.rigid is not None:
+    if scene.kind in ("rigid", "plane"):
         return math.inf
     with np.errstate(all="ignore"):
         try:

@@ -11,7 +11,8 @@ The first lines of such a table::
     scheme,    contact.stiffness, time.step=0.01, time.step=0.002
     constant,  1e9,               0.557273246,    0.507955225
 
-A column that the scene's pattern names fills it in; a key, or a key and its value, picks the case. What stands under a
+A column that the scene's pattern names fills it in; a key, or a key and its value (a list's between blanks), picks
+the case. What stands under a
 key and its value is a number of the entry's only metric, under any other name one of the metric of that name, as far as
 the entry's ``metrics``, where it has some, name it. An empty place is no number. Lines that begin with # are remarks.
 """
@@ -19,11 +20,12 @@ the entry's ``metrics``, where it has some, name it. An empty place is no number
 from __future__ import annotations
 
 import csv
-import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from validation.scenes.scene import Scene
 
@@ -55,24 +57,29 @@ def printed_numbers(
     for line in csv.DictReader(lines, skipinitialspace=True):
         words = {column: text.strip() for column, text in line.items() if text and text.strip()}
         name = pattern.format(**words)
-        values = {key: float(words[key]) for key in keys if key in words}
+        values = {key: _value(words[key]) for key in keys if key in words}
         for column, text in words.items():
             key, equals, value = column.partition("=")
             unpicked = metrics and not equals and column not in metrics
             if unpicked or column in keys or f"{{{column}}}" in pattern:
                 continue
-            picked = values | {key: float(value)} if equals else values
+            picked = values | {key: _value(value)} if equals else values
             (metric,) = metrics if equals else (column,)
             subject = _case(path, cases_of(name), picked) if picked else name
             numbers.setdefault(subject, {})[metric] = text
     return numbers
 
 
-def _case(path: Path, cases: Sequence[Scene], values: Mapping[str, float]) -> str:
+def _value(text: str) -> tuple[float, ...]:
+    """Return the numbers of a key's value: one, or those of a list, between blanks."""
+    return tuple(map(float, text.split()))
+
+
+def _case(path: Path, cases: Sequence[Scene], values: Mapping[str, tuple[float, ...]]) -> str:
     """Return the name of the one case that has these values."""
     matching = []
     for case in cases:
-        if all(math.isclose(operator.attrgetter(key)(case), value) for key, value in values.items()):
+        if all(np.allclose(operator.attrgetter(key)(case), value, 1e-9, 0) for key, value in values.items()):
             matching.append(case.name)
     if len(matching) != 1:
         raise ValueError(f"{path}: {dict(values)} must be of one case, got {', '.join(matching) or 'none'}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +12,8 @@ from validation.cli.app import RESULTS
 from validation.engine.measured import JudgedStudy, unjudged
 from validation.gates.changes import Change
 from validation.gates.gate import Status, Verdict, value_text
+from validation.report.blocks import TableColumn, table
+from validation.report.render.terminal import StyledLine, table_lines, wrapped
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -23,8 +24,6 @@ LEAST_STUDIES = 4  # that have a line each; of more than fit, those with nothing
 FAILURES_SHOWN = 40  # in full; of more, the rest is counted, and --verbose shows it
 KINDS_EXPLAINED = 5  # kinds of alarm of a user's own scene, with a sentence each
 WORDS = tuple(str(status) for status in (Status.PASS, Status.FAIL, Status.NOT_RUN))
-STYLES = {"PASS": "green", "FAIL": "bold red", "NOT RUN": "yellow"}
-Line = tuple[str, str]  # text and the style of its first word
 
 
 @dataclass(frozen=True)
@@ -72,31 +71,31 @@ class RunAnswer:
         return list(itertools.chain.from_iterable(alarms))
 
 
-def lines(answer: RunAnswer, width: int) -> Iterator[Line]:
+def lines(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     """Yield the answer: failures first, so that the summary is what a terminal shows last."""
     yield from failures(answer, width)
     yield from summary(answer, width)
 
 
-def failures(answer: RunAnswer, width: int) -> Iterator[Line]:
+def failures(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     """Yield every failing gate with value, band and reason, every case that ended badly, and what was not measured."""
     failed = [verdict for verdict in answer.verdicts if verdict.status is Status.FAIL]
     for verdict in failed[:FAILURES_SHOWN]:
-        yield from _wrapped(_measured(verdict), width, "FAIL")
+        yield from wrapped(_measured(verdict), width, "FAIL")
         for text in dict.fromkeys(filter(None, (verdict.why, verdict.gate.reason))):
-            yield from _wrapped(f"  {text}", width, "")
+            yield from wrapped(f"  {text}", width, "")
     omitted = Counter(verdict.gate.metric for verdict in failed[FAILURES_SHOWN:])
     if omitted:
         counted = ", ".join(f"{metric} {count}" for metric, count in omitted.most_common())
         text = f"FAIL and {omitted.total()} more gates: {counted}; --verbose shows every one"
-        yield from _wrapped(text, width, "FAIL")
+        yield from wrapped(text, width, "FAIL")
     ended = list(badly_ended(answer))
     for text in ended[:FAILURES_SHOWN]:
-        yield from _wrapped(text, width, "")
+        yield from wrapped(text, width, "")
     if len(ended) > FAILURES_SHOWN:
         yield f"and {len(ended) - FAILURES_SHOWN} more runs ended badly; --verbose names every one", ""
     for sentence in answer.messages:
-        yield from _wrapped(sentence, width, "FAIL")
+        yield from wrapped(sentence, width, "FAIL")
 
 
 def _measured(verdict: Verdict) -> str:
@@ -135,22 +134,22 @@ def how_it_ended(scene: str, solver: str, outcome: Outcome, notes: Sequence[str]
 # ---- the summary --------------------------------------------------------------------------------------------------
 
 
-def summary(answer: RunAnswer, width: int) -> Iterator[Line]:
+def summary(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     """Yield the lines that stand last, at most `SCREEN` for the studies of the suite."""
     tail = list(_tail(answer, width))
     yield from _studies(answer, max(SCREEN - 2 - len(tail), LEAST_STUDIES))
     yield from tail
 
 
-def _tail(answer: RunAnswer, width: int) -> Iterator[Line]:
+def _tail(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     yield from _not_run(answer, width)
     yield from _ended(answer, width)
     yield from _alarms(answer, width)
     for sentence in unjudged(answer.runs):
         yield sentence, ""
-    yield from _wrapped(f"results: {answer.results.directory}", width, "")
+    yield from wrapped(f"results: {answer.results.directory}", width, "")
     if any(run.verdicts for run in answer.runs):
-        yield from _wrapped(f"next: {'; '.join(next_commands(answer))}", width, "")
+        yield from wrapped(f"next: {'; '.join(next_commands(answer))}", width, "")
 
 
 def counts(run: JudgedStudy) -> Counter[str]:
@@ -158,14 +157,14 @@ def counts(run: JudgedStudy) -> Counter[str]:
     return Counter(str(verdict.status) for verdict in run.verdicts)
 
 
-def _studies(answer: RunAnswer, room: int) -> Iterator[Line]:
+def _studies(answer: RunAnswer, room: int) -> Iterator[StyledLine]:
     rows = [(run.study.name, counts(run), s) for run, s in zip(answer.runs, answer.seconds, strict=True)]
-    folded_rows = _folded(rows, room)
-    name_width = max(len("study"), *(len(printable(name)) for name, _, _ in folded_rows))
-    yield f"{'study':<{name_width}}  passed  failed  not run  seconds", ""
-    for name, tally, seconds in folded_rows:
-        numbers = f"{tally['PASS']:>6}  {tally['FAIL']:>6}  {tally['NOT RUN']:>7}"
-        yield f"{printable(name):<{name_width}}  {numbers}  {seconds:>7.1f}", _style(tally)
+    lines = [
+        (printable(name), *(str(tally[word]) for word in WORDS), f"{seconds:.1f}")
+        for name, tally, seconds in _folded(rows, room)
+    ]
+    numbers = (TableColumn(title, "decimal") for title in ("passed", "failed", "not run", "seconds"))
+    yield from table_lines(table([TableColumn("study"), *numbers], lines), None)
     total = sum((tally for _, tally, _ in rows), Counter[str]())
     counted = ", ".join(f"{total[word]} {word}" for word in WORDS)
     yield f"{counted} in {sum(answer.seconds):.1f} s", _style(total)
@@ -188,10 +187,10 @@ def _folded(rows: Sequence[tuple[str, Counter[str], float]], room: int) -> list[
     return [*(row for row in rows if row in separate), total]
 
 
-def _not_run(answer: RunAnswer, width: int) -> Iterator[Line]:
+def _not_run(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     reasons = Counter(verdict.why for verdict in answer.verdicts if verdict.status is Status.NOT_RUN)
     for why, count in reasons.most_common(2):
-        yield from _wrapped(f"NOT RUN {count}: {printable(why)}", width, "NOT RUN")
+        yield from wrapped(f"NOT RUN {count}: {printable(why)}", width, "NOT RUN")
     if len(reasons) > 2:
         yield f"NOT RUN for {len(reasons) - 2} more reasons; --verbose shows every one", "NOT RUN"
 
@@ -207,12 +206,12 @@ def ends(answer: RunAnswer) -> Counter[str]:
     return tally
 
 
-def _ended(answer: RunAnswer, width: int) -> Iterator[Line]:
+def _ended(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     tally = ends(answer)
     if tally:
         cases = sum(len(run.outcomes) for run in answer.runs)
         words = ", ".join(f"{count} {word}" for word, count in tally.most_common())
-        yield from _wrapped(
+        yield from wrapped(
             f"{tally.total()} of {cases} runs did not complete, as their studies allow: {words}", width, ""
         )
 
@@ -225,16 +224,16 @@ def alarm_kinds(answer: RunAnswer) -> dict[str, int]:
     return {kind: len(scenes) for kind, scenes in cases.items()}
 
 
-def _alarms(answer: RunAnswer, width: int) -> Iterator[Line]:
+def _alarms(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     """Yield the kinds of alarm with the number of cases, and for own scenes the first sentence of each kind."""
     kinds = alarm_kinds(answer)
     if kinds:
         words = ", ".join(f"{kind} in {n} case{'s' * (n > 1)}" for kind, n in kinds.items())
-        yield from _wrapped(f"alarms: {words}", width, "")
+        yield from wrapped(f"alarms: {words}", width, "")
     user_alarms = answer.alarms(name for name in answer.names if name in answer.user_scenes)
     first_alarms = {alarm["kind"]: alarm for alarm in reversed(user_alarms)}
     for kind in [kind for kind in kinds if kind in first_alarms][:KINDS_EXPLAINED]:
-        yield from _wrapped(f"  {kind}: {first_alarms[kind]['scene']}: {first_alarms[kind]['sentence']}", width, "")
+        yield from wrapped(f"  {kind}: {first_alarms[kind]['scene']}: {first_alarms[kind]['sentence']}", width, "")
 
 
 def next_commands(answer: RunAnswer) -> list[str]:
@@ -243,18 +242,8 @@ def next_commands(answer: RunAnswer) -> list[str]:
     report = f"dda-validate report{place} writes the PDF"
     failing = next((run.study.name for run in answer.runs if counts(run)["FAIL"]), None)
     if failing is not None:
-        return [f"dda-validate figures {failing}{place} draws the histories", report]
+        return [f"dda-validate report {failing} --figures figures{place} draws the histories", report]
     return [report] if answer.user_scenes else [report, "the same command with --verbose lists every gate"]
-
-
-def _wrapped(text: str, width: int, style: str) -> Iterator[Line]:
-    """Yield a text in lines of a width, what follows the first one indented."""
-    indent = " " * (len(text) - len(text.lstrip()) + 2)
-    for line in textwrap.wrap(
-        text, max(width, 20), subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
-    ):
-        yield line, style
-        style = ""  # of the first line alone
 
 
 # ---- for machines --------------------------------------------------------------------------------------------------

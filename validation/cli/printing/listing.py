@@ -21,11 +21,6 @@ def metrics() -> list[Line]:
     return [heads, *_grouped(lambda m: (m.id, m.unit, ", ".join(sorted(m.needs)), m.says))]
 
 
-def short_metrics() -> list[Line]:
-    """Return id, unit and meaning of every metric, grouped."""
-    return [("metric", "unit", "meaning"), *_grouped(lambda m: (m.id, m.unit, m.says))]
-
-
 def _grouped(line: Callable[[Metric], Line]) -> list[Line]:
     from validation.metrics.catalogue import CATALOGUE
 
@@ -104,20 +99,21 @@ def _title(scene: Scene) -> str:
 
 
 LISTS: dict[str, Callable[[], list[Line]]] = {
-    "keys": keys,
-    "metrics": metrics,
-    "schemes": schemes,
     "studies": studies,
     "scenes": scenes,
     "solvers": solvers,
+    "schemes": schemes,
+    "metrics": metrics,
+    "keys": keys,
 }
 
 
-def short() -> dict[str, list[Line]]:
-    """Return the four lists with what fits a line: names, and what they stand for."""
-    return {
-        "studies": [(study.name, study.title) for study in _studies()],
-        "scenes": [(scene.name, _title(scene)) for scene in _scenes()],
-        "solvers": [(name, description) for name, _, description, _ in solvers()[1:]],
-        "metrics": short_metrics()[1:],
-    }
+def short() -> list[Line]:
+    """Return a line for each list: how much it holds, and the names that tell what it is about."""
+    ends = {"scenes": "-", "metrics": ".", "keys": "."}  # of the first part of such names
+    lines: list[Line] = []
+    for title, make in LISTS.items():
+        names = [line[0] for line in make()[1:] if line]
+        families = dict.fromkeys(name.partition(ends.get(title, " "))[0] for name in names)
+        lines.append((title, str(len(names)), ", ".join(families)))
+    return lines

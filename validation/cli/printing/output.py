@@ -19,6 +19,9 @@ from validation.runs.text import visible
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from validation.report.blocks import Block
+    from validation.report.render.terminal import StyledLine
+
 PAGE = 150  # characters of a line where the output is no terminal
 
 
@@ -56,6 +59,26 @@ def columns(lines: Sequence[Line]) -> str:
     return in_columns(lines, terminal_width())
 
 
+def print_blocks(blocks: Iterable[Block]) -> None:
+    """Print blocks, their lines broken at the width of a terminal."""
+    from validation.report.render.terminal import lines
+
+    print_lines(lines(blocks, terminal_width()))
+
+
+def print_lines(lines: Iterable[StyledLine]) -> None:
+    """Print lines, with the style of its verdict on the first word or, in a line of counts, on all of it."""
+    from rich.text import Text
+
+    from validation.report.render.terminal import STYLES
+
+    printer = console()
+    for text, word in lines:
+        styled_text = Text(text)
+        if word:
+            end = len(word) if text.startswith(word) else len(text)
+            styled_text.stylize(STYLES[word], 0, end)
+        printer.print(styled_text, soft_wrap=True)
 def in_minutes(seconds: float) -> str:
     """Return a duration in words, "36 s" or "2 m 6 s"."""
     minutes, rest = divmod(round(seconds), 60)

@@ -5,19 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich import box
-from rich.markup import escape
-from rich.table import Table
-from rich.text import Text
-
-from validation.advice.plain import in_columns
-from validation.cli.printing.answer import STYLES, Line, how_it_ended
-from validation.cli.printing.output import broken, console, echo
+from validation.cli.printing.answer import how_it_ended
+from validation.cli.printing.output import broken, echo
 from validation.gates.gate import Verdict, value_text
-from validation.metrics.values import NOT_REPORTED
+from validation.report.blocks import Blocks, Listing, Paragraph, Table, TableColumn, table
+from validation.report.scene.differences import DIFFERENCES, difference_table
 from validation.runs.case_name import CaseName
 from validation.runs.records import AlarmRecord, BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
@@ -27,60 +23,38 @@ from validation.runs.text import printable
 if TYPE_CHECKING:
     from validation.gates.changes import Change
 
-DIFFERENCES = ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max")  # shown where nothing is judged
 LARGEST_AGREEMENT = 0.5  # relative difference (L2) from which two histories share less than half of the motion
 PAIRS_SHOWN = 20
 
 
-def print_verdicts(verdicts: list[Verdict], results: Results, studies: list[str]) -> None:
-    """Print one table, a row a gate: scene, pair, metric, value, band, verdict, seconds; without seconds if narrow."""
+def verdict_table(verdicts: Sequence[Verdict], results: Results, studies: Sequence[str]) -> Table:
+    """Return a row a gate: verdict, scene, pair, metric, value, band, seconds of its first case."""
     rows = results.rows()
     seconds: dict[tuple[str, str], float] = {}
     for study in studies:
         for case in results.manifest(study)["cases"]:
             seconds[case["scene"], case["solver"]] = sum(rows[case["key"]].seconds.values())
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     name = _namer([v.gate.scene for v in verdicts])
-    table.add_column("scene", overflow="fold")
-    for head in ("pair", "metric"):
-        table.add_column(head, no_wrap=True)
-    for head in ("value", "band"):
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_column("verdict")
-    table.add_column("seconds", justify="right")
+    lines = []
     for v in verdicts:
-        gate = v.gate
-        status = str(v.status)
-        case_seconds = seconds.get(gate.cases[0])
-        duration = "" if case_seconds is None else f"{case_seconds:.2f}"
-        table.add_row(
-            escape(printable(name(gate.scene))),
-            " | ".join(gate.pair),
-            gate.id.rpartition(":")[2],
-            value_text(v.value),
-            _band(v),
-            f"[{STYLES[status]}]{status}[/]",
-            duration,
+        case_seconds = seconds.get(v.gate.cases[0])
+        lines.append(
+            (
+                printable(name(v.gate.scene)),
+                " | ".join(v.gate.pair),
+                v.gate.id.rpartition(":")[2],
+                value_text(v.value),
+                _band(v),
+                str(v.status),
+                "" if case_seconds is None else f"{case_seconds:.2f}",
+            )
         )
-    printer = console()
-    if printer.measure(table, options=printer.options.update(width=10_000)).maximum <= printer.width:
-        printer.print(table)
-    else:
-        print_lines(_by_scene(verdicts))
+    seconds_column = TableColumn("seconds", "decimal")
+    return table(("scene", "pair", "metric", _numbers("value"), _numbers("band"), "verdict", seconds_column), lines)
 
 
-def _by_scene(verdicts: Sequence[Verdict]) -> Iterator[Line]:
-    """Yield the gates of each scene below its name: verdict, pair, metric, value and band."""
-    cells = [
-        (str(v.status), " | ".join(v.gate.pair), v.gate.id.rpartition(":")[2], value_text(v.value), _band(v))
-        for v in verdicts
-    ]
-    scene = ""
-    for v, row in zip(verdicts, in_columns(cells).splitlines(), strict=True):
-        if v.gate.scene != scene:
-            scene = v.gate.scene
-            yield printable(scene), ""
-        yield row, str(v.status)
+def _numbers(title: str) -> TableColumn:
+    return TableColumn(title, "decimal")
 
 
 def _band(verdict: Verdict) -> str:
@@ -99,46 +73,19 @@ def _namer(cases: Iterable[str]) -> Callable[[str], str]:
     return name
 
 
-def print_lines(lines: Iterable[Line]) -> None:
-    """Print lines, with the style of its verdict on the first word or, in a line of counts, on all of it."""
-    printer = console()
-    for text, word in lines:
-        styled_text = Text(text)
-        if word:
-            end = len(word) if text.startswith(word) else len(text)
-            styled_text.stylize(STYLES[word], 0, end)
-        printer.print(styled_text, soft_wrap=True)
-
-
-def print_differences(results: Results, study: str, writable: bool) -> None:
-    """Print what the solvers of a scene without gates differ by, and what to write so that it is judged."""
+def difference_blocks(results: Results, study: str, writable: bool) -> Blocks:
+    """Return what the solvers of a scene without gates differ by, and what to write so that it is judged."""
     compared = results.manifest(study)["comparisons"]
-    values_of_all: set[object] = set()
-    for c in compared:
-        values_of_all.update(c["metrics"].get(metric, NOT_REPORTED) for metric in DIFFERENCES)
-    if values_of_all == {NOT_REPORTED}:
-        echo("next: no metric is of the columns of this scene; dda-validate report draws the histories")
-        return
-    name = _namer(c["scene"] for c in compared)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
-    table.add_column("scene", overflow="fold")
-    table.add_column("pair", no_wrap=True)
-    for metric in DIFFERENCES:
-        table.add_column(metric.replace(".", "\n.") + " [%]", justify="right")
-    for c in compared[:PAIRS_SHOWN]:
-        values = [c["metrics"].get(metric) for metric in DIFFERENCES]
-        cells = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
-        pair = f"{c['solver']} | {c['reference']}"
-        table.add_row(*map(escape, map(printable, (name(c["scene"]), pair))), *cells)
-    printer = console()
-    if compared:
-        printer.print(table)
-    if len(compared) > PAIRS_SHOWN:
-        printer.print(f"and {len(compared) - PAIRS_SHOWN} more pairs; dda-validate report shows all", markup=False)
-    if compared:
-        echo("\n".join(_next(compared, results.manifest(study)["alarms"], writable)))
-    else:
-        echo(_without_comparison(outcomes(results, study)))
+    if not compared:
+        return [Paragraph(_without_comparison(outcomes(results, study)))]
+    differences = difference_table(compared[:PAIRS_SHOWN], _namer(c["scene"] for c in compared))
+    if not differences.rows:
+        text = "next: no metric is of the columns of this scene; dda-validate report draws the histories"
+        return [Paragraph(text)]
+    more = len(compared) - PAIRS_SHOWN
+    note = (f"and {more} more pairs; dda-validate report shows all",) if more > 0 else ()
+    proposal = "\n".join(_next(compared, results.manifest(study)["alarms"], writable))
+    return [replace(differences, notes=note), Listing(proposal)]
 
 
 def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
@@ -156,7 +103,7 @@ def _next(compared: Sequence[ComparisonRecord], alarms: Sequence[AlarmRecord], w
     """Yield the lines of a gate for a scene that nothing has judged; of none where the step makes the agreement."""
     from validation.advice.coarse import KINDS
 
-    metric = DIFFERENCES[0]
+    metric = next(iter(DIFFERENCES))
     agreeing = [c for c in compared if _agrees(c["metrics"].get(metric))]
     if not agreeing:
         limit = f"{100 * LARGEST_AGREEMENT:g} % ({metric})"
@@ -232,28 +179,20 @@ def printable_lines(text: str) -> str:
     return text.encode("utf-8", "backslashreplace").decode()
 
 
-def print_changes(changes: list[Change]) -> None:
-    """Print one table: change, study, gate, verdict and value before and after."""
+def change_blocks(changes: Sequence[Change]) -> Blocks:
+    """Return what changed: change, study, gate, verdict and value before and after."""
     from validation.gates.changes import band_said
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
-    for name in ("change", "study", "gate", "before", "after"):
-        table.add_column(name, overflow="fold")
-    colours = {"worse": "bold red", "better": "green"}
+    if not changes:
+        return [Paragraph("no gate differs")]
+    rows = []
     for c in changes:
         sides = ((c.before, c.value_before), (c.after, c.value_after))
         values = [f"{word} {value_text(value)}" for word, value in sides]
         if c.rebanded:
             bands = (band_said(band) for band in (c.band_before, c.band_after))
             values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]
-        kind = f"[{colours.get(c.kind, 'default')}]{c.kind}[/]"
-        table.add_row(kind, *map(escape, (c.study, c.id, *values)))
-    printer = console()
-    if not changes:
-        printer.print("no gate differs", markup=False)
-        return
-    printer.print(table)
-    kinds = Counter(c.kind for c in changes)
-    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+        rows.append((c.kind, c.study, c.id, *values))
+    counts = ", ".join(f"{count} {kind}" for kind, count in Counter(c.kind for c in changes).items())
     many = "1 gate differs" if len(changes) == 1 else f"{len(changes)} gates differ"
-    printer.print(f"{many}: {counts}", markup=False)
+    return [table(("change", "study", "gate", "before", "after"), rows), Paragraph(f"{many}: {counts}")]

@@ -1,4 +1,4 @@
-"""The gates that passed, a line for each reason of a band; the gallery lists them one by one."""
+"""The gates that passed, a line for each reason of a band; the site lists them one by one."""
 
 from __future__ import annotations
 

@@ -8,14 +8,14 @@ from validation.report.appendix.alarms import alarm_table
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
-from validation.report.blocks import Heading, Part, References
+from validation.report.blocks import Blocks, Heading, References
 from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
 
 def appendix(
     results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str], gates: bool = False
-) -> list[Part]:
+) -> Blocks:
     """Return words, alarms, parameters, provenance and references, and the gates that passed if they are asked for."""
     return [
         Heading("Appendix"),

@@ -12,7 +12,7 @@ from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph,
 from validation.report.chapters.text import DASH, parameters, short
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import HistoryPanel
-from validation.report.typesetting import write_document
+from validation.report.render.pdf import write_document
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import Scene
 

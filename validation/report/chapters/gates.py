@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from validation.metrics.catalogue import is_count
-from validation.report.blocks import Blocks, Callout, Heading, TableColumn, table
+from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.text import bounded, capital, cell, short
 from validation.runs.records import VerdictRecord
@@ -58,14 +58,23 @@ def not_passed(verdicts: Verdicts) -> Blocks:
     if failures:
         text = "One gate fails." if failures == 1 else f"{failures} gates fail."
         blocks.append(Callout(text, "fail"))
+    return [*blocks, gate_table(bad)]
+
+
+def gate_list(verdicts: Verdicts) -> Blocks:
+    """Return all gates, failures first; nothing where nothing was judged."""
+    if not verdicts:
+        return []
+    return [Heading("Gates", 2), gate_table(sorted(verdicts, key=lambda v: ORDER.get(v["verdict"], 0)))]
+
+
+def gate_table(verdicts: Verdicts) -> Table:
+    """Return gates with value and band, those of one reason above it."""
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
-    for v in bad:
+    for v in verdicts:
         row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
         rows_by_reason.setdefault(reason(v), []).append(row)
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
-    return [
-        *blocks,
-        table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band"), lines, ruled=False),
-    ]
+    return table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band"), lines, ruled=False)

@@ -104,25 +104,36 @@ def _cause_data(cause: Cause) -> dict[str, Any]:
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
 
 
-def page(answer: JudgedAnswer, directory: Path) -> Blocks:
-    """Return the blocks of the page; its figures are written to a directory."""
+def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
+    """Return the verdict first, where it needs one with its title before it, then what it rests on."""
     judgement = answer.judgement
     tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(judgement.word, "warn")
-    blocks: Blocks = [Callout(headline(answer), tone)]  # type: ignore[arg-type]
+    blocks: Blocks = [Callout(title + headline(answer), tone)]  # type: ignore[arg-type]
     blocks += [Callout(sentence, "warn") for sentence in answer.warnings]
+    if judgement.word is Word.PARTIAL:
+        missing = ", ".join(map(united, judgement.withheld))
+        blocks.append(Paragraph(f"No full PASS: the problem asks for {missing} too; report it to be judged."))
     if answer.cause is not None:
         passing_step = answer.cause.passing_step
         passes = "" if passing_step is None else f" This scheme passes at a step of {short(passing_step)} s."
         blocks.append(Paragraph(f"Cause: {answer.cause.sentence}.{passes} {reached(answer)}"))
         if answer.cause.would_tell:
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
-    further = []
-    if judgement.quantities:
-        further.append(_further_numbers(judgement.quantities, answer.problem.scene.rigid is not None))
     return [
         *blocks,
         Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
         _columns(judgement.columns, answer.standard),
+    ]
+
+
+def page(answer: JudgedAnswer, directory: Path) -> Blocks:
+    """Return the blocks of the page; its figures are written to a directory."""
+    judgement = answer.judgement
+    further = []
+    if judgement.quantities:
+        further.append(_further_numbers(judgement.quantities, answer.problem.scene.rigid is not None))
+    return [
+        *verdict_blocks(answer),
         *figures(answer, directory),
         *further,
         *([table(("Of the answer", TableColumn("", "fill")), tuple(answer.about))] if answer.about else []),
@@ -161,12 +172,12 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     caption = "Errors of the numbers that are judged." if numbers else "Relative L2 error of each column."
     for column in columns_of_answer:
         name = united(column.name)
-        error, band = (DASH if share is None else short(100 * share, 2) for share in (column.error, column.band))
+        error, band = map(per_cent, (column.error, column.band))
         rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
         if column.band is None:
             notes.append(f"{name}: {column.reason}.")
     return table(
-        ("Column", TableColumn("Verdict", "outcome"), "Error [%]", "Allowed [%]", "Set by", "Until [s]"),
+        ("Column", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
         rows,
         caption,
         tuple(notes),

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from validation.problems.boxes import MeasuredQuantity
-from validation.problems.data import unit, united
+from validation.problems.data import united
 from validation.problems.judge import Word
 from validation.problems.questions import BoxQuestion
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.chapters.judged import ANSWER
 from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures.curves import HistoryPanel
+from validation.runs.columns import unit_of
 from validation.runs.history import History
 from validation.scenes.rigid import POSE
 
@@ -109,7 +110,7 @@ def _figures(answer: JudgedBoxes, directory: Path) -> Sequence[FigureBlock]:
         if np.ptp(answer.history.columns[name]) < STILL:
             continue
         lines = {ANSWER: History(answer.history.time, {name: answer.history.columns[name]})}
-        figure = motion.history_figure([HistoryPanel(f"{name} [{unit(name)}]", lines, {}, ANSWER)], name)
+        figure = motion.history_figure([HistoryPanel(f"{name} [{unit_of(name)}]", lines, {}, ANSWER)], name)
         drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", f"The answer: {united(name)}."))
     return drawn
 

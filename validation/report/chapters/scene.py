@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
+from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
@@ -28,7 +29,11 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
-from validation.report.figures.curves import COLUMNS, HistoryPanel, HistoryPanels, differences
+from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
+from validation.report.scene.differences import difference_table
+from validation.report.scene.page import SceneDescription
+from validation.runs.case_name import CaseName
+from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -45,15 +50,48 @@ _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
 def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Blocks:
-    """Return the chapter of a study: its question, then a section for each scene."""
+    """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
-    blocks = opening(manifest)
-    for group in groups:
-        columns = _columns(group)[:1] if len(groups) > FEW else None
-        blocks += scene_section(group, directory, columns, apart=len(groups) == 1)
     if len(groups) == 1:
-        return [*blocks, *budget_blocks(groups[0], directory)]
+        return scene_page(groups[0], directory)
+    columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
+    blocks = opening(manifest)
+    for group, drawn in zip(groups, columns, strict=True):
+        blocks += scene_section(group, directory, drawn)
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
+
+
+def scene_page(group: CaseGroup, directory: Path) -> Blocks:
+    """Return the page of a scene: its model, what its solvers differ by, its alarms, its histories and numbers."""
+    _, conclusion, *section = scene_section(group, directory, apart=True)
+    return [
+        Heading(group.title),
+        conclusion,
+        *description(group).model(),
+        *alarm_lines({group.name: group}),
+        *difference_blocks(group),
+        *section,
+        *budget_blocks(group, directory),
+    ]
+
+
+def description(group: CaseGroup) -> SceneDescription:
+    """Return what is known of a scene without its runs."""
+    varied: dict[str, dict[str, None]] = {}
+    for case in group.cases:
+        for key, value in CaseName.parse(case.name).values.items():
+            varied.setdefault(key, {})[value] = None
+    scenes = [case.scene for case in group.cases]
+    return SceneDescription(scenes, len(scenes), {key: [*values] for key, values in varied.items()}, group.solvers)
+
+
+def difference_blocks(group: CaseGroup) -> Blocks:
+    """Return what the solvers of a scene differ by; nothing where no pair was compared."""
+    labels = {case.name: case.label for case in group.cases}
+    compared = difference_table(
+        group.comparisons, lambda case: labels.get(case, case), lambda share: bounded(share, short(share, 3))
+    )
+    return [compared] if compared.rows else []
 
 
 def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:
@@ -215,7 +253,7 @@ def _columns(group: CaseGroup) -> list[str]:
         names.update(*(history.columns for history in case.histories.values()))
     if (rigid := group.cases[0].scene.rigid) is not None:
         return [name for name in rigid.columns if name in names]
-    return sorted(names, key=lambda name: (name not in COLUMNS, [*COLUMNS, name].index(name), name))
+    return sorted(names, key=lambda name: (rank(name), name))
 
 
 def history_block(
@@ -227,25 +265,27 @@ def history_block(
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
     settled = _settling_time(cases, columns, without)
+    panels = [_panel(case, columns, min(window, settled), without, _finer(case, group.cases)) for case in cases]
+    panels = [panel for panel in panels if panel.histories]  # the steps of the others are longer than that time
     sentences = []
-    if len(cases) < len(group.cases):
-        sentences.append(f"{len(cases)} of {len(group.cases)} cases.")
+    if len(panels) < len(group.cases):
+        sentences.append(f"{len(panels)} of {len(group.cases)} cases.")
     if settled < window:
         window = settled
         sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(ends, default=0.0) > window * 1.001:
         sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    panels = [_panel(case, columns, window, without, _finer(case, group.cases)) for case in cases]
     sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
     figure = motion.history_figure(panels, *columns, apart=apart)
     return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
 
 
 def _ends(cases: Sequence[CaseResults]) -> list[float]:
-    """Return the last instant of every history [s]."""
+    """Return the last instant [s] of each case that has one, of its solver that runs longest."""
     ends = []
     for case in cases:
-        ends += [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
+        last = [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
+        ends += [max(last)] if last else []
     return ends
 
 
@@ -319,8 +359,9 @@ def _panel(
 ) -> HistoryPanel:
     drawn = {}
     for solver, history in case.histories.items():
-        if solver not in without and set(columns) & set(history.columns):
-            drawn[solver] = history.until(window)
+        shown = history.until(window)
+        if solver not in without and set(columns) & set(history.columns) and len(shown.time):
+            drawn[solver] = shown
     reference = case.reference if case.reference in drawn else None
     static = {}
     for column in columns:

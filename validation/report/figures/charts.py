@@ -1,7 +1,7 @@
 """Charts: lines in panels, described once and drawn by one function.
 
 A chapter says what the lines are and what the axes mean; how an axis is numbered, where a name stands and how a
-hairline looks is decided here. The report sets the drawing, the gallery takes the same SVG.
+hairline looks is decided here. PDF and site set the same drawing.
 """
 
 from __future__ import annotations

@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
-from validation.scenes import rigid
-from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Role
 from validation.solvers.registry import by_role, get_solver, is_solver
 
@@ -27,28 +25,10 @@ ROUNDING = 1e-9  # m, rad, N: smaller positions, rotations and forces of rigid b
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
 
-UNITS = {"displacement": "m", "stress": "Pa", "velocity": "m/s", "force": "Pa", "gap": "m", "slip": "m"}
 EXACT = "exact"  # name of the line of an exact motion, whichever solution it comes from
-COLUMNS = {
-    "displacement": ("Displacement", "m"),
-    "contact_pressure": ("Contact pressure", "Pa"),
-    "horizontal_displacement": ("Horizontal displacement", "m"),
-    "rotation": ("Rotation", "rad"),
-    **{name: (name.replace("_", " ").capitalize(), UNITS[name.partition("_")[0]]) for name in AT_HEIGHTS},
-}
-
-OF_BOXES = {"x": "x", "y": "y", "angle": "Rotation", "force": "Normal force"}  # the columns of each rigid box
 
 _OTHER_COLORS = ("#009e73", "#cc79a7", "#5d3a9b", "#8c6d1f", "#44aa99", "#882255")
 _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0))
-
-
-def axis_of(column: str, of_boxes: bool = False) -> tuple[str, str]:
-    """Return what a column is, in words, and its unit; ``force_1`` is a stress in a column and a force on a box."""
-    part, _, number = column.rpartition("_")
-    if of_boxes and part in OF_BOXES:
-        return f"{OF_BOXES[part]}, box {number}", rigid.UNITS[part]
-    return COLUMNS.get(column, (column.replace("_", " ").capitalize(), ""))
 
 
 def style_of(name: str) -> LineStyle:

@@ -21,7 +21,6 @@ from validation.report.figures.curves import (
     HAIR,
     HistoryPanel,
     HistoryPanels,
-    axis_of,
     common_range,
     differences,
     engineering,
@@ -38,6 +37,7 @@ from validation.report.figures.histories import (
     size_of,
     small_multiples,
 )
+from validation.runs.columns import axis_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import Role
 from validation.solvers.registry import role

@@ -12,8 +12,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from validation.report.figures.charts import ChartLine, ChartPanel, Names, chart_figure
-from validation.report.figures.curves import COLUMNS, engineering, style_of
+from validation.report.figures.curves import engineering, style_of
 from validation.report.figures.histories import Margins, house_style, save
+from validation.runs.columns import axis_of
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
@@ -41,7 +42,7 @@ def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metr
     axes: dict[str, Any] = {"x_range": (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))}
     panels = []
     for column in (DISPLACEMENT, PRESSURE):
-        name, unit = COLUMNS[column]
+        name, unit = axis_of(column)
         largest = max(float(np.nanmax(curve.columns[column][0])) for curve in curves)
         factor, unit = (1.0, {"m": "m/m", "Pa": "Pa/m"}[unit]) if per_metre else engineering(largest, unit)
         lines = [_line(curve, factor * curve.columns[column][0]) for curve in curves]

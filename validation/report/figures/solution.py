@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure as Figure
 
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.figures.curves import axis_of
 from validation.report.figures.histories import Margins
+from validation.runs.columns import axis_of
 from validation.runs.history import History
 
 ROW = 42.0, 17.0  # mm: height of a panel, gap below it

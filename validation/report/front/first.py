@@ -1,4 +1,4 @@
-"""The first page: the model, the answer in five sentences, the figure that carries it, one line of verdicts."""
+"""The first page: the model, the answer in at most five sentences, the figure that carries it, one line of verdicts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Part, Points
+from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Points
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, Verdicts
 from validation.report.chapters.gates import window
 from validation.report.chapters.text import percent, plain, short
@@ -29,19 +29,20 @@ STIFF = 100.0  # p/E of the answer on stiff springs
 STIFFNESSES = (1.0, 10.0, 100.0)  # p/E for which the first frequency is given
 STEPS = (2e-3, 5e-3)  # s, steps for which it is given as stepped
 DISCOUNT = 0.98
+COUNTS = ("no", "one", "two", "three", "four", "five")
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
 
 
-def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path) -> list[Part]:
+def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path) -> Blocks:
     """Return the blocks of the first page."""
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
-    answers = (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups))
+    answers = [*filter(None, (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups)))]
     charts = chart_figure(damping_and_error(groups, paper), 26.0)
     return [
         Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
-        Heading("The answer in five sentences", 3),
-        Points(tuple(answer for answer in answers if answer)),
+        Heading(f"The answer in {COUNTS[len(answers)]} sentences", 3),
+        Points(tuple(answers)),
         histories.saved(charts, directory, "first.svg", damping_and_error_caption(groups, paper)),
         verdict_line(verdicts),
     ]

@@ -1,0 +1,285 @@
+"""Blocks that are glued along the edges they share: loads on their outline, strains at rest, natural frequencies.
+
+At rest a system that nothing holds is determined but for a rigid motion R c of the whole. With the condition
+R' M D = 0 the equations of statics
+
+    Ke D + B' lambda + M R mu = F,     B D - C lambda = 0,     R' M D = 0
+
+have one solution; mu = (R' M R)^-1 R' F is the acceleration that a load without balance would give, and must be zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+
+from dda.model.arrays import Array
+from dda.model.block import Block, displacement_rows
+from dda.model.checks import check_count
+from dda.one_block.modes import Mode, scalar_eigenvalues
+from dda.one_block.solution import Result, bound_overflow, times_of
+from dda.scheme.newmark import Scheme
+from dda.system.joints import FIXED, Joint, Point, shared_edges
+from dda.system.solution import Stepper, lowest_modes
+from dda.system.system import BlockSystem, Equations, SurfaceLoad
+
+UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
+SAME_LINE = 1e-9  # of the extent: how far a point may lie beside a line
+
+
+@dataclass(frozen=True)
+class Traction:
+    """A uniform traction on what lies of the outline on a straight line from start to end."""
+
+    start: Point  # [m]
+    end: Point  # [m]
+    traction: tuple[float, float]  # in x and y [Pa]
+
+
+def glued_blocks(
+    blocks: Sequence[Block],
+    glue: float,
+    clamps: Sequence[tuple[Point, Point]] = (),
+    clamp_glue: float | None = None,
+    tractions: Sequence[Traction] = (),
+    stress: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    gravity: tuple[float, float] = (0.0, 0.0),
+) -> BlockSystem:
+    """Return blocks glued along all edges they share, under loads on their outline.
+
+    Parameters
+    ----------
+    glue : float
+        Stiffness of the normal and of the shear spring at each end of a shared edge [N/m].
+    clamps : sequence of two points
+        Lines on which edges are glued to what is fixed.
+    clamp_glue : float, optional
+        Stiffness of the springs there, without it that of the glue [N/m].
+    tractions : sequence of Traction
+        Loads on parts of the outline.
+    stress : tuple of float
+        s_xx, s_yy, s_xy, whose tractions s n act on all of the outline that is not clamped [Pa].
+    gravity : tuple of float
+        Acceleration in x and y [m/s^2].
+
+    Raises
+    ------
+    ValueError
+        If a clamp or a traction lies on no edge of the outline, or a stiffness is out of range.
+    """
+    stiffness = glue if clamp_glue is None else clamp_glue
+    joints = shared_edges(blocks, glue, glue)
+    outline = [*_outline(blocks, joints)]
+    held = []
+    for clamp in clamps:
+        pieces = [*_on_line(outline, *clamp, "clamp")]
+        held += pieces
+        joints += [Joint(block, FIXED, start, end, stiffness, stiffness) for block, start, end in pieces]
+    loads = []
+    for load in tractions:
+        pieces = [*_on_line(outline, load.start, load.end, "load")]
+        loads += [SurfaceLoad(block, start, end, load.traction) for block, start, end in pieces]
+    if any(stress):
+        for block, start, end in outline:
+            if (block, start, end) not in held:
+                loads.append(SurfaceLoad(block, start, end, _traction_of(stress, start, end)))
+    size = float(np.hypot(*gravity))
+    slope = float(np.degrees(np.arctan2(gravity[0], -gravity[1]))) if size else 0.0
+    return BlockSystem(list(blocks), joints, loads=loads, gravity=size, slope=slope)
+
+
+def _traction_of(stress: tuple[float, float, float], start: Point, end: Point) -> tuple[float, float]:
+    """Return s n on an edge whose block lies at its left."""
+    along = np.subtract(end, start)
+    normal = np.array([along[1], -along[0]]) / np.hypot(*along)
+    s_xx, s_yy, s_xy = stress
+    x, y = np.array([[s_xx, s_xy], [s_xy, s_yy]]) @ normal
+    return float(x), float(y)
+
+
+def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[tuple[int, Point, Point]]:
+    """Yield the pieces of the blocks' edges that no joint lies on, each with its block at the left."""
+    joined: dict[int, list[tuple[Array, Array]]] = {}
+    for joint in joints:
+        for body in (joint.first, joint.second):
+            joined.setdefault(body, []).append((np.array(joint.start), np.array(joint.end)))
+    slack = SAME_LINE * float(np.max(np.ptp(np.vstack([block.corners for block in blocks]), axis=0)))
+    for number, block in enumerate(blocks):
+        for index in range(len(block.corners)):
+            start, end = block.edge(index)
+            length = float(np.hypot(*(end - start)))
+            tangent = (end - start) / length
+            covered = []
+            for piece in joined.get(number, []):
+                offsets = [abs(float(tangent[0] * (p - start)[1] - tangent[1] * (p - start)[0])) for p in piece]
+                if max(offsets) <= slack:
+                    low, high = sorted(float((p - start) @ tangent) for p in piece)
+                    covered.append((max(low, 0.0), min(high, length)))
+            place = 0.0
+            for low, high in sorted([*covered, (length, length)]):
+                if low - place > slack:
+                    ends = start + place * tangent, start + low * tangent
+                    yield number, _point(ends[0]), _point(ends[1])
+                place = max(place, high)
+
+
+def _on_line(
+    outline: Sequence[tuple[int, Point, Point]], start: Point, end: Point, what: str
+) -> Iterator[tuple[int, Point, Point]]:
+    """Yield what lies of the outline between two points of a line.
+
+    Raises
+    ------
+    ValueError
+        Nothing does.
+    """
+    a = np.array(start, float)
+    along = np.array(end, float) - a
+    length = float(np.hypot(*along))
+    if not length > 0:
+        raise ValueError(f"{what}: must have two ends, got {start!r} and {end!r}")
+    tangent = along / length
+    slack = SAME_LINE * length
+    found = False
+    for block, first, last in outline:
+        places = [float((np.array(p) - a) @ tangent) for p in (first, last)]
+        offsets = [abs(float(tangent[0] * (p[1] - a[1]) - tangent[1] * (p[0] - a[0]))) for p in (first, last)]
+        low, high = max(min(places), 0.0), min(max(places), length)
+        if max(offsets) <= slack and high - low > slack:
+            ends = (low, high) if places[0] < places[1] else (high, low)
+            found = True
+            yield block, _point(a + ends[0] * tangent), _point(a + ends[1] * tangent)
+    if not found:
+        raise ValueError(f"{what}: must lie on the outline, got {start!r} to {end!r}")
+
+
+def _point(place: Array) -> Point:
+    return float(place[0]), float(place[1])
+
+
+class GluedBlocks:
+    """What glued blocks answer: at rest, by modes, step by step.
+
+    Parameters
+    ----------
+    system : BlockSystem
+        As `glued_blocks` returns it.
+    """
+
+    def __init__(self, system: BlockSystem) -> None:
+        self.system = system
+        self.held = any(FIXED in (joint.first, joint.second) for joint in system.joints)
+        self.statics = system.equations if self.held else _without_rigid_motion(system)
+
+    @cached_property
+    def rest(self) -> Array:
+        """Displacements of the blocks at rest under the constant loads, (blocks, 6).
+
+        Raises
+        ------
+        ValueError
+            If nothing holds the blocks and their loads have a resultant.
+        """
+        equations = self.statics
+        D, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
+        if not self.held:
+            inertia = equations.B.T[:, -3:] @ force[-3:]
+            size = float(np.sum(np.abs(equations.F)))
+            if float(np.max(np.abs(inertia))) > UNBALANCED * size:
+                raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
+        return (D * self.system.load_size).reshape(-1, 6)
+
+    @property
+    def strains(self) -> Array:
+        """Strains e_x, e_y and g_xy of every block at rest, (blocks, 3); errors as `rest`."""
+        return self.rest[:, 3:]
+
+    def observer(self, start: Point, end: Point) -> Array:
+        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
+
+        A block of one strain moves its edges linearly: the mean is that of the middle.
+
+        Raises
+        ------
+        ValueError
+            If nothing lies there.
+        """
+        blocks = self.system.blocks
+        rows = np.zeros((2, len(blocks), 6))
+        if start == end:
+            numbers = self.system.blocks_at(start)
+            if not numbers:
+                raise ValueError(f"point: must lie in a block, got {start!r}")
+            for number in numbers:
+                rows[:, number] += blocks[number].T(*start) / len(numbers)
+            return rows.reshape(2, -1)
+        between = [joint for joint in self.system.joints if FIXED not in (joint.first, joint.second)]
+        length = float(np.hypot(*np.subtract(end, start)))
+        for number, first, last in _on_line([*_outline(blocks, between)], start, end, "edge"):
+            share = float(np.hypot(*np.subtract(last, first))) / length
+            rows[:, number] += share * blocks[number].T(*(np.add(first, last) / 2))
+        return rows.reshape(2, -1)
+
+    def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
+        """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
+        equations = self.statics
+        squares, shapes, _ = lowest_modes(equations, equations.at_rest, count)
+        D = self.rest.ravel() / self.system.load_size
+        shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ D))
+        order = np.argsort(squares)
+        frequencies = np.sqrt(squares).tolist()
+        return tuple(
+            Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), 0.0) for i in order
+        )
+
+    def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
+        """Return what some rows observe of the blocks from rest, at each step.
+
+        Parameters
+        ----------
+        rows : (columns, 6 blocks) array
+            As `observer` returns them; the columns of the result are named by their numbers.
+        """
+        check_count(steps=steps)
+        began = perf_counter()
+        equations = self.system.equations
+        stepper = Stepper(equations, scheme)
+        ready = perf_counter()
+        none = np.zeros((len(rows), len(equations.pressure)))
+        with np.errstate(all="ignore"):
+            still = np.zeros((1 + len(scheme.stages) * steps, 2))
+            observed = stepper.run(steps, (rows, none), still) * self.system.load_size
+            overflow = bound_overflow(observed, self.system.load_size)
+        return Result(
+            **times_of(scheme, steps, began, ready),
+            columns={str(number): values for number, values in enumerate(observed)},
+            unknowns=len(equations.F),
+            nonzeros=stepper.stages[-1].factor.nonzeros,
+            factorisations=len(stepper.stages),
+            solves=steps * sum(1 + solver.corrections for solver in stepper.stages),
+            notes=overflow,
+        )
+
+
+def _without_rigid_motion(system: BlockSystem) -> Equations:
+    """Return a free system's equations with the condition R' M D = 0."""
+    from scipy.sparse import block_diag, csr_array, vstack
+
+    equations = system.equations
+    motions = np.zeros((len(system.blocks), 6, 3))
+    for number, block in enumerate(system.blocks):
+        x, y = block.section.centroid
+        motions[number, :3] = np.eye(3)
+        motions[number, :2, 2] = displacement_rows(x, y)[:, 2]
+    momentum = csr_array(equations.blockwise(equations.mass) @ csr_array(motions.reshape(-1, 3)))
+    scale = momentum.max()  # rows of the size of the others
+    return replace(
+        equations,
+        B=csr_array(vstack([equations.B, momentum.T / scale])),
+        C=csr_array(block_diag([equations.C, csr_array((3, 3))])),
+        pressure=np.concatenate([equations.pressure, np.zeros(3)]),
+    )

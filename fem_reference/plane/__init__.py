@@ -1,0 +1,1 @@
+"""A plane elastic body of any polygonal outline, clamped or free, beside blocks that are glued together."""

@@ -1,0 +1,277 @@
+"""The site of results and its calculators; names of users on pages; every kind of block in every renderer."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any, get_args
+from urllib.parse import urlencode
+
+import numpy as np
+import pytest
+from conftest import SCENE, refused, typed
+from oracles.made_cases import kept_study, made_row
+from pypdf import PdfReader
+
+from validation.engine import run_study
+from validation.errors import InputError
+from validation.report import blocks as kinds
+from validation.report.blocks import Block, Callout, Heading, Link, Links, Listing, Paragraph, Points, table
+from validation.report.book import build
+from validation.report.render import pdf, terminal
+from validation.report.render.html import page, readable
+from validation.report.site import pages
+from validation.results import Results
+from validation.runs.history import History
+from validation.scenes.scene import load_scene
+from validation.suite.folders import scene_study
+
+FAILING = "fail<!--ing"  # a name that would open a comment in a script
+HOSTILE = "</script><b>50 % & 'more' @feng2017"  # the key of a source cites nothing in a user's title
+GATE = """
+[run]
+solvers = ["dda", "bar"]
+
+[[gate]]
+pair = ["dda", "bar"]
+metric = "displacement.l2"
+band = [{low}, 0.9]
+reason = "because of h / c"
+"""
+CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
+browser = pytest.mark.skipif(not CHROMIUM, reason="the browser is NOT RUN: needs Chromium on the path or in CHROMIUM")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """Return the results of a small scene with a hostile title, a gate that passes and one that fails."""
+    place = tmp_path_factory.mktemp("secret-place")
+    kept = Results(place / "results")
+    for name, low, title in (("passing", 0.0, HOSTILE), (FAILING, 0.8, "plain")):
+        text = SCENE.replace('"A small scene"', json.dumps(title)) + GATE.format(low=low)
+        (place / f"{name}.toml").write_text(text, encoding="utf-8")
+        run_study(scene_study(str(place / f"{name}.toml")), kept)
+    return kept
+
+
+@pytest.fixture(scope="module")
+def site(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("site")
+    assert pages.build(results, out, docs="..") == out / "index.html"
+    return out
+
+
+def texts(place: Path) -> dict[str, str]:
+    files = [path for path in sorted(place.rglob("*")) if path.is_file()]
+    return {str(path.relative_to(place)): path.read_text(encoding="utf-8") for path in files}
+
+
+def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site: Path) -> None:
+    files = texts(site)
+    names = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index", "references"}
+    assert {f"{name}.html" for name in (*names, "calculators")} == {name for name in files if name.endswith(".html")}
+    for name, text in files.items():
+        for address in re.findall(r'(?:href|src)="([^"#]+)', text) if name.endswith(".html") else ():
+            assert address in files or address in ("data:,", "../index.html"), (name, address)
+    assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
+    assert "FAIL" in files["index.html"] and "because of h / c" in files["index.html"]
+
+
+def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site: Path, results: Results) -> None:
+    for name, text in texts(site).items():
+        outside = set(re.findall(r"\w+://[^\s\"'<)]+", text)) if name.endswith((".html", ".js", ".css")) else set()
+        assert not outside, name
+        assert str(results.directory.parent) not in text, name
+    assert readable("in /home/me/here/scene.toml: p/E = 1 m/s, 5 kg/m³") == "in scene.toml: p/E = 1 m/s, 5 kg/m³"
+    assert readable(r"C:\me\here\scene.toml") == "scene.toml"
+    for name in ("index.html", "study-passing.html", "scene-passing.html"):
+        text = (site / name).read_text(encoding="utf-8")
+        assert "<b>50" not in text and "&lt;b&gt;50" in text and "@feng2017" in text, name
+
+
+def test_each_gate_is_in_the_table_of_its_study_and_scene(site: Path, results: Results) -> None:
+    for study, file in (("passing", "passing"), (FAILING, "fail---ing")):
+        (verdict,) = results.verdicts(study)
+        for name in (f"study-{file}.html", f"scene-{file}.html"):
+            text = html.unescape((site / name).read_text(encoding="utf-8"))
+            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and verdict["id"] in text
+
+
+def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
+    site: Path, results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / pages.MARK).write_text("an earlier site")
+    (out / "scene-old.html").write_text("gone")
+    monkeypatch.setattr(pages, "chapter_blocks", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left")))
+    with pytest.raises(InputError, match="cannot be written: No space left"):
+        pages.build(results, out)
+    assert set(texts(out)) == {pages.MARK, "scene-old.html"}
+    monkeypatch.undo()
+    pages.build(results, out, docs="..")
+    assert texts(out) == texts(site)
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_bad_input_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    for out, rule in (
+        ("file", "must be a directory"),
+        ("mine", "with other files"),
+        ("new", "no study's results here"),
+    ):
+        assert rule in refused("report", "--site", out, "--results", "nothing", cwd=tmp_path)
+    assert "--docs: goes with --site" in refused("report", "--docs", "x", cwd=tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"file", "mine"}
+
+
+def test_no_two_pages_share_a_file_whatever_the_letters_case() -> None:
+    names = pages.page_names("scene", ["Figure 7", "figure 7", "Figure/7", "..", "x" * 200])
+    assert [*names.values()] == [
+        "scene-Figure-7.html",
+        "scene-figure-7-2.html",
+        "scene-Figure-7-3.html",
+        "scene-unnamed.html",
+        f"scene-{'x' * 94}.html",
+    ]
+
+
+# ---- names of users -------------------------------------------------------------------------------------------------
+
+
+def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path: Path) -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
+    scene = scene.model_copy(update={"title": "After @feng2017"})
+    columns = {"displacement": np.full(4, -0.01), "esc\x1b[31m": np.arange(4.0)}
+    results = Results(tmp_path / "r")
+    history = History(0.002 * np.arange(1, 5), columns)
+    cases = [(scene, made_row("my_solver:solve", {}, scene.name), history)]
+    kept_study(results, cases, study="mine", title=scene.title)
+    first = PdfReader(build(results, tmp_path / "r.pdf")).pages[0].extract_text()
+    assert "After @feng2017" in first
+    assert pages.build(results, tmp_path / "site").exists()
+
+
+def test_the_first_page_of_an_own_scene_is_about_it(results: Results, tmp_path: Path) -> None:
+    first = PdfReader(build(results, tmp_path / "r.pdf", ["passing"])).pages[0].extract_text()
+    words = " ".join(first.split())
+    assert "2 m wide, 2 m high" in words and "solvers dda, bar" in words and "dda | bar" in words
+
+
+# ---- renderers ------------------------------------------------------------------------------------------------------
+
+
+def example(kind: type) -> Block:
+    """Return a block of a kind."""
+    examples: dict[str, Any] = {
+        "Heading": Heading("Top word"),
+        "Paragraph": Paragraph("Plain word"),
+        "Table": table(("a word", "b"), [("x", "1.5"), ("of the rows",)], "The caption", ("what it means",)),
+        "Callout": Callout("Framed word", "warn"),
+        "Points": Points((("First word", "and more"),)),
+        "Beside": kinds.Beside((Paragraph("left word"),), (Paragraph("right word"),), 0.5),
+        "Listing": Listing("+--+\n|  | word"),
+        "FigureBlock": kinds.FigureBlock("f.svg", "word"),
+        "Links": Links((Link("a.html", "Title word", "what is there"),)),
+    }
+    return examples.get(kind.__name__) or kind()
+
+
+@pytest.mark.parametrize("kind", get_args(Block))
+def test_every_kind_of_block_has_its_form_in_every_renderer(kind: type, tmp_path: Path) -> None:
+    block = example(kind)
+    (tmp_path / "f.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9pt" height="9pt"/>')
+    (tmp_path / "r.pdf").write_bytes(pdf.typeset(tmp_path, [block]))
+    printed = PdfReader(tmp_path / "r.pdf").pages[0].extract_text()
+    shown = "\n".join(text for text, _ in terminal.lines([block], 80))
+    if kind not in (kinds.PageBreak, kinds.References):
+        assert "word" in printed and "word" in page("t", [block])
+        assert kind is kinds.FigureBlock or "word" in shown
+    if kind is kinds.Table:
+        assert "<caption>The caption</caption>" in page("t", [block]) and "what it means" in shown
+
+
+# ---- calculators ----------------------------------------------------------------------------------------------------
+
+
+class Values(HTMLParser):
+    """What a page of calculators has computed, and the commands that it names."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.values: dict[str, Any] = {}
+        self.commands: list[str] = []
+        self._in_command = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        attributes = dict(attrs)
+        if stated := attributes.get("data-values"):
+            self.values = json.loads(stated)
+        self._in_command = attributes.get("class") == "command"
+
+    def handle_data(self, data: str) -> None:
+        if self._in_command:
+            self.commands.append(data)
+            self._in_command = False
+
+
+def computed(site: Path, settings: dict[str, Any]) -> Values:
+    """Return what the page computes of the settings in its address."""
+    address = f"{(site / 'calculators.html').as_uri()}#{urlencode(settings)}"
+    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--dump-dom")
+    done = subprocess.run([str(CHROMIUM), *flags, address], capture_output=True, text=True, timeout=60)
+    return Values(done.stdout)
+
+
+def answer(command: str) -> Any:
+    done = typed(*shlex.split(command)[1:], "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+SETTINGS = [
+    {"solve_for": "dt"},
+    {"solve_for": "gg", "step": 3e-4, "alpha": 0.25, "delta": 0.5, "stiffness_ratio": 10, "target": 0.08},
+    {"solve_for": "scheme", "step": 1e-3, "gg": 0.99, "young": 4e9, "side": 3, "target": 0.3},
+    {"solve_for": "dt", "alpha": 0.3025, "delta": 0.6, "gg": 0.98, "density": 2000, "target": 0.02},
+]
+
+
+@browser
+@pytest.mark.parametrize("settings", SETTINGS, ids=str)
+def test_the_calculators_answer_as_the_command_line(site: Path, settings: dict[str, Any]) -> None:
+    shown = computed(site, settings)
+    damping, advice = map(answer, shown.commands)
+    for mode in damping["modes"]:
+        own = shown.values["modes"][mode["name"]]
+        for name in ("frequency", "damping", "algorithmic", "kinetic", "spectral_radius"):
+            assert own[name] == pytest.approx(mode[name], rel=1e-11, abs=1e-12), name
+    assert shown.values["values"] == pytest.approx([one["value"] for one in advice["solutions"]], rel=1e-10)
+
+
+@browser
+def test_a_setting_beyond_its_limits_is_named_and_no_page_is_wider_than_its_window(site: Path, tmp_path: Path) -> None:
+    frames = "".join(
+        f'<iframe src="{path.as_uri()}#step=-1" width="400" height="900"></iframe>' for path in site.glob("*.html")
+    )
+    script = """onload = () => { document.body.dataset.answer = JSON.stringify([...document.querySelectorAll("iframe")]
+        .map((one) => [one.contentDocument.documentElement.scrollWidth,
+            one.contentDocument.querySelector(".wrong")?.textContent])); };"""
+    (tmp_path / "frames.html").write_text(f"<!DOCTYPE html><body>{frames}<script>{script}</script></body>")
+    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--dump-dom")
+    address = (tmp_path / "frames.html").as_uri()
+    done = subprocess.run([str(CHROMIUM), *flags, address], capture_output=True, text=True, timeout=60)
+    measured = json.loads(html.unescape(re.search(r'data-answer="([^"]*)"', done.stdout)[1]))  # type: ignore[index]
+    assert len(measured) == 7 and max(width for width, _ in measured) <= 400
+    assert [text for _, text in measured if text] == ["Time step dt [s]: must be from 1e-06 to 1"]

@@ -1,0 +1,71 @@
+"""Blocks set as PDF by typst."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import typst
+
+from validation.errors import InputError
+from validation.report.blocks import Block, References, as_data
+from validation.report.names import unescaped
+from validation.report.references import BIBLIOGRAPHY, CITED, marked, references
+from validation.runs.files import write_atomically
+
+TEMPLATE = Path(__file__).with_name("report.typ")
+PIXELS_PER_INCH = 200.0
+
+
+def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
+    """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    if not out.parent.is_dir():
+        raise InputError(
+            f"cannot be written: {out.parent} is not a directory", source=out, advice="choose another place"
+        )
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name)
+        pdf = typeset(root, blocks_of(root))
+    write_atomically(out, lambda stream: stream.write(pdf))
+    return out
+
+
+def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
+    """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
+    shutil.copyfile(TEMPLATE, root / "report.typ")
+    shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
+    data = {
+        "title": "Discontinuous Deformation Analysis against finite elements",
+        "subtitle": "Cross-validation on the two-block model",
+        "keys": list(references()) if References() in blocks else [],
+        "cited": CITED,
+        "blocks": [as_data(block, lambda text: unescaped(text, marked)) for block in blocks],
+    }
+    (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
+    try:
+        pdf = typst.compile(str(root / "report.typ"), root=str(root), format="pdf", ignore_system_fonts=True)
+    except typst.TypstError as error:
+        raise InputError(f"the report cannot be set: {' '.join(str(error).split())}") from error
+    return bytes(pdf)
+
+
+def png_of(svg: Path) -> Path:
+    """Write a PNG of an SVG file beside it, rendered as in the report."""
+    page = f'#set page(width: auto, height: auto, margin: 2mm)\n#image("{svg.name}")\n'
+    with tempfile.TemporaryDirectory() as name:
+        shutil.copyfile(svg, Path(name) / svg.name)
+        (Path(name) / "page.typ").write_text(page, encoding="utf-8")
+        source = str(Path(name) / "page.typ")
+        image = typst.compile(source, root=name, format="png", ppi=PIXELS_PER_INCH, ignore_system_fonts=True)
+    path = svg.with_suffix(".png")
+    write_atomically(path, lambda stream: stream.write(bytes(image)))
+    return path

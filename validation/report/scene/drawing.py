@@ -1,0 +1,163 @@
+"""The model of a scene, drawn in text with its parameters beside it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import textwrap
+from collections.abc import Iterator
+from operator import itemgetter
+
+import numpy as np
+
+from validation.scenes.keys import described, stated
+from validation.scenes.rigid import BoxSection, RigidSection
+from validation.scenes.scene import Scene
+
+INSIDE = 15  # characters of a block's width in the drawing
+NARROWEST = 5  # the same of a tall block
+BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
+# keys of a column whose contacts open or slip
+OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
+
+
+def drawing(scene: Scene, width: int | None) -> Iterator[str]:
+    """Yield the model of a scene, drawn in text."""
+    if scene.rigid is not None:
+        return boxes(scene.rigid)
+    return column(scene) if scene.column is not None else block(scene, width)
+
+
+def block(scene: Scene, width: int | None) -> Iterator[str]:
+    """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
+    b = scene.block
+    wide, high = np.ptp(b.outline, axis=0)
+    slenderness = wide / high
+    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+    rows = _rows(across, slenderness)
+    shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
+    cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
+    start = {f"starts at {b.velocity:g} m/s": b.velocity, f"tilted by {b.tilt:g} deg": b.tilt}
+    start |= {f"gap of {scene.contact.gap:g} m": scene.contact.gap}
+    beside = [
+        f"{wide:.3g} m wide, {high:.3g} m high{shape}{cut}",
+        f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}",
+        *filter(None, [", ".join(words for words, value in start.items() if value)]),
+    ]
+    *above, last = textwrap.wrap(_loads(scene), (width or 1000) - across - BESIDE, break_on_hyphens=False)
+    yield from (" " * (across + BESIDE) + text for text in above)
+    mark = ">" if scene.load.traction else ""
+    if scene.load.pressure:
+        mark = "v"
+    arrows = " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
+    yield f"  {arrows.ljust(across + 2)}   {last}"
+    yield f"  +{'-' * across}+"
+    for text in (*beside, *[""] * (rows - len(beside))):
+        yield f"  |{' ' * across}|   {text}".rstrip()
+    yield f"  +{'-' * across}+"
+    c = scene.contact
+    springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
+    if c.shear_stiffness is not None:
+        springs += f", shear {c.shear_stiffness:g} N/m"
+    holds = "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
+    if c.friction is not None:
+        holds += f", friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
+    foot = "z" if c.law == "locked" else "x"
+    yield f"  {foot}{' ' * across}{foot}   {springs}"
+    yield f" {'=' * (across + 4)}  {holds}"
+
+
+def _rows(across: int, slenderness: float) -> int:
+    """Return the rows of a body's inside; a row is as high as two columns are wide."""
+    return min(max(3, round(across / slenderness / 2)), INSIDE // 2)
+
+
+def _loads(scene: Scene) -> str:
+    load = scene.load
+    names = {"pressure": "q"}
+    loads = [described(names.get(name, name), value, key) for name, value, key in stated(load) if name != "base_motion"]
+    if load.base_motion is not None:
+        loads.append(f"base moved by {load.base_motion.rpartition('/')[2]}")
+    return ", ".join(loads) or "no load"
+
+
+def column(scene: Scene) -> Iterator[str]:
+    """Yield the layers of a column from the top down, and what it stands on."""
+    layered_column = scene.column
+    if layered_column is None:
+        return
+    excitation = scene.stated_input
+    if excitation is None:
+        signal = ""
+    elif excitation.shape is None:
+        signal = f"record {(excitation.record or '').rpartition('/')[2]}"
+    elif excitation.velocity is not None:
+        signal = f"{excitation.shape}, {excitation.velocity:g} m/s"
+    else:
+        signal = f"{excitation.shape}, {excitation.pressure or 0:g} Pa"
+    driven_end = None if excitation is None else excitation.at
+    top = f"{signal} on the top, {layered_column.motion} waves" if driven_end == "top" else "free top"
+    yield f"  +{'-' * INSIDE}+   {top}"
+    for layer in reversed(layered_column.layer):
+        cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
+        velocity = f", v = {layer.velocity:g} m/s" if layer.velocity else ""
+        material = "rigid" if math.isinf(layer.young) else f"E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        yield f"  |{cut}|   rho = {layer.density:g} kg/m3, {material}{velocity}"
+        yield f"  +{'-' * INSIDE}+"
+    for joint in layered_column.joint:
+        numbers = [described(name, value, key) for name, value, key in stated(joint) if name != "height"]
+        yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {', '.join(numbers)}"
+    if layered_column.glue is not None:
+        yield f"{' ' * (INSIDE + 7)}blocks glued by {layered_column.glue:g} Pa/m"
+    # the keys of contacts that open or slip and have no joint of their own
+    words = [described(name, value, key) for name, value, key in stated(layered_column) if name in OF_CONTACTS]
+    if layered_column.law != "bonded" and words:
+        yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
+    base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
+    yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"
+
+
+def boxes(section: RigidSection) -> Iterator[str]:
+    """Yield rigid boxes on each other from the top down, equal neighbours as one, and the ground."""
+    left = min(box.x - box.width / 2 for box in section.box)
+    right = max(box.x + box.width / 2 for box in section.box)
+    characters_per_metre = INSIDE / (right - left)
+    stack = [list(equal) for _, equal in itertools.groupby(enumerate(section.box, start=1), key=itemgetter(1))]
+    for equal in reversed(stack):
+        first, box = equal[0]
+        last = equal[-1][0]
+        across = max(NARROWEST, round(characters_per_metre * box.width))
+        shift = min(INSIDE - across, round(characters_per_metre * (box.x - box.width / 2 - left)))
+        beside = _box(box, last - first + 1)
+        rows = max(len(beside), _rows(across, box.width / box.height) if len(section.box) == 1 else 1)
+        margin = " " * (2 + shift)
+        yield f"{margin}+{'-' * across}+"
+        for row in range(rows):
+            label = f"{first}" if first == last else f"{first}-{last}"
+            inside = (label if row == rows // 2 else "").center(across)
+            words = beside[row] if row < len(beside) else ""
+            yield (f"{margin}|{inside}|".ljust(INSIDE + BESIDE) + words).rstrip()
+        yield f"{margin}+{'-' * across}+"
+    slope = "level ground"
+    if section.slope:
+        slope = f"slope of {abs(section.slope):g} deg, down to the {'right' if section.slope > 0 else 'left'}"
+    contacts = "frictionless" if section.friction == 0 else f"friction {section.friction:g} deg"
+    springs = "rigid or as a program has them"
+    if section.stiffness is not None:
+        springs = f"{section.stiffness:g} N/m below box 1"
+    yield f" {'=' * (INSIDE + 4)}  contacts: {contacts}, restitution {section.restitution:g}, {springs}"
+    margin = " " * (INSIDE + BESIDE)
+    yield f"{margin}{slope}, g = {section.gravity:g} m/s2"
+    if section.base_amplitude:
+        motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
+        yield f"{margin}ground moved by A (1 - cos 2 pi f t), {motion}"
+
+
+def _box(box: BoxSection, count: int) -> list[str]:
+    """Return size and start of a box, or of each of some equal boxes, a line each."""
+    each = "each " if count > 1 else ""
+    lines = [f"{each}{box.width:.3g} m wide, {box.height:.3g} m high, rho = {box.density:g} kg/m3"]
+    start = [
+        described(name, value, key) for name, value, key in stated(box) if name not in ("width", "height", "density")
+    ]
+    return [*lines, ", ".join(start)] if start else lines

@@ -1,0 +1,187 @@
+"""The site of results: the chapters, a page for each scene, the calculators; written under a temporary name as a whole."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from validation.report.blocks import Blocks, Heading, Link, Links, Paragraph, References
+from validation.report.book import chapter_blocks, ordered_studies, unread_studies
+from validation.report.chapters.data import CaseGroup, case_groups
+from validation.report.chapters.gates import gate_list, not_passed
+from validation.report.chapters.scene import scene_page
+from validation.report.front.first import verdict_line
+from validation.report.names import Readable
+from validation.report.references import PAPER, identity
+from validation.report.render import html
+from validation.report.site.places import check_place, write
+from validation.runs.case_name import scene_of
+from validation.runs.files import atomic_directory
+from validation.runs.results import Results
+
+NAME = "DDA validation"
+MARK = html.REFERENCES  # the page that marks a directory as such a site
+CALCULATORS = "calculators.html"
+SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
+Progress = Callable[[int, int, str], None]
+
+
+def build(
+    results: Results,
+    out: Path,
+    chosen: Sequence[str] | None = None,
+    progress: Progress = lambda finished, total, label: None,
+    docs: str = "",
+) -> Path:
+    """Write the site of a results directory and return its first page.
+
+    Parameters
+    ----------
+    results
+        The results directory; no solver is called, and studies that this version cannot read are left out.
+    out
+        Directory to write: a new or empty one, or an earlier site, which is replaced as a whole.
+    chosen
+        The studies that are shown, all by default.
+    progress
+        Called before each study: how many are finished, of how many, and which is next.
+    docs
+        Address of the documentation's folder, such as ".." where the site lies inside it; its pages are linked to.
+
+    Raises
+    ------
+    InputError
+        There are no results, or they are damaged, or the directory is not one to write to.
+    """
+    check_place(out, MARK, "site")
+    readable = Readable(results)
+    names = ordered_studies(readable, chosen)
+    unread = unread_studies(readable, names)
+    with atomic_directory(out) as place:
+        site = Site(readable, [name for name in names if name not in unread], place, docs)
+        for number, study in enumerate(site.studies):
+            progress(number, len(site.studies), study)
+            site.write_study(study)
+        site.write_other_pages()
+    return out / "index.html"
+
+
+def size(place: Path) -> int:
+    """Return the size of a site [bytes]."""
+    return sum(path.stat().st_size for path in place.rglob("*") if path.is_file())
+
+
+class Site:
+    """The pages of one results directory, written into a directory."""
+
+    def __init__(self, results: Readable, studies: Sequence[str], place: Path, docs: str = "") -> None:
+        self.studies = studies
+        self._results = results
+        self._place = place
+        self._docs = docs
+        self._manifests = {study: results.manifest(study) for study in studies}
+        self._verdicts = [v for v in results.verdicts() if v["study"] in self._manifests]
+        self._imprint = identity(manifest.get("provenance") or {} for manifest in self._manifests.values())
+        self._study_pages = page_names("study", studies)
+        titles: dict[str, str] = {}
+        for manifest in self._manifests.values():
+            for group in case_groups(results, manifest, drawn=False):
+                titles.setdefault(group.name, group.title)
+        self._scene_titles = titles
+        self._scene_pages = page_names("scene", list(titles))
+        self._written: set[str] = set()
+
+    def _write(self, file: str, title: str, blocks: Blocks, **values: object) -> None:
+        menu = [("index.html", "Results"), (CALCULATORS, "Calculators"), (html.REFERENCES, "References")]
+        if self._docs:
+            menu.append((f"{self._docs}/index.html", "Documentation"))
+        stem = file.removesuffix(".html")
+        text = html.page(
+            title, blocks, file=file, name=NAME, menu=menu, imprint=f"{self._imprint}.",
+            figure=lambda figure: f"{stem}/{figure}", **values,  # type: ignore[arg-type]
+        )  # fmt: skip
+        write(self._place / file, text)
+
+    def write_study(self, study: str) -> None:
+        """Write the chapter of a study, and the pages of the scenes that no study before it has."""
+        page = self._study_pages[study]
+        directory = self._place / page.removesuffix(".html")
+        directory.mkdir()
+        groups = case_groups(self._results, self._results.whole(study, histories=True))
+        scenes = [Link(self._scene_pages[group.name], group.name, group.title) for group in groups]
+        blocks = [
+            *chapter_blocks(self._results, study, directory),
+            Heading("Scenes", 2),
+            Links(tuple(scenes)),
+            *gate_list([verdict for verdict in self._verdicts if verdict["study"] == study]),
+        ]
+        self._write(page, self._title(study), blocks, scenes=self._scene_pages)
+        for group in groups:
+            if group.name not in self._written:
+                self._written.add(group.name)
+                self._write_scene(group)
+
+    def _write_scene(self, group: CaseGroup) -> None:
+        page = self._scene_pages[group.name]
+        directory = self._place / page.removesuffix(".html")
+        directory.mkdir()
+        verdicts = [verdict for verdict in self._verdicts if scene_of(verdict["scene"]) == group.name]
+        blocks = [*scene_page(group, directory), *gate_list(verdicts)]
+        self._write(page, f"{group.name}: {group.title}", blocks)
+
+    def _title(self, study: str) -> str:
+        return self._manifests[study].get("title") or study
+
+    def write_other_pages(self) -> None:
+        """Write the first page, the calculators, the sources and what all pages share."""
+        studies = [
+            Link(page, self._title(study), self._manifests[study].get("purpose", ""))
+            for study, page in self._study_pages.items()
+        ]
+        scenes = [Link(page, name, self._scene_titles[name]) for name, page in self._scene_pages.items()]
+        lead = (
+            "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
+            "reason each."
+        )
+        index: Blocks = [
+            Heading("Discontinuous Deformation Analysis against finite elements"),
+            Paragraph(lead, "lead"),
+            Paragraph(f"The model is that of {PAPER}.", "small"),
+            verdict_line(self._verdicts),
+            *not_passed(self._verdicts),
+            Heading("Studies", 2),
+            Links(tuple(studies)),
+            Heading("Scenes", 2),
+            Links(tuple(scenes)),
+            Heading("Calculators", 2),
+            Links((Link(CALCULATORS, "Damping of a step, and the step for a damping"),)),
+        ]
+        self._write("index.html", NAME, index)
+        sources = "The paper whose model is tested, and the sources of the methods."
+        self._write(
+            html.REFERENCES, "References", [Heading("References"), Paragraph(sources, "lead"), References()]
+        )
+        self._write(
+            CALCULATORS, "Calculators", [], template="calculators.html.j2", package=__package__, scripts=SCRIPTS
+        )
+        for name in (html.STYLE, html.SCRIPT):
+            write(self._place / name, html.static(name))
+        for name in SCRIPTS:
+            write(self._place / name, Path(__file__).with_name(name).read_text("utf-8"))
+
+
+def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
+    """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
+    pages: dict[str, str] = {}
+    used: set[str] = set()
+    for name in names:
+        stem = f"{kind}-{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('-.') or 'unnamed'}"[:100]
+        unique = stem
+        number = 1
+        while unique.casefold() in used:
+            number += 1
+            unique = f"{stem}-{number}"
+        used.add(unique.casefold())
+        pages[name] = f"{unique}.html"
+    return pages

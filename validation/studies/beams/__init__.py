@@ -1,0 +1,1 @@
+"""A study: scenes, gates and chapter."""

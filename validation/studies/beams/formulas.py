@@ -1,0 +1,126 @@
+r"""Closed forms and derived rows of beams that are cut into blocks.
+
+Squares of side w/n, glued by springs of g E at each end of a shared edge (E the modulus, unit thickness). In bending
+each row of squares turns as a rigid body, and the square at x_i (in sides, from the middle) takes the axial strain e_i
+that minimises, for unit curvature and modulus,
+
+    U = sum [ e_i^2/2 + g (x_i - e_i)^2 + g/4 ] + (g/4) sum (e_{i+1} - e_i)^2,      EI(g, n) / EI = 24 U / n^3.
+
+Under tension the modulus is E / (1 + 1/(2 g)), in shear 1/G becomes 1/G + 1/(g E). The end of a cantilever moves by
+P L^3 / (3 EI) + P L (1/G + 1/(g E)) / w, since squares keep plane rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished, NothingToDerive
+from validation.runs.row import Value
+from validation.scenes.plane import PlaneSection
+from validation.scenes.scene import Scene
+from validation.suite.bands import Band, cases
+
+ORDER = "order"
+FREQUENCIES = tuple(f"frequency.{number}" for number in (1, 2, 3, 4))
+SCENES = ("beams-triangles", "beams-weight", "beams-squares", "beams-glue", "beams-wanted-glue", "beams-supported")
+CONVERGING = ("beams-triangles", "beams-weight", "beams-supported")
+
+
+def table_of(case: Scene) -> PlaneSection:
+    """Return the blocks of a case."""
+    if case.plane is None:
+        raise ValueError(f"{case.name}: must be of blocks in the plane")
+    return case.plane
+
+
+def over_elements() -> tuple[Derived, ...]:
+    """Return what the blocks do over what elements on the same outline do, and the order of its error."""
+    rows = []
+    for name in SCENES:
+        for case in cases(name):
+            for solver in ("dda", "fenicsx"):
+                if solver in case.run.solvers:
+                    needs = ((case.name, solver), (case.name, "fem"))
+                    compute = partial(_ratios, case.name, solver)
+                    rows.append(Derived(case.name, f"{solver} over fem", needs, compute, READ))
+    for name in CONVERGING:
+        names = [case.name for case in cases(name)]
+        of_order = tuple((case, solver) for case in names for solver in ("dda", "fem"))
+        rows.append(Derived(name, ORDER, of_order, partial(_orders, names), READ))
+    return tuple(rows)
+
+
+READ = ("displacement.static", *FREQUENCIES)
+
+
+def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
+    row, elements = (finished.row(name, each) for each in (solver, "fem"))
+    if row is None or elements is None:
+        raise NothingToDerive(f"needs {solver} and fem")
+    ratios: dict[str, Value] = {}
+    for metric, value in row.metrics.items():
+        other = elements.metrics.get(metric)
+        if metric in READ and isinstance(value, float) and isinstance(other, float):
+            ratios[metric] = value / other
+    return ratios
+
+
+def _orders(names: Sequence[str], finished: Finished) -> Mapping[str, Value]:
+    """Return the order of the last halving of the block, by metric."""
+    coarse, fine = (_ratios(name, "dda", finished) for name in names[-2:])
+    orders: dict[str, Value] = {}
+    for metric, ratio in fine.items():
+        before = coarse[metric]
+        if isinstance(ratio, float) and isinstance(before, float):
+            orders[metric] = float(np.log2((before - 1) / (ratio - 1)))
+    return orders
+
+
+def bending_ratio(squares: int, glue: float) -> float:
+    """Return EI(g, n) / EI of a beam of n squares across.
+
+    Example
+    -------
+    >>> round(bending_ratio(8, 2.0), 10), round(bending_ratio(4, 1.0), 10)
+    (1.0748753965, 1.125)
+    """
+    x = np.arange(squares) - (squares - 1) / 2
+    neighbours = np.diff(np.eye(squares), axis=0)  # e_{i+1} - e_i
+    stiffness = (1 + 2 * glue) * np.eye(squares) + glue / 2 * neighbours.T @ neighbours
+    e = np.linalg.solve(stiffness, 2 * glue * x)
+    steps = neighbours @ e
+    energy = e @ e / 2 + glue * (x - e) @ (x - e) + squares * glue / 4 + glue / 4 * steps @ steps
+    return float(24 * energy / squares**3)
+
+
+def tip_of_squares(case: Scene) -> Band:
+    """Return bounds of the end's displacement of a cantilever of squares that are glued with finite stiffness [m].
+
+    Rows turn against each other in their joints, which lie at j h: the integral of (L - z)^2 is a sum, without the
+    clamp from below and with it from above.
+    """
+    shear, bending, rows = _parts(case)
+    places = np.arange(rows + 1) / rows
+    above = 3 * float(np.sum((1 - places[:-1]) ** 2)) / rows
+    below = 3 * float(np.sum((1 - places[1:]) ** 2)) / rows
+    return shear + below * bending, shear + above * bending
+
+
+def locked_tip(case: Scene) -> Band:
+    """Return bounds of the same where the glue is firm: t L / G, and up to twice what the glue gives in bending [m]."""
+    shear, bending, _ = _parts(case)
+    return shear * (1 - 1e-9), shear + 2 * bending
+
+
+def _parts(case: Scene) -> tuple[float, float, int]:
+    """Return the shear and the bending of the end of a cantilever of squares [m], and the number of its rows."""
+    plane = table_of(case)
+    across, rows = plane.subdivide or (1, 1)
+    width, length = plane.rectangle or (1.0, 1.0)
+    force = plane.load[0].traction[0] * width
+    stiffness = plane.young * width**3 / 12 * bending_ratio(across, plane.glue)
+    compliance = 2 * (1 + plane.poisson) / plane.young + 1 / (plane.glue * plane.young)
+    return force * length * compliance / width, force * length**3 / (3 * stiffness), rows
