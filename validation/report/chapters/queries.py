@@ -15,7 +15,7 @@ An expression says what is looked up of a line:
     "time.step"                     a datum of the scene
     "label", "scene", "title"       of the case within its scene, and of its scene; "case": scene, and label if several
     "dda mode1.frequency"           a metric of a solver; of that of the line, "* mode1.frequency"
-    "dda work.unknowns"             work, seconds and their sum, "dda seconds"
+    "dda work.unknowns"             work, seconds and their sum, "dda seconds"; "dda outcome"
     "dda|fem displacement.l2"       a metric of a pair
     "closed: drag"                  a metric of the derived row `closed` of the case, or of its scene
     "bars/pieces: piece 1"          the same of another owner, in which words may stand, "impact-{method}/map: mean"
@@ -30,6 +30,7 @@ import fnmatch
 import math
 import operator
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -41,6 +42,7 @@ from validation.runs.results import Results
 from validation.runs.row import Value
 
 Query = dict[str, Any]
+NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number, which stands in its cell as a dash
 PLACEHOLDER = re.compile(r"\\\{(\w+)\\\}")
 
 
@@ -174,13 +176,19 @@ class StudyTable:
     def picked(self, lines: Iterable[Line], column: Query) -> Value:
         """Return the value of a column in some lines: of the first that has one, or as ``pick`` says.
 
-        ``pick`` is ``"most"`` or ``"least"``, of the values, or of the expression ``among``; or ``"count"``.
+        ``pick`` is ``"most"`` or ``"least"``, of the values, or of the expression ``among``; ``"count"`` counts lines,
+        ``"tally"`` lines by value. ``where`` says what a line must meet, ``unless`` what it must not.
         """
         expression = column["of"]
         chosen = [line for line in lines if self._meets(line, column.get("where", {}))]
+        if "unless" in column:
+            chosen = [line for line in chosen if not self._meets(line, column["unless"])]
         pick = column.get("pick")
         if pick == "count":
-            return len(chosen)
+            return len(chosen) or (None if column.get("positive") else 0)
+        if pick == "tally":
+            counts = Counter(str(self.value(line, expression)) for line in chosen)
+            return ", ".join(f"{value} {count}" for value, count in counts.items()) or None
         if pick is None:
             values = (self.value(line, expression) for line in chosen)
             return next((value for value in values if value is not None), None)
@@ -285,4 +293,7 @@ def _of_solver(case: CaseResults, solver: str, metric: str) -> Value:
         return row.seconds.get(name) if name else sum(row.seconds.values())
     if part == "work":
         return row.work.get(name)
-    return case.number(solver, metric)
+    if metric == "outcome":
+        return str(row.outcome)
+    value = row.metrics.get(metric)
+    return value if isinstance(value, str) and value not in NO_NUMBERS else case.number(solver, metric)

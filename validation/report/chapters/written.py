@@ -183,6 +183,8 @@ class WrittenChapter:
 
     def _table(self, name: str, query: Query = NO_QUERY) -> list[Table]:
         described = self.page.described("table", name) | query
+        if "notes_of" in described:
+            described["notes"] = self.table.data.get(described["notes_of"], ())
         columns = [({"title": one} if isinstance(one, str) else one) for one in described["columns"]]
         rows: list[list[str]] = []
         previous: list[str] = []
@@ -332,14 +334,15 @@ class WrittenChapter:
             own = self.table.lines(described | {"of": patterns})
             if own:
                 grid.append([self._map(one, own, described, row_values, column_values) for one in described["maps"]])
-        if not grid:
+        if not any(np.isfinite(one.values).any() for row in grid for one in row):
             return []
         row_texts = [rows.get("pattern", "{}").format(_written(rows, value)) for value in row_values]
         column_texts = [_written(columns, value) for value in column_values]
         labels = columns.get("label", ""), rows.get("label", "")
         figure = map_figure(grid, row_texts, column_texts, labels, MapScale(*described["scale"]))
         caption = self._caption(described["caption"])
-        return [saved(figure, self.directory, described["file"], caption)]
+        file = described["file"].format(study=self.table.manifest["study"])
+        return [saved(figure, self.directory, file, caption)]
 
     def _map(
         self, one: Query, lines: Sequence[Line], maps: Query, rows: Sequence[float], columns: Sequence[float]
