@@ -99,6 +99,11 @@ def test_a_query_looks_up_what_it_names(table: StudyTable, query: Any, expressio
         ({"of": "time.step", "pick": "count"}, 2),
         ({"of": "time.step", "where": {"time.step": 0.002}}, 0.002),
         ({"of": "closed: absent", "pick": "most"}, None),
+        ({"of": "time.step", "unless": {"time.step": 0.01}}, 0.002),
+        ({"of": "dda outcome", "pick": "tally"}, "completed 2"),
+        ({"of": "dda outcome", "pick": "tally", "unless": {"dda outcome": "completed"}}, None),
+        ({"of": "time.step", "pick": "count", "where": {"time.step": 1.0}}, 0),
+        ({"of": "time.step", "pick": "count", "positive": True, "where": {"time.step": 1.0}}, None),
     ],
 )
 def test_a_column_picks_one_of_some_lines(table: StudyTable, column: Any, value: Any) -> None:
@@ -225,6 +230,54 @@ def test_lines_hold_what_their_queries_name(table: StudyTable, tmp_path: Path) -
     assert lines["a"].dash == (1.0, 2.0) and np.isnan(lines["a"].y[1])
     assert points["at 0.01"] == ([0.01], [-0.01]) and lines["at 0.01"].color == "#222222"
     assert lines["at 0.002"].color == ""
+
+
+MAPS = """
+parts = [{ maps = "steps" }, { maps = "nothing" }]
+[maps.steps]
+file = "{study}.svg"
+caption = "Maps."
+of = ["figures-*"]
+rows = { of = "contact.stiffness", form = "decade" }
+columns = { of = "time.step", factor = 1e3, form = "g", descending = true }
+scale = ["Greys", 1.0, 5.0]
+missing = "none"
+[[maps.steps.maps]]
+title = "v"
+of = "dda displacement.static"
+decimals = 2
+shade = { from = 0.0, to = -0.04 }
+[[maps.steps.maps]]
+title = "r"
+of = "closed: ratio"
+digits = 1
+shade = { from = 0.25, to = 4.0, logarithmic = true }
+[[maps.steps.maps]]
+title = "s"
+of = "closed: ratio"
+form = "digits"
+shade = { from = 2.0, to = 8.0, logarithmic = true, either_side = true }
+[maps.nothing]
+file = "nothing.svg"
+caption = ""
+of = ["figures-*"]
+rows = { of = "contact.stiffness" }
+columns = { of = "time.step" }
+scale = ["Greys", 1.0, 5.0]
+maps = [{ title = "v", of = "closed: absent", shade = { from = 0.0, to = 1.0 } }]
+"""
+
+
+def test_maps_shade_and_write_the_number_of_each_cell(table: StudyTable, tmp_path: Path) -> None:
+    (tmp_path / "chapter.toml").write_text(MAPS)
+    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
+    (figure,) = chapter.blocks()
+    assert isinstance(figure, FigureBlock) and figure.file == "made.svg"
+    described = chapter.page.described("maps", "steps")
+    maps = [chapter._map(one, table.lines({}), described, [1e9], [0.01, 0.002]) for one in described["maps"]]
+    assert [one.texts for one in maps] == [[["−0.01", "−0.02"]], [["0.5", "none"]], [["0", "none"]]]
+    assert [one.values.tolist()[0][0] for one in maps] == pytest.approx([0.25, 0.25, 1.0])
+    assert np.isnan(maps[1].values[0, 1])
 
 
 # ---- the chapters of the suite --------------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ from validation.runs.results import Results
 from validation.runs.row import Value
 
 Query = dict[str, Any]
-NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number, which stands in its cell as a dash
+NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number
 PLACEHOLDER = re.compile(r"\\\{(\w+)\\\}")
 
 
