@@ -6,8 +6,6 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from validation.report.site.places import check_place, write
-
 from validation.report.blocks import Blocks, Heading, Link, Links, Paragraph, References
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
 from validation.report.chapters.data import CaseGroup, case_groups
@@ -17,6 +15,7 @@ from validation.report.front.first import verdict_line
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
+from validation.report.site.places import check_place, write
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
