@@ -8,10 +8,6 @@ import pytest
 from conftest import thinned
 from oracles.unilateral_checks import DT, apart, random_model, size
 
-import dda.contact.dashpot as dashpot
-import dda.contact.impact as impact
-import dda.one_block.impact_step as impact_step
-import dda.one_block.unilateral_step as step
 from dda import (
     BaseMotion,
     Block,
@@ -26,7 +22,6 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.contact.kernel import FOUND
 from dda.one_block.unilateral_form import unilateral_form
 from dda.rotation.solution import RollingModel
 from validation.theory import stages
@@ -398,95 +393,3 @@ def test_sub_blocks_and_blocks_that_turn_refuse_dashpots_and_these_rules():
 
 
 # ---- slips -----------------------------------------------------------------------------------------------------------
-
-
-def dashpot_map():
-    scheme, table = SCHEMES["average"]
-    check_rebounds(scheme, spring_steps(table, 1.3, zeta=0.3), 1.3, zeta=0.3)
-
-
-def unclipped(monkeypatch):
-    """Contact pulls until the gap is zero."""
-    monkeypatch.setattr(dashpot, "would_pull", lambda after, i: False)
-
-
-def old_velocity(monkeypatch):
-    """The dashpot's force is that of the velocity before the step."""
-
-    def set_retarded(block, stage, length):
-        length.numbers[3] = 0.0
-        step.copy_matrix(length.C, length.retarded.C)
-
-    def retard(block, stage, length, before, base_moves):
-        room = block.room
-        n, c = len(block.K), len(room.slide)
-        for i in range(c):
-            rate = step.dot(block.inverse_mass[n - c + i], room.P, n) / length.numbers[2]
-            room.retarded.slide[i] = block.law.damping * block.law.compliance * rate
-            room.retarded.gap[i] = room.free.gap[i] + room.retarded.slide[i]
-
-    monkeypatch.setattr(step, "set_retarded", set_retarded)
-    monkeypatch.setattr(step, "retard", retard)
-
-
-def six_passes(monkeypatch):
-    real = step.augmented
-
-    def faulty(law, penetration, limit, *given):
-        _, solves, passes = real(law, penetration, 6, *given)
-        return FOUND, solves, passes
-
-    monkeypatch.setattr(step, "augmented", faulty)
-
-
-def no_forecast(monkeypatch):
-    """A contact is closed by its gap before the step."""
-    monkeypatch.setattr(impact, "is_near", lambda gap, rate, length: gap <= 0)
-
-
-def predicted_rate(monkeypatch):
-    """The restitution counts from the rate at the end of the step without impulses."""
-    real = impact_step.impulses
-
-    def faulty(law, e, length, before, rate, free, *given):
-        for i in range(len(rate)):
-            free.gap[i] *= 1 + e
-        return real(law, 0.0, length, before, rate, free, *given)
-
-    monkeypatch.setattr(impact_step, "impulses", faulty)
-
-
-def half_a_force(monkeypatch):
-    """Half of Kane's contact force enters the velocity."""
-    real = step.velocity_corrector
-    monkeypatch.setattr(step, "accept", half_accept(step.accept, real))
-
-
-def half_accept(real, _):
-    def accept(block, shear_law, stage, length, before, after):
-        real(block, shear_law, stage, length, before, after)
-        if block.rule != 0:
-            h2 = length.numbers[2] ** 2
-            for i in range(len(block.K)):
-                pressed = sum(row[i] * N for row, N in zip(block.B, block.room.forces, strict=True))
-                after.P[i] -= h2 * block.multiplicity * pressed / 2 / length.numbers[0]
-
-    return accept
-
-
-@pytest.mark.parametrize(
-    ("slip", "check"),
-    [
-        (unclipped, dashpot_map),
-        (old_velocity, dashpot_map),
-        (six_passes, check_passes),
-        (no_forecast, check_penetration),
-        (predicted_rate, check_restitution_under_load),
-        (half_a_force, test_kanes_force_enters_the_velocity_whole),
-    ],
-)
-def test_each_slip_is_noticed(monkeypatch, slip, check):
-    check()
-    slip(monkeypatch)
-    with pytest.raises(AssertionError):
-        check()

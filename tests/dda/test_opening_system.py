@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.unilateral_checks import apart, mirrored, random_model, size, sums
+from oracles.unilateral_checks import apart, random_model, size, sums
 
 import dda.system.opening as opening
 import dda.system.opening as stepping
@@ -27,8 +27,6 @@ from dda import (
 )
 from dda.contact.kernel import NONE
 from dda.stepping.driver import Part, driver
-from fem_reference.events.bar_events import solve as bar_motion
-from fem_reference.problem.bar import BarProblem
 
 MATERIAL = Material(2700.0, 1e9, 0.2)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9, 1e9), 5e6)
@@ -123,31 +121,6 @@ def test_random_blocks_keep_the_invariants(seed, scheme):
     total = checked(model, result, scheme)
     if scheme.delta == 1:
         assert np.max(np.diff(total)) < 1e-12 * size(result)
-
-
-@pytest.mark.parametrize("shear", [pytest.param(0.0, marks=pytest.mark.long), 1e9])
-def test_the_mirror_image_exchanges_the_points(shear):
-    model = replace(PAPER, contact=Unilateral(1e9, shear), eccentricity=0.3, traction=1e5)
-    left, right = run(model, (3, 1), steps=100), run(mirrored(model), (3, 1), steps=100)
-    assert np.count_nonzero(np.diff(left.closed)) > 1
-    assert apart(right.normal[::-1], left.normal) < 1e-8 and apart(right.gap[::-1], left.gap) < 1e-8
-    assert apart(right.columns["displacement"], left.columns["displacement"]) < 1e-9
-    assert np.max(np.abs(left.shear + right.shear[::-1])) <= 1e-8 * np.max(left.normal)
-
-
-@pytest.mark.long
-def test_a_column_of_sub_blocks_tends_to_the_bar():
-    """Poisson's ratio 0: first opening of 1 x n sub-blocks, glued stiffly, against the exact bar."""
-    opens = bar_motion(BarProblem(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6), 0.02).switches[0].time
-    model = replace(PAPER, block=Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)))
-    errors = []
-    for rows in (4, 8, 16):
-        scheme = Scheme(0.25, 0.5, 1.0, 2e-4 / rows, "consistent")
-        result = run(model, (1, rows), scheme, round(0.0195 / scheme.step), 1e12, options=None)
-        closed = result.closed[0]
-        late = np.flatnonzero(closed[:-1] & ~closed[1:] & (result.time[:-1] > 0.01))
-        errors.append(abs(result.time[late[0]] / opens - 1))
-    assert errors[-1] < 0.01 and errors[-1] < errors[0] / 2, errors
 
 
 def test_long_glued_steps_are_cut_as_those_of_one_block():

@@ -11,7 +11,7 @@ from oracles.bars import OTHER, PAPER, damped_by_kernel
 
 from fem_reference.exact import continuum
 from fem_reference.exact.bar import Bar, applicable
-from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
+from fem_reference.exact.bar_modes import shares, wave_numbers
 from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.scheme.modal import applicable as scheme_applicable
 from fem_reference.scheme.modal import weighted_response
@@ -96,30 +96,6 @@ def test_mode_roots():
         h /= 1 + h / 2
         assert mode.eigenvalues.sum() == pytest.approx(1 - h / 2 + 0.97 * (1 - h), abs=1e-14)
         assert mode.eigenvalues[:2].prod() == pytest.approx(0.97 * (1 - h / 2), abs=1e-14)
-
-
-def continuum_by_modes(bar, scheme, steps):
-    """Mode sum, smoothly cut off: right away from the fronts."""
-    b = wave_numbers(bar.kappa, 6000)
-    t = scheme.step * np.arange(1, steps + 1)
-    a = -np.log(scheme.gg) / scheme.step / 2
-    w = np.sqrt(((b / bar.travel) ** 2 - a * a).astype(complex))
-    phase = np.outer(w, t)
-    x = (np.exp(-a * t) * (np.cos(phase) + a / w[:, None] * np.sin(phase))).real
-    weights = [shares(name, b, bar.kappa) * cut_off(6000, 6000) for name in ("displacement", "contact_pressure")]
-    return [bar.static()[n] * (1 - w @ x) for n, w in zip(("displacement", "contact_pressure"), weights, strict=True)]
-
-
-@pytest.mark.parametrize("bar", [PAPER, OTHER, SOFT])
-@pytest.mark.parametrize("gg", [1.0, 0.9])
-def test_continuum_waves_against_modes(bar, gg):
-    scheme = Scheme(0.25, 0.5, gg, 1.37e-3)
-    result = bar.continuum(scheme, 60)
-    travels = result.time / bar.travel
-    away = np.abs(travels[:, None] - np.arange(1, 400) / 2).min(axis=1) > 0.02
-    assert away.sum() > 30
-    for column, expected in zip(result.columns.values(), continuum_by_modes(bar, scheme, 60), strict=True):
-        assert np.abs(column - expected)[away].max() <= 1e-11 * np.abs(expected).max()
 
 
 def test_continuum_waits_for_the_wave():

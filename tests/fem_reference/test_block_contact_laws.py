@@ -110,23 +110,6 @@ def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (33, 1.0), (32, 0.0), (31, 1.0)], 4))
-def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
-    problem = falling(seed, e)
-    end = 8 * transit(problem)
-    motion = solve(problem, end)
-    with mp.workdps(25):
-        answer = PhasedBlock(problem).run(end)
-    impacts = [time for time, kind in answer.events if kind == "impact"]
-    assert impacts
-    assert [impact.time for impact in motion.impacts] == pytest.approx(impacts, rel=1e-11)
-    impulses = [impact.impulse for impact in motion.impacts]
-    assert impulses == pytest.approx(answer.impulses, rel=1e-9)
-    history = motion.at([end])
-    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
-
-
-@pytest.mark.long
 @pytest.mark.parametrize(("seed", "e"), thinned([(42, 0.15), (40, 0.4), (43, 0.8)], 3))
 def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
     """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
@@ -191,26 +174,6 @@ def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
         begin = motion.at([motion.cascades[0].time])
         assert np.abs(begin.shear_force).max() < 1e-12 * np.abs(history.shear_force).max()
         assert history.released[-1] > 0
-
-
-@pytest.mark.long
-def test_more_digits_lie_within_the_balls() -> None:
-    cases = [dashpot(replace(PAPER, stiffness=1e10), 0.02), *(replace(RIGID, restitution=e) for e in (0.0, 0.4, 1.0))]
-    for problem in cases:
-        motion = solve(problem, 0.03)
-        finer = solve(problem, 0.03, digits=90)
-        with precision(bits_of(110)):
-            for kind in ("switches", "impacts", "cascades"):
-                events = getattr(motion, kind)
-                assert len(events) == len(getattr(finer, kind))
-                for one, other in zip(events, getattr(finer, kind), strict=True):
-                    apart = abs(arb(one.midpoint) - arb(other.midpoint))
-                    assert apart <= arb(one.radius + other.radius) + abs(arb(one.midpoint)) * arb("1e-39")
-        t = np.linspace(0, 0.03, 200)
-        one, more = motion.at(t), finer.at(t)
-        radius = one.displacement_radius + more.displacement_radius
-        assert np.all(np.abs(one.displacement - more.displacement) <= radius)
-        assert one.displacement_radius.max() < 1e-12 * np.abs(one.displacement).max()
 
 
 @pytest.mark.parametrize("velocity", [-5.46, -5.6, -5.76])

@@ -16,7 +16,6 @@ from fem_reference import SCHEMES, Bar, Motion, Scheme, named_scheme, solve
 from fem_reference.exact.vibration import response as bar_response
 from fem_reference.history.response import response
 from fem_reference.mesh.model import build
-from fem_reference.problem.schemes import catalogue
 from fem_reference.scheme import modal
 from fem_reference.scheme.diagnostics import diagnostics
 from fem_reference.scheme.eigen import eigenvalues
@@ -316,34 +315,6 @@ def test_what_goes_with_newmark_only():
 
 
 # Seeded faults in the numbers of a table, and what one of them changes.
-
-
-def test_exchanged_shares_are_seen(monkeypatch):
-    """Am and af exchanged (CH .8, W = .5): a damping ratio of 0.053 in place of 8.15e-5."""
-
-    def ratio():
-        return damping_ratio(modal.roots(0.5, named_scheme("chung-hulbert", step=1.0, rho_inf=0.8))[0])
-
-    assert ratio() == pytest.approx(8.1505e-5, rel=1e-4)
-    sound = catalogue.TABLES["chung-hulbert"]
-
-    def exchanged(rho_inf, split):
-        table = sound(rho_inf, split)
-        stage = table.stages[0]
-        return replace(table, stages=(replace(stage, am=stage.af, af=stage.am),))
-
-    monkeypatch.setitem(catalogue.TABLES, "chung-hulbert", exchanged)
-    assert ratio() == pytest.approx(0.0533, rel=1e-2)
-
-
-def test_weights_of_another_split_are_seen(monkeypatch):
-    """The second stage of 2 - sqrt 2 after a first one of 1/2 grows."""
-    halves, default = (named_scheme("composite", step=1.0, split=split) for split in (0.5, None))
-    table = replace(halves.table, stages=(halves.stages[0], default.stages[1]))
-    monkeypatch.setitem(catalogue.TABLES, "composite", lambda rho_inf, split: table)
-    mixed = named_scheme("composite", step=1.0, split=0.5)
-    assert damping_ratio(modal.roots(0.5, mixed)[0]) == pytest.approx(-0.0144, rel=1e-2)
-    assert modal.radii(np.array([0.99]), mixed)[0] > 1
 
 
 def test_the_discount_acts_once_a_step():

@@ -25,8 +25,6 @@ from validation.problems.submission import FILE, read_submission
 from validation.runs.history import History
 from validation.scenes.rigid import POSE
 
-Rows = list[list[str]]
-
 
 def defects_of(root: Path, **options: Any) -> list[str]:
     """Return the defects of a directory, by the path below it."""

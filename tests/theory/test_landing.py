@@ -106,12 +106,6 @@ def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
     assert landing.rigid_stop() == pytest.approx((1.0, 1.475549201, 1.307094874, 0.89132203751993), abs=1e-9)
 
 
-def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> None:
-    kept = [landing.own_landing(2 * ratio).restitution for ratio in np.geomspace(1e-2, 1e4, 25)]
-    assert 0.8 < min(kept) < 0.83 and 0.999 < max(kept) < 1
-    assert landing.own_landing(2e9).restitution == pytest.approx(landing.rigid_stop()[-1], abs=1e-4)
-
-
 @pytest.mark.parametrize("scheme", thinned(SCHEMES, 2))
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
 def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
@@ -236,15 +230,6 @@ def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
     assert none.longest is None and none.best > 0.15
     rate = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, rate=1.0), 2.0, TRANSIT, 0.05)
     assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
-
-
-@pytest.mark.long
-def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
-    for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
-        stepping = Stepping(1.0, alpha, delta, 1.0)
-        coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-3, 2e-6))
-        assert coarse is not None and fine is not None
-        assert math.log(coarse / fine, 1000) == pytest.approx(1 / order, rel=0.1)
 
 
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:

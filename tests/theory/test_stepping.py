@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.errors import InputError
 from validation.scenes.scene import load_scene
 from validation.theory import spectra
 from validation.theory.schemes import CARDS
@@ -189,29 +188,6 @@ def test_beyond_the_limit_a_root_leaves_the_unit_circle(stepping: Stepping) -> N
     limit = stepping.critical_omega
     assert stepping.spectral_radius(limit * (1 - 1e-6)) < 1 + 1e-12
     assert stepping.spectral_radius(limit * (1 + 1e-3)) > 1 + 1e-5
-
-
-@pytest.mark.parametrize("name", SCHEMES)
-def test_the_principal_root_is_the_factor_of_its_own_squared_frequency(name: str) -> None:
-    """At z = e^{i w dt} of a free motion the stepped system answers without load: W2 is the mode's own w^2."""
-    stepping = replace(SCHEMES[name], step=0.01, gg=0.99)
-    natural = 80.0
-    z = complex(stepping.roots(natural * stepping.step)[0])
-    if stepping.scheme == "composite":
-        with pytest.raises(InputError) as caught:
-            stepping.squared_frequency(1.0)
-        assert caught.value.field == "time.scheme"
-        return
-    # the formula of real frequencies continued to the complex one
-    turn = z - 1
-    if stepping.scheme == "leapfrog":
-        squared = -turn * (z - stepping.gg) / (stepping.step**2 * z)
-    else:
-        am, af, beta, gamma = weights(stepping)
-        below = stepping.gg * (1 - gamma + gamma * z) + (0.5 - beta + beta * z) * (z - stepping.gg)
-        mean = ((1 - am) * z + am) / ((1 - af) * z + af)
-        squared = -turn * (z - stepping.gg) * mean / (stepping.step**2 * below)
-    assert squared == pytest.approx(natural**2, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", [name for name in SCHEMES if SCHEMES[name].scheme != "composite"])

@@ -120,14 +120,3 @@ def steady_ratio(w_dt: float, scheme: tuple[float, float], gg: float = 1.0) -> f
     """Return -Im W / |W| at dt = 1 s."""
     W = np.sqrt(Stepping(1.0, *scheme, gg).squared_frequency(w_dt))
     return float(-W.imag / abs(W))
-
-
-@pytest.mark.parametrize(("scheme", "order"), [(AVERAGE, 2.0), (CONSTANT, 1.0)])
-def test_a_joint_tends_to_the_continuum_with_the_order_of_the_scheme(scheme: tuple[float, float], order: float) -> None:
-    """At c dt/h = 1/2; the blocks alone have order 2, but the step is refined with them."""
-    errors = []
-    for blocks in (20, 40, 80, 160):
-        stepping, omega = wave(blocks, 0.5, scheme)
-        transmitted, _ = waves.joint_in_column(COLUMN, stepping.squared_frequency(omega), 2000.0 * SPEED * omega)
-        errors.append(abs(abs(transmitted) - waves.joint_transmission(1.0)))
-    assert np.polyfit(np.log([20, 40, 80, 160]), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.06)
