@@ -7,10 +7,9 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from faults.steps import stepping_by
 from oracles import frictional_mp
 from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
-from oracles.unilateral_checks import DT, apart, size, sums
+from oracles.unilateral_checks import DT, apart, size, stepping_by, sums
 from oracles.unilateral_mp import lost
 
 import dda.one_block.unilateral as unilateral

@@ -7,9 +7,9 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from faults.steps import stepping_by
 from oracles.scheme_cases import every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
+from oracles.unilateral_checks import stepping_by
 
 from dda import (
     COLUMNS,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.plain_newmark import SIDE, stepped, upright
+from oracles.plain_newmark import SIDE, glued, stepped, upright
 
 import dda
 import fem_reference
@@ -125,77 +125,37 @@ def test_long_steps_keep_the_digits_of_rigid_motion(alpha, delta, step, correcti
     assert largest_error(result, expected) < 1e-9
 
 
-def assembled_newmark(blocks, shared, model, scheme, steps, glue):
-    """Return centroid v and contact pressure of glued blocks by plain Newmark in extended precision.
-
-    The joints are found again, as pairs of equal edges, and assembled in the unknowns of the blocks.
-    """
-    long = np.longdouble
-    size = 6 * len(blocks)
-    M, K = np.zeros((2, size, size), long)
-    F, pressure = np.zeros((2, size), long)
-    a = np.hypot(*np.subtract(*model.block.edge(0)))
-
-    def spring(ends, point, k):
-        row = np.zeros((2, size), long)
-        for body, sign in ends:
-            row[:, 6 * body : 6 * body + 6] = sign * blocks[body].T(*point)
-        return k * row.T @ row
-
-    for i, block in enumerate(blocks):
-        part = slice(6 * i, 6 * i + 6)
-        M[part, part], K[part, part] = block.mass(), K[part, part] + block.elastic()
-        F[6 * i + 1] -= model.gravity * block.material.density * block.section.area
-    for i, j, start, end in shared:
-        for point in (start, end):
-            if j is not None:
-                K += spring([(i, 1), (j, -1)], point, glue)
-            else:
-                share = np.hypot(*np.subtract(start, end)) / a * model.contact.normal
-                K += spring([(i, 1)], point, share)
-                pressure[6 * i : 6 * i + 6] -= share / a * blocks[i].T(*point)[1]
-    tops = [(i, b.edge(2)) for i, b in enumerate(blocks) if b.corners[2:, 1].min() > model.block.corners[2, 1] - 1e-9]
-    for i, (start, end) in tops:
-        x, y = (start + end) / 2
-        F[6 * i : 6 * i + 6] -= model.pressure * np.hypot(*(end - start)) * blocks[i].T(x, y)[1]
-    S = (M + scheme.alpha * scheme.step**2 * K).astype(float)
-    inverse = np.linalg.inv(S).astype(long)
-    inverse = inverse @ (2 * np.eye(size) - (M + scheme.alpha * scheme.step**2 * K) @ inverse)
-    D, V, A = np.zeros((3, size), long)
-    found = []
-    for _ in range(steps):
-        ahead = D + scheme.gg * scheme.step * V + scheme.step**2 * (0.5 - scheme.alpha) * A
-        new = inverse @ (F - K @ ahead)
-        D = ahead + scheme.alpha * scheme.step**2 * new
-        V, A = scheme.gg * V + scheme.step * ((1 - scheme.delta) * A + scheme.delta * new), new
-        found.append([D, pressure @ D])
-    return np.array([d for d, _ in found]), np.array([p for _, p in found])
-
-
-@pytest.mark.parametrize("glue", [3e8, 5e10])
-def test_finite_glue_is_the_assembled_system_in_other_coordinates(glue):
-    width, height = 1.8, 1.2
+@pytest.mark.parametrize("ratio", [0.3, 50.0])
+def test_finite_glue_is_the_assembled_system_in_other_coordinates(ratio):
+    """Joints written down by hand, in the unknowns of the blocks, by plain Newmark."""
+    width, height, nx, ny, p = 1.8, 1.2, 3, 2, 2e9
     vertices = ((0, 0), (width, 0), (width, height), (0, height))
-    model = dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, 0.2)), dda.Contact(2e9), 5e6, gravity=9.81)
-    nx, ny = 3, 2
-    system = dda.subdivided(model, nx, ny, glue)
-    w, h = width / nx, height / ny
-    shared = []
+    model = dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, 0.2)), dda.Contact(p), 5e6, gravity=9.81)
+    system = dda.subdivided(model, nx, ny, ratio * 1e9)
+    w, h, blocks, glue = width / nx, height / ny, system.blocks, (ratio * 1e9,) * 2
+    springs = []
     for k in range(nx * ny):
-        i, j = k % nx, k // nx
-        if i + 1 < nx:
-            shared.append((k, k + 1, ((i + 1) * w, j * h), ((i + 1) * w, (j + 1) * h)))
-        if j + 1 < ny:
-            shared.append((k, k + nx, (i * w, (j + 1) * h), ((i + 1) * w, (j + 1) * h)))
-        if j == 0:
-            shared.append((k, None, (i * w, 0.0), ((i + 1) * w, 0.0)))
-    D, pressure = assembled_newmark(system.blocks, shared, model, SCHEME, 60, glue)
-    T = [system.blocks[k].T(width / 2, height / 2)[1] for k in (1, 4)]
-    expected = (D[:, 6:12] @ T[0] + D[:, 24:30] @ T[1]) / 2
+        x, y = (k % nx) * w, (k // nx) * h
+        if k % nx < nx - 1:
+            springs += [(k, k + 1, (x + w, y + end), *glue) for end in (0.0, h)]
+        if k < nx:
+            springs += [(k, k + nx, (x + end, y + h), *glue) for end in (0.0, w)]
+            springs += [(k, None, (x + end, 0.0), p / nx, p / nx) for end in (0.0, w)]
+    M, K = glued(blocks, springs)
+    F, pressure = np.zeros((2, 6 * nx * ny))
+    for k, block in enumerate(blocks):
+        rows = slice(6 * k, 6 * k + 6)
+        F[rows] = -9.81 * 2700.0 * w * h * np.eye(6)[1]
+        if k >= nx:
+            F[rows] -= 5e6 * w * block.T((k % nx + 0.5) * w, height)[1]
+        else:
+            pressure[rows] = -2 * p / nx / width * block.T((k + 0.5) * w, 0.0)[1]
+    D = stepped(M, K, np.tile(F, (61, 1)), SCHEME)
+    T = [blocks[k].T(width / 2, height / 2)[1] for k in (1, 4)]
+    expected = {"displacement": (D[:, 6:12] @ T[0] + D[:, 24:30] @ T[1]) / 2, "contact_pressure": D @ pressure}
     result = dda.solve_system(system, SCHEME, 60)
-    np.testing.assert_allclose(result.columns["displacement"], expected.astype(float), rtol=0, atol=1e-14)
-    # the assembled system forms the pressure as a difference: 64-bit mantissa, glue / E of 50 and 60 steps
-    np.testing.assert_allclose(result.columns["contact_pressure"], pressure.astype(float), rtol=0, atol=1e-3)
+    for name, values in expected.items():
+        np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-11 * np.abs(values).max())
 
 
 @pytest.mark.parametrize(("n", "ratio"), [(4, 20.0), (7, 1e3)])

@@ -7,8 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from faults.steps import stepping_by
-from oracles.unilateral_checks import DT, apart, checked, random_model, run, size, sums
+from oracles.unilateral_checks import DT, apart, checked, random_model, run, size, stepping_by, sums
 
 import dda.one_block.unilateral as unilateral
 import dda.one_block.unilateral_step as step

@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+import dda.one_block.unilateral_step as step
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.stepping.driver import driver
 
 DT = 3e-4
 ENERGIES = UnilateralOptions(energies=True)
@@ -114,3 +116,8 @@ def checked(model, scheme, steps=400):
 def run(model, alpha=0.5, delta=1.0, gg=1.0, dt=DT, start="zero", steps=400, **options):
     """Run with the scheme's numbers."""
     return solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), steps, options=UnilateralOptions(**options))
+
+
+def stepping_by(advance):
+    """Return the loop over the steps of one block whose steps are made by another function."""
+    return driver(advance, step.account, step.keep)
