@@ -33,10 +33,10 @@ def tip(**changes):
 @pytest.mark.parametrize(
     ("degree", "counts", "least", "most", "last"),
     # the energy of bending has order 2 and 4; the singular corners, towards which cells halve, leave order 2 of the 4
-    [(1, (4, 8, 16), 1.7, 2.1, 3e-3), (2, (2, 4, 8), 1.9, 4.1, 1e-5)],
+    [(1, (3, 6, 12), 1.6, 2.1, 5e-3), (2, (2, 4, 8), 1.9, 4.1, 1e-5)],
 )
 def test_a_cantilevers_tip_converges(degree, counts, least, most, last):
-    truth = tip(elements=32)
+    truth = tip(elements=16)
     errors = [abs(tip(elements=n, degree=degree) / truth - 1) for n in counts]
     assert least < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < most
     assert errors[-1] < last
@@ -76,10 +76,10 @@ def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
 
 
 def test_modes_of_a_cantilever_share_its_deflection():
-    modes = PlaneModel(CANTILEVER).modes(SCHEME, 6)
+    modes = PlaneModel(replace(CANTILEVER, elements=4)).modes(SCHEME, 6)
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
-    assert modes[0].frequency == pytest.approx(slender, rel=0.04)  # 3 % less, by shear and rotary inertia
+    assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia
 
 
 def test_a_step_of_a_cantilever_swings_about_its_rest():

@@ -55,7 +55,7 @@ def scene(changes=None):
         ({"plane.glue": 0.0}, "plane.glue"),
         ({"plane.pattern": "hexagons"}, "plane.pattern"),
         ({"fem.foundation": "corner"}, "fem"),
-        ({"block": {"side": 2.0, "density": 1.0, "young": 1.0}}, "plane"),
+        ({"block": {"side": 2.0, "density": 1.0, "young": 1.0}}, "block"),
     ],
 )
 def test_what_does_not_go_together_is_refused_by_field(changes, field):
