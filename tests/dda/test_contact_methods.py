@@ -262,26 +262,6 @@ def test_two_corners_keep_newtons_law_each(seed):
 # ---- passes ----------------------------------------------------------------------------------------------------------
 
 
-def check_passes():
-    """A pass leaves 1/(1 + r C) of the penetration, and the history is that of the rigid stop."""
-    scheme = Scheme(0.5, 1.0, 1.0, 1e-3, "consistent")
-    rigid = solve_unilateral(replace(PAPER, contact=Unilateral(math.inf)), scheme, 50)
-    for ratio, passes in ((0.1, 495.42), (1.0, 55.66), (10.0, 10.54), (100.0, 4.72)):
-        springs = replace(PAPER, contact=Unilateral(ratio * 1e9))
-        result = solve_unilateral(springs, scheme, 50, options=UnilateralOptions("augmented", energies=True))
-        assert result.outcome == "completed"
-        assert np.min(result.gap_m) >= -1e-9
-        assert apart(result.columns["displacement"], rigid.columns["displacement"]) < 3e-7
-        assert result.step_passes.mean() == pytest.approx(passes, abs=0.1)
-        assert np.all(result.step_solves >= result.step_passes) and np.all(result.step_passes >= 1)
-        total, lost = balance(result)
-        assert np.max(np.abs(total + lost)) < 1e-12 * size(result) and np.all(result.energies["springs"] == 0)
-
-
-def test_passes_lead_to_the_rigid_stop():
-    check_passes()
-
-
 @pytest.mark.parametrize(("dt", "rC"), [(1e-2, 9.75042), (2e-3, 0.715198), (1e-3, 0.271164), (1e-4, 0.00368836)])
 def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     """Passes of a first step: ln(|w_f| / tolerance) / ln(1 + r C) with r = 2p of both corners."""

@@ -1,19 +1,14 @@
 """One block with friction: histories known by their events, invariants at random data, sliding as an identity."""
 
-from copy import deepcopy
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles import frictional_mp
 from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
-from oracles.unilateral_checks import DT, apart, size, stepping_by, sums
-from oracles.unilateral_mp import lost
+from oracles.unilateral_checks import DT, apart, size, sums
 
-import dda.one_block.unilateral as unilateral
-import dda.one_block.unilateral_step as step
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact import kernel
 from dda.contact.kernel import FOUND, NONE
@@ -22,7 +17,6 @@ from dda.stepping.driver import OUTCOMES
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 ENERGIES = UnilateralOptions(energies=True)
-SINGLY = UnilateralOptions(energies=True, full=True)
 AVERAGE, CONSTANT = (0.25, 0.5, "consistent"), (0.5, 1.0, "zero")
 
 
@@ -145,24 +139,6 @@ def test_a_polygon_on_any_edge_slides_as_it_does_on_a_level_one(turned):
         assert apart(getattr(other, name), getattr(one, name)) < 1e-8, name
 
 
-DIGITS = [(1e9, 1e-2, 1.0), (1e17, 1e-4, 0.99), (1e24, 1e-2, 0.99), (1e24, 1e-4, 1.0)]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("p", "dt", "gg"), DIGITS)
-def test_digits_are_kept_from_soft_to_rigid(p, dt, gg):
-    model = KNOWN["incline"].model
-    law = replace(model.contact, stiffness=p, shear=0.4 * p, friction=0.3, cohesion=100.0)
-    model = replace(model, contact=law, pressure=1e5, traction=3e4, eccentricity=0.1)
-    scheme = Scheme(0.5, 1.0, gg, dt)
-    result, exact = solve_unilateral(model, scheme, 20, PLACE), frictional_mp.history(model, scheme, 20)
-    for i, name in enumerate(PLACE):
-        assert lost(result.columns[name], [row[0][i] for row in exact]) < 1e-13
-    for i in (0, 1):  # a corner that closes, or takes up shear, meets rounding as an error of a small difference
-        assert lost(result.normal[i], [row[1][i] for row in exact]) < 1e-11
-        assert lost(result.shear[i], [row[2][i] for row in exact]) < 1e-11
-
-
 def test_without_limit_friction_is_glue_and_without_angle_it_is_none():
     model = KNOWN["glued"].model
     scheme = Scheme(0.5, 1.0, 1.0, 2e-4)
@@ -184,31 +160,6 @@ def test_cohesion_holds_what_friction_does_not():
         law = replace(model.contact, friction=0.1, cohesion=share * driving)
         ways.append(solve_unilateral(replace(model, contact=law), Scheme(0.5, 1.0, 1.0, 1e-3), 500).slip[-1])
     assert ways[0] > 0.2 and ways[1] == 0
-
-
-def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
-    saved, ratios = [], []
-
-    def stubborn(block, shear_law, state, after, base, part):
-        ratios.append(part.ratio)
-        outcome, solves = step.advance(block, shear_law, state, after, base, part)
-        if len(ratios) in (40, 41, 42):
-            saved.append(deepcopy(state))
-        if len(ratios) == 42:
-            first = deepcopy(after)
-            step.advance(block, shear_law, state, after, base, part)
-            assert first == after
-        return (NONE if len(ratios) in (40, 41) else outcome), solves
-
-    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 0.98, 2e-4)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unilateral, "make_steps", stepping_by(stubborn))
-        cut = solve_unilateral(model, scheme, 60, options=SINGLY)
-    assert ratios[39:42] == [1.0, 0.3, 0.09] and cut.step_cuts[39] == 2 and saved[0] == saved[1] == saved[2]
-    total, lost = sums(cut)
-    assert np.max(np.abs(total + lost)) < 1e-12 * size(cut)
-    whole = solve_unilateral(model, scheme, 60, options=SINGLY)
-    assert np.array_equal(cut.normal[:, :39], whole.normal[:, :39])
 
 
 def test_a_step_without_one_state_is_named(monkeypatch):

@@ -198,24 +198,6 @@ def test_a_column_that_slips_closes_the_balance(name, values):
     assert np.ptp(total(energies)) < 1e-12 * np.max(np.abs(energies["load"]))
 
 
-def test_a_welded_foot_and_a_half_space_take_every_implicit_scheme():
-    """Locked by tiny motion, a column on contacts is the bonded one."""
-    steps = 150
-    for name, values in (("chung-hulbert", {"rho_inf": 0.2}), ("composite", {"rho_inf": 0.3})):
-        scheme = scheme_of(name, values, 2e-4, 0.99)
-        t = scheme.instants(steps)
-        drive = Drive(1e-4 * (1 - np.cos(90 * t)), 9e-3 * np.sin(90 * t), 0.81 * np.cos(90 * t), 0 * t)
-        layers = [Layer(1.0, 2000.0, 5e7, 0.0, 2), Layer(0.7, 2500.0, 8e7)]
-        for impedance in (None, 2e5):
-            bonded = Column(layers, "shear", joints=[Spring(1.0, 2e8)], impedance=impedance)
-            sticking = replace(bonded, joints=[Spring(1.0, 2e8, strength=1e12)], law="frictional")
-            expected = solve_column(bonded, scheme, drive, ("displacement", "displacement_1"), [1.0])
-            result = solve_contact_column(sticking, scheme, drive, ("displacement", "displacement_1"), [1.0])
-            for column, truth in expected.columns.items():
-                difference = np.max(np.abs(result.columns[column] - truth))
-                assert difference < 1e-10 * np.max(np.abs(truth)), (name, impedance, column)
-
-
 @pytest.mark.parametrize("impedance", [None, 3e5])
 @few_schemes
 def test_a_bonded_column_steps_to_its_response(name, values, impedance):

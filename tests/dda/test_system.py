@@ -158,16 +158,6 @@ def test_finite_glue_is_the_assembled_system_in_other_coordinates(ratio):
         np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-11 * np.abs(values).max())
 
 
-@pytest.mark.parametrize(("n", "ratio"), [(4, 20.0), (7, 1e3)])
-def test_glue_of_a_column_is_its_joints_in_series(n, ratio):
-    a, q, p, E = 2.0, 5e6, 1e9, 1e9
-    static = dda.static_system(dda.subdivided(two_block(), 1, n, ratio * E))
-    # above the base: half of the n - 1 joints lie below the middle, each of compliance 1 / (2 ratio E)
-    expected = -a * q / (2 * p) - a / 2 * q / E - (n - 1) / 2 * a * q / (2 * ratio * E)
-    assert static["displacement"] == pytest.approx(expected, rel=1e-13)
-    assert static["contact_pressure"] == pytest.approx(q, rel=1e-13)
-
-
 def test_squares_and_triangles_under_mixed_loads_keep_equilibrium():
     a, rho, tau, q, g, e = 2.0, 2700.0, 2e5, 5e6, 9.81, 0.35
     for pattern in ("squares", "triangles"):
@@ -199,25 +189,6 @@ def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():
 
 def j_rest(joint):
     return joint.start, joint.end, joint.normal, joint.shear
-
-
-def test_a_brick_wall_passes_the_patch_test():
-    material, q, p = dda.Material(2700.0, 1e9, 0.0), 5e6, 1e9
-    lengths = [[1.0, 1.0], [0.5, 1.0, 0.5], [1.3, 0.7]]
-    blocks = []
-    for row, parts in enumerate(lengths):
-        for k, length in enumerate(parts):
-            x, y = sum(parts[:k]), row * 0.5
-            blocks.append(dda.Block([[x, y], [x + length, y], [x + length, y + 0.5], [x, y + 0.5]], material))
-    joints = dda.shared_edges(blocks, 1e21, 1e21)
-    # rows: 1 + 2 + 1 upright joints; bed joints: the merged ends of both rows cut the wall into 4 and 4 pieces
-    assert len(joints) == 4 + 4 + 4
-    supports = [dda.Joint(i, dda.FIXED, (i, 0.0), (i + 1.0, 0.0), p / 2, p / 2) for i in (0, 1)]
-    loads = [dda.SurfaceLoad(i, tuple(blocks[i].corners[2]), tuple(blocks[i].corners[3]), (0.0, -q)) for i in (5, 6)]
-    wall = BlockSystem(blocks, joints + supports, (1.0, 0.75), 2.0, loads)
-    static = dda.static_system(wall)
-    assert static["displacement"] == pytest.approx(-2 * q / (2 * p) - 0.75 * q / 1e9, rel=1e-10)
-    assert static["contact_pressure"] == pytest.approx(q, rel=1e-10)
 
 
 def test_central_differences_and_their_limit():

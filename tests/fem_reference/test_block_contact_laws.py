@@ -36,12 +36,6 @@ def centred(seed: int) -> BlockProblem:
     return replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=0.0)
 
 
-def falling(seed: int, e: float) -> BlockProblem:
-    """A random block that falls on rigid contact."""
-    problem = centred(seed)
-    return replace(problem, stiffness=math.inf, restitution=e, velocity=-1.0, gap=1e-3 * problem.height)
-
-
 def transit(problem: BlockProblem) -> float:
     return problem.height * math.sqrt(problem.density / problem.young)
 
@@ -107,25 +101,6 @@ def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
     history = motion.at([end])
     assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-11)
     assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("seed", "e"), thinned([(42, 0.15), (40, 0.4), (43, 0.8)], 3))
-def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
-    """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
-    problem = falling(seed, e)
-    motion = solve(problem, 8 * transit(problem))
-    first = motion.cascades[0]
-    listed = [impact.time for impact in motion.impacts if impact.time <= first.start]
-    with mp.workdps(25):
-        answer = PhasedBlock(problem, grid=40).run(first.time, most=len(listed) + 10)
-    times = [time for time, _ in answer.events]
-    assert times[: len(listed)] == pytest.approx(listed, rel=1e-12)
-    assert len(times) == len(listed) + 10
-    flight = times[-1] - times[-2]
-    rest = flight * e / (1 - e)
-    assert first.time > times[-1]
-    assert first.time == pytest.approx(times[-1] + rest, abs=3 * rest**2 / transit(problem) + 1e-13 * first.time)
 
 
 @pytest.mark.parametrize(("seed", "zeta"), thinned([(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)], 2))

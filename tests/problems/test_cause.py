@@ -8,7 +8,7 @@ import pytest
 from validation.diagnosis.numbers import numbers
 from validation.problems import cause as module
 from validation.problems import models
-from validation.problems.bands import changes, contact_values, standard
+from validation.problems.bands import changes, standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import Word, judge
 from validation.problems.problem import problem
@@ -223,43 +223,6 @@ def test_a_wrong_datum_of_a_column_on_contacts_is_named(name: str, key: str, fac
     identified = named(name, exactly(name, of_layers(name, key, factor)))
     assert identified.ids == (f"{key}-factor",)
     assert identified.values[f"{key}-factor"] == pytest.approx(factor, rel=1e-3)
-
-
-def without_gaps(name: str) -> dict:
-    """Return the values that close all gaps of a problem at t = 0."""
-    joints = problem(name).scene.definition()["column"].get("joint", [])
-    values: dict = {"column.gap": 0.0}
-    if joints:
-        values["column.joint"] = [{key: x for key, x in joint.items() if key != "gap"} for joint in joints]
-    return values
-
-
-CONTACT_FAULTS = {  # to what the scene has in their place, and the words of which a cause that is named must have one
-    "gaps": (without_gaps, ("gap",)),
-    "stiffness": (lambda name: contact_values(problem(name).scene.column, stiffness=1.3), ("stiffness", "spring")),
-    "strength": (lambda name: contact_values(problem(name).scene.column, strength=0.8), ("strength",)),
-    "weight": (lambda name: {"column.gravity": 0.0}, ("weight", "gravity")),
-    "velocity": (lambda name: of_layers(name, "velocity", 1.1), ("velocity", "1.1 times")),
-    "two data": (
-        lambda name: contact_values(problem(name).scene.column, stiffness=1.3) | of_layers(name, "density", 1.2),
-        (),
-    ),
-}
-
-
-FAULTS_OF_PROBLEMS = [
-    *((name, fault) for name in QUICK for fault in CONTACT_FAULTS if fault != "strength"),
-    *(("cradle", "stiffness"), ("cradle", "velocity"), ("joint", "strength")),
-]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("name", "fault"), FAULTS_OF_PROBLEMS)
-def test_a_fault_of_contacts_is_named_rightly_or_not_at_all(name: str, fault: str) -> None:
-    values, words = CONTACT_FAULTS[fault]
-    identified = named(name, exactly(name, values(name)))
-    silent = identified.sentence.startswith(NOT_EXPLAINED)
-    assert silent or any(word in identified.sentence for word in words), identified.sentence
 
 
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.long) for name in OF_BARS)])
