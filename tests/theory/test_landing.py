@@ -116,18 +116,6 @@ def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) 
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
 
 
-def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
-    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
-        scheme = Stepping(1.0, alpha, delta, 1.0)
-        for omega in (0.3, 2.0, 7.0):
-            step = omega / math.sqrt(1e-8)
-            phases = np.array([0.1, 0.45, 0.9])
-            found = landing.restitutions(scheme, 1e-8, step, 1.0, phases)
-            expected = [impact_restitution(alpha, delta, 1.0, omega, float(phase)) for phase in phases]
-            assert found == pytest.approx(expected, abs=1e-6)
-
-
 def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
     """The ends of the phase count half: 0.50 of stiff springs under constant acceleration, 1.67 under average."""
     for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
@@ -137,9 +125,10 @@ def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
             assert (landed.mean, landed.energy) == pytest.approx((mean, square), rel=6e-3)
 
 
-@pytest.mark.parametrize("gg", [0.95, 0.99])
-def test_a_rigid_block_under_a_discount_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
+@pytest.mark.parametrize("gg", [0.95, 0.99, 1.0])
+def test_a_rigid_block_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
+    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
         scheme = Stepping(1.0, alpha, delta, gg)
         for omega in (0.3, 2.0, 7.0):
             phases = np.array([0.1, 0.45, 0.9, 0.99])
