@@ -170,6 +170,24 @@ def test_a_welded_foot_is_held_by_the_base_motion() -> None:
     assert resting.mean_velocity == pytest.approx(np.zeros(50), abs=1e-12) and not resting.columns["gap_1"].any()
 
 
+def test_a_column_at_rest_has_closed_its_gaps() -> None:
+    """Its lower block by gap, weight over spring, and its own shortening."""
+    resting = replace(DROPPED, velocities=(0.0, 0.0), settled=True)
+    found = solve_contacts(resting, [3, 3], 2, scheme(AVERAGE, 1e-4), still(9), ["displacement_1", "force_1"], [1.0])
+    weight = 9.81 * 2500
+    moved = -(0.01 + 2 * weight / 2e9 + 1.5 * weight / 1e9)
+    assert found.columns["displacement_1"] == pytest.approx(np.full(9, moved), rel=1e-9)
+    assert found.columns["force_1"] == pytest.approx(np.full(9, weight), rel=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1.0, -1.0])
+def test_a_thrown_column_slips_at_its_strength(speed: float) -> None:
+    contact = (ColumnContact(0.0, 1e9, strength=1e4),)
+    column = ContactColumn(ground((1.0, 2500.0, 1e9), motion="shear"), "frictional", contact, (speed,))
+    found = solve_contacts(column, [2], 1, scheme(CONSTANT, 1e-4), still(5), ["force_1"], [0.0])
+    assert np.abs(found.columns["force_1"]) == pytest.approx(np.full(5, 1e4), rel=1e-12)
+
+
 @pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])
 def test_touching_blocks_thrown_on_their_base_close_one_in_a_solve(courant: float, solves: int) -> None:
     thrown = replace(SPALL, velocities=(-1.0,) * 6)
