@@ -154,20 +154,6 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
-def test_forces_of_an_impact() -> None:
-    """The second contact is the greatest at p = 100 E, 1.47 times that of a quarter of the mass."""
-    scene = PAPER.with_values(STIFF | {"load.pressure": 0.0, "block.velocity": -2.0, "time.step": 1e-5})
-    row, _ = execute(Case(scene.with_values({"time.steps": 600}), "block-events"), "", "")
-    assert row.metrics["contact.peak_force"] == pytest.approx(landing.impact_force(scene, -2.0), rel=0.02)
-    assert landing.impact_force(scene, -2.0) == pytest.approx(1.471 * landing.quarter_mass_force(scene, 2.0), rel=1e-3)
-    soft = scene.with_values({"contact.stiffness": 1e7})
-    assert landing.impact_force(soft, 1.0) == pytest.approx(2 * landing.quarter_mass_force(soft, 1.0), rel=1e-2)
-    stop = scene.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
-    assert math.isinf(landing.impact_force(stop, 1.0))
-    assert landing.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
-    assert scene.block.mass == 10800
-
-
 def test_a_landing_is_not_known_for_every_scene() -> None:
     found = contact.restitution(PAPER)
     assert found is not None and found.low < found.mean < found.high < found.own

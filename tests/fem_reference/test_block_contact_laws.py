@@ -4,13 +4,12 @@ import itertools
 import math
 from dataclasses import replace
 
-import mpmath as mp
 import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb
 from oracles.block_oracle import random_problem
-from oracles.contact_laws import IntegratedDashpots, PhasedBlock
+from oracles.contact_laws import IntegratedDashpots
 
 from fem_reference.events import block_march
 from fem_reference.events.block_events import BlockHistory, BlockMotion, solve
@@ -29,11 +28,6 @@ def dashpot(problem: BlockProblem, zeta: float, mass_share: float = 1.0) -> Bloc
     """With the dashpot of each corner for c = 2 zeta sqrt(k m) of both, k = 2p and m a share of the mass."""
     m = mass_share * problem.density * problem.width * problem.height
     return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
-
-
-def centred(seed: int) -> BlockProblem:
-    """A random block whose corners do the same."""
-    return replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=0.0)
 
 
 def transit(problem: BlockProblem) -> float:
@@ -87,20 +81,6 @@ def test_a_rigid_block_rebounds_with_the_closed_form(zeta: float) -> None:
 
 
 # -- an independent program
-
-
-@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (34, 2.5)], 3))
-def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
-    problem = dashpot(centred(seed), zeta)
-    end = 12 * transit(problem)
-    motion = solve(problem, end)
-    with mp.workdps(25):
-        answer = PhasedBlock(problem).run(end)
-    assert [kind for _, kind in at_events(motion)] == [kind for _, kind in answer.events]
-    assert [time for time, _ in at_events(motion)] == pytest.approx([time for time, _ in answer.events], rel=1e-12)
-    history = motion.at([end])
-    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-11)
-    assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
 
 
 @pytest.mark.parametrize(("seed", "zeta"), thinned([(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)], 2))
