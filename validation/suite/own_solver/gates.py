@@ -152,7 +152,7 @@ def applies(study: str, gate: Gate) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
         return False
     case = cases(study)[gate.cases[0]]
-    if case.scene.column is not None:
+    if case.scene.kind != "block":
         return False
     return case.scene.block.subdivide is None and case.scene.load.centred and "stability" not in case.measures
 
