@@ -18,7 +18,8 @@ KNOWING = ("solvers/", "studies/", "suite/", "report/", "cli/")  # rooms that de
 NAMED = {
     "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
-    "scenes/kinds.py": {"dda", "fem", "layers", "column-events", "rigid-exact"},  # the same of a column and of boxes
+    "scenes/kinds.py": {"dda", "fem", "layers", "column-events", "rigid-exact"},  # the same of other kinds
+    "advice/columns.py": {"dda"},  # whose run shows when a stack rests
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},
