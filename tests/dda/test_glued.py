@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from oracles.plain_newmark import glued, stepped
+from oracles.glued_blocks import glued
+from oracles.plain_newmark import stepped
 
 import dda
 

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.plain_newmark import SIDE, glued, stepped, upright
+from oracles.glued_blocks import glued
+from oracles.plain_newmark import SIDE, stepped, upright
 
 import dda
 import fem_reference
