@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.glued_blocks import glued
-from oracles.plain_newmark import stepped
+from oracles.plain_newmark import glued, stepped
 
 import dda
 

@@ -27,7 +27,8 @@ from dda import (
 )
 from dda.column.column import Column, Layer, Spring
 from dda.column.contacts import ColumnOptions, solve_contact_column
-from dda.column.stepping import Drive
+from dda.column.response import column_response
+from dda.column.stepping import Drive, solve_column
 from dda.contact.kernel import NONE
 from dda.one_block import unilateral, unilateral_step
 from dda.rotation.solution import RollingModel, solve_rolling
@@ -195,6 +196,31 @@ def test_a_column_that_slips_closes_the_balance(name, values):
     energies = result.energies
     assert energies["friction"][-1] > 0 and np.min(np.diff(energies["friction"])) >= -1e-9
     assert np.ptp(total(energies)) < 1e-12 * np.max(np.abs(energies["load"]))
+
+
+@pytest.mark.parametrize("impedance", [None, 3e5])
+@few_schemes
+def test_a_bonded_column_steps_to_its_response(name, values, impedance):
+    frequency, steps = 20.0, 700
+    scheme = scheme_of(name, values, 4e-4, 0.93)
+    bonded = Column([Layer(1.0, 2000.0, 5e7), Layer(0.7, 2500.0, 8e7)], joints=[Spring(1.0, 2e8)], impedance=impedance)
+    t = scheme.instants(steps)
+    pressure = np.cos(2 * np.pi * frequency * t)
+    drive = Drive(0 * t, 0 * t, 0 * t, pressure)
+    if name == "leapfrog" and impedance:
+        with pytest.raises(ValueError, match=r"^impedance: "):
+            solve_column(bonded, scheme, drive)
+        return
+    result = solve_column(bonded, scheme, drive)
+    if name == "composite":
+        with pytest.raises(ValueError, match=r"^scheme: "):
+            column_response(bonded, scheme, [frequency], "top")
+        return
+    for column, (amplitude,) in column_response(bonded, scheme, [frequency], "top").items():
+        expected = (amplitude * np.exp(2j * np.pi * frequency * result.time)).real
+        rest = (result.columns[column] - expected)[-250:]  # five periods
+        rest -= np.mean(rest)  # on a dashpot alone a column stays where its start has brought it
+        assert np.max(np.abs(rest)) < 1e-6 * abs(amplitude), column
 
 
 # ---- sub-blocks and blocks that turn ---------------------------------------------------------------------------------

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.glued_blocks import glued
-from oracles.plain_newmark import SIDE, stepped, upright
+from oracles.plain_newmark import SIDE, glued, stepped, upright
 
 import dda
 import fem_reference

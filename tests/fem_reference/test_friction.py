@@ -90,6 +90,21 @@ def test_while_all_points_slide_one_sum_of_the_mean_motion_is_free(rule, foundat
         assert most <= 1e-11 * x
 
 
+@pytest.mark.parametrize(("degree", "foundation"), thinned([(1, "distributed"), (2, "corner")], 2))
+def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, foundation):
+    angle, scheme, steps = 25.0, replace(CONSTANT, step=5e-2), 400
+    # what the first fall of the weight has set off is slowed, or made faster, by g sin(0.01 deg) / cos(phi)
+    faster = 9.81 * np.sin(np.radians(0.01)) / np.cos(np.radians(angle))
+    for slope, expected in ((angle - 0.01, 0.0), (angle + 0.01, faster)):
+        problem = incline(slope, 9.81, elements=2, degree=degree, foundation=foundation)
+        slide = solve_unilateral(problem, scheme, steps, RUBBING, columns=("largest_slide",)).columns["largest_slide"]
+        speed = np.diff(slide[steps // 2 :]) / scheme.step
+        gained = (speed[-1] - speed[0]) / (scheme.step * (len(speed) - 1))
+        # at rest to the last bit; or sped up by the sum of all forces, but for what still rings on the springs
+        assert gained == pytest.approx(expected, rel=1e-4, abs=0.0)
+        assert (speed[-1] == 0) == (expected == 0)
+
+
 def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one():
     still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))
     problem = replace(incline(10.0, 98.1, foundation="nodes", p=1e8, shear=3e7), motion=still)
