@@ -8,7 +8,7 @@ import pytest
 from validation.errors import InputError
 from validation.runs.contact import LOST, STORED
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.dda import DDA, model_of
+from validation.solvers.dda import DDA
 from validation.solvers.events import BlockEvents
 
 COLUMNS = ["displacement", "horizontal_displacement", "state_m", "state_n", "slide_m", "slide_n", "shear_force_n"]
@@ -58,30 +58,6 @@ def test_lagged_friction_and_its_bands_are_taken():
     assert not np.array_equal(record(lagged)[0]["displacement"], record(scene())[0]["displacement"])
     with pytest.raises(InputError, match="is frictional under lagged rules only"):
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
-
-
-def test_a_slope_is_a_turned_weight_on_locked_springs_too():
-    beta = math.radians(20)
-    locked = {"law": "locked", "stiffness": 1e9, "shear_stiffness": 4e8}
-    both = ["displacement", "horizontal_displacement"]
-    for cut in ({}, {"subdivide": [2, 2]}):
-        given = {
-            "title": "locked",
-            "contact": locked,
-            "load": {"gravity": 9.81, "slope": 20.0},
-            "run": {"columns": both},
-        }
-        given |= {"block": {"side": 2.0, "density": 2700.0, "young": 1e9} | cut, "time": {"step": 1e-3, "steps": 100}}
-        found = DDA().build(parse_scene(given, "locked.toml"), False)
-        history = found.run().history.columns
-        assert np.max(history["horizontal_displacement"]) > 0 > np.min(history["displacement"])
-        static = found.static()
-        weight = 10800 * 9.81
-        settled = -weight * math.cos(beta) * (1 / 2e9 + 1 / 4e9)  # of the springs, and of the strain under W/2
-        assert static["contact_pressure"] == pytest.approx(weight * math.cos(beta) / 2.0, rel=1e-6)
-        assert cut or static["displacement"] == pytest.approx(settled, rel=1e-12)
-    model = model_of(parse_scene(given, "locked.toml"))
-    assert model.force[:2] == pytest.approx([weight * math.sin(beta), -weight * math.cos(beta)], rel=1e-14)
 
 
 @pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])

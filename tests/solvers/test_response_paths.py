@@ -124,16 +124,6 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
         assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 30), solver).table()))
 
 
-def test_fine_elements_answer_as_the_bar() -> None:
-    f = np.linspace(1.0, 240.0, 40)
-    bar, errors = response(BLOCK, f, "bar"), []
-    for elements in (8, 16, 32):
-        found = response(BLOCK.with_values({"fem.elements": elements}), f, "fem")
-        errors.append(np.max(np.abs(found.displacement - bar.displacement)))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.1)
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.1)
-
-
 def test_small_steps_answer_as_the_limit_with_the_rate_of_the_discount() -> None:
     f, damped = [20.0, 52.0, 80.0], {"time.gg_rate": 30.0, "time.alpha": 0.4, "time.delta": 0.6}
     for solver in ("dda", "fem", "bar"):
