@@ -68,6 +68,21 @@ def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-unty
     assert [mode.share for mode in seen] == pytest.approx(expected[1][kept].tolist(), rel=1e-6)
 
 
+@pytest.mark.parametrize("p", thinned([1e9, 1e10, 1e11], 4))
+@pytest.mark.parametrize("way", RECORDS)
+@pytest.mark.parametrize("solver", ["whole", "one sub-block"])
+def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way: str, solver: str) -> None:
+    """The springs' push K R would make the stiff contact mode the first one: it has no limit for stiff springs."""
+    case = model(p, way)
+    if solver == "whole":
+        found = dda.modes(case, SCHEME)
+    else:
+        found = dda.system_modes(dda.subdivided(case, 1, 1, 1e9), SCHEME)
+    parts = {"x": [sideways(p)], "y": [upright(1, p)], "xy": [sideways(p), upright(1, p)]}[way]
+    mass, stiffness = (block_diag(*(part[i] for part in parts)) for i in (0, 1))
+    agree(found, carried(mass, stiffness, np.concatenate([part[2] for part in parts])))
+
+
 @pytest.mark.parametrize(
     ("p", "n", "solver"), thinned(itertools.product([1e9, 1e11], [1, 5], ["fem", "whole fem", "sub-blocks"]), 5)
 )
