@@ -12,7 +12,7 @@ from faults import seams
 from oracles import plain_newmark
 from oracles.bars import OTHER, PAPER
 from oracles.elements import make
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 import dda
 import fem_reference
