@@ -9,8 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from flint import arb
-from oracles.bars_by_grid import bars_on_grid
 
 from fem_reference.events import bars_events
 from fem_reference.events.bars_events import BarsMotion, least_terms, solve
@@ -20,7 +18,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import Drive, half_sine, recorded, ricker, sine, triangle
+from fem_reference.events.column_drive import half_sine, recorded, ricker, sine, triangle
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -165,49 +163,6 @@ def random_problem(seed: int) -> tuple[BarsProblem, float]:
     return BarsProblem(
         tuple(bars), joints, 0.3, base=sine(0.4, 0.5, quarters=1), top=recorded([0.25, 1.0, 3.0], [0, 1, 0.5])
     ), 5.0
-
-
-def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    dt = end / steps
-    travels = [round(float(one.travel) / dt) for one in problem.bars]
-
-    def value(drive: Drive, t: float) -> float:
-        piece, _ = drive().piece_at(t + 1e-12)
-        return float(piece.series(arb(t), 1.0, 1)[0])
-
-    laws = [(j.law, j.stiffness, j.gap if j.law == "unilateral" else j.strength) for j in problem.joints if j]
-    return bars_on_grid(
-        [float(one.impedance) for one in problem.bars],
-        travels,
-        [one.velocity for one in problem.bars],
-        [*laws],
-        steps,
-        dt,
-        problem.gravity,
-        lambda t: value(problem.base, t),
-        problem.base_impedance,
-        lambda t: value(problem.top, t),
-    )
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", thinned(RANDOM[:3], 3))
-def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
-    problem, end = random_problem(seed)
-    motion = solve(problem, end)
-    assert motion.switches
-    errors = []
-    for steps in (800, 1600, 3200):
-        _, openings, means = on_grid(problem, end, steps)
-        state = motion.at([end])
-        opening = state.gap if problem.joints[0].law == "unilateral" else state.slip  # type: ignore[union-attr]
-        errors.append(
-            max(
-                np.max(np.abs(openings[:, -1] - opening[:, 0])),
-                np.max(np.abs(means - state.mean_velocity[:, 0])),
-            )
-        )
-    assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
 
 
 @pytest.mark.long

@@ -10,9 +10,8 @@ import pytest
 from conftest import thinned
 from faults import seams
 from oracles import plain_newmark
-from oracles.bars import OTHER, PAPER
 from oracles.elements import make
-from scipy.linalg import block_diag, eigh
+from scipy.linalg import eigh
 
 import dda
 import fem_reference
@@ -66,21 +65,6 @@ def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-unty
     kept = expected[1] > 1e-4
     assert [mode.frequency for mode in seen] == pytest.approx(expected[0][kept].tolist(), rel=1e-7)
     assert [mode.share for mode in seen] == pytest.approx(expected[1][kept].tolist(), rel=1e-6)
-
-
-@pytest.mark.parametrize("p", thinned([1e9, 1e10, 1e11], 4))
-@pytest.mark.parametrize("way", RECORDS)
-@pytest.mark.parametrize("solver", ["whole", "one sub-block"])
-def test_under_a_moving_base_alone_shares_are_those_of_its_inertia(p: float, way: str, solver: str) -> None:
-    """The springs' push K R would make the stiff contact mode the first one: it has no limit for stiff springs."""
-    case = model(p, way)
-    if solver == "whole":
-        found = dda.modes(case, SCHEME)
-    else:
-        found = dda.system_modes(dda.subdivided(case, 1, 1, 1e9), SCHEME)
-    parts = {"x": [sideways(p)], "y": [upright(1, p)], "xy": [sideways(p), upright(1, p)]}[way]
-    mass, stiffness = (block_diag(*(part[i] for part in parts)) for i in (0, 1))
-    agree(found, carried(mass, stiffness, np.concatenate([part[2] for part in parts])))
 
 
 @pytest.mark.parametrize(
@@ -141,18 +125,6 @@ def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense:
     equations = build(case, full)
     exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
     assert fem_reference.highest_frequency(case, full) == pytest.approx(exact, rel=1e-9)
-
-
-@pytest.mark.parametrize("bar", [PAPER, OTHER])
-def test_a_bar_s_shares_are_those_of_a_force_on_its_top(bar: fem_reference.Bar) -> None:
-    """(phi' F)^2 / (w^2 M_i F' D): phi = cos(b (1 - y/h)), M_i = rho W h (1 + sin 2b / 2b) / 2, D = F (1/k + h/EW)."""
-    modes = bar.modes(SAME, 40)
-    soft = 1 / bar.base_stiffness + bar.height / (bar.young * bar.width)
-    for mode in modes:
-        b = mode.frequency * bar.height * np.sqrt(bar.density / bar.young)
-        inertia = bar.density * bar.width * bar.height * (1 + np.sin(2 * b) / (2 * b)) / 2
-        assert mode.share == pytest.approx(1 / (mode.frequency**2 * inertia * soft), rel=1e-11)
-    assert 0.98 < sum(mode.share for mode in modes) < 1
 
 
 def test_a_double_root_at_zero_stops_a_mode_in_its_second_step() -> None:

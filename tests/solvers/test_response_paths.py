@@ -92,19 +92,6 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.long
-def test_what_a_space_does_not_resolve_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = BLOCK.with_values({"block.subdivide": [4, 4], "block.poisson": 0.3, "fem.elements": 8})
-    f = [5.0, 90.0, 200.0]
-    sound = {solver: response(scene, f, solver) for solver in ("dda", "fem")}
-    for module in (dda.system.response, fem_reference.history.response):
-        monkeypatch.setattr(module, "LARGEST", 3)
-    for solver, whole in sound.items():
-        found = response(scene, f, solver)
-        for column in COLUMNS:
-            assert np.allclose(found.columns[column], whole.columns[column], rtol=1e-8)
-
-
-@pytest.mark.long
 def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> NoReturn:
         raise AssertionError("a step was run")
