@@ -1,4 +1,4 @@
-"""A search for all values of one parameter that give a function its target: a root between any two samples around it."""
+"""A search for all values of one parameter that give a function its target: a root between two samples around it."""
 
 from __future__ import annotations
 
