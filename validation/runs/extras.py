@@ -50,7 +50,8 @@ def missing(*libraries: str) -> str | None:
 
 def sentence(*libraries: str) -> str:
     """Return what to install for libraries that are absent."""
-    projects = " and ".join(PROJECTS.get(library, library) for library in libraries)
+    *first, last = (PROJECTS.get(library, library) for library in libraries)
+    projects = f"{', '.join(first)} and {last}" if first else last
     extras = ",".join(dict.fromkeys(EXTRA_OF[library] for library in libraries))
     return f"needs {projects}, not installed: {install(extras)}"
 
