@@ -133,8 +133,8 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
     columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
-    blocks = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane")}
-    assert elements == {"exact.py", *blocks, *rigid, *columns}
+    others = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane/mesh")}
+    assert elements == {"exact.py", *others, *rigid, *columns}
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
@@ -143,6 +143,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
         "solvers/blocks/opening.py",
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
+        "solvers/plane/blocks.py",
     }
     for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
         lines = text(ROOT / "validation" / path)  # apart from the adapter, the closed forms of the scheme alone

@@ -1,12 +1,10 @@
-"""The site of results: the chapters, a page for each scene, the calculators; written under a temporary name as a whole."""
+"""The site of results: chapters, a page for each scene, calculators; written under a temporary name as a whole."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
-
-from validation.report.site.places import check_place, write
 
 from validation.report.blocks import Blocks, Heading, Link, Links, Paragraph, References
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
@@ -17,6 +15,7 @@ from validation.report.front.first import verdict_line
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
+from validation.report.site.places import check_place, write
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results

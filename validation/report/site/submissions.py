@@ -12,8 +12,6 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from validation.report.site.places import check_place, write
-
 from validation.problems.answers import AnswerSet
 from validation.problems.data import PACK, AnswersData, united
 from validation.problems.judge import Word
@@ -35,6 +33,7 @@ from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, 
 from validation.report.chapters.text import DASH, short
 from validation.report.render import html
 from validation.report.site.judged import COLORS, badge_of, imprint
+from validation.report.site.places import check_place, write
 from validation.runs.files import atomic_directory
 
 VERDICTS = "verdicts.json"  # marks a directory as such a site
