@@ -44,7 +44,6 @@ from fem_reference.scheme import newmark as fem_newmark
 from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
-from validation.problems import models
 from validation.runs import provenance
 from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
@@ -87,9 +86,7 @@ class Seam:
 # One block of DDA: its scheme, its matrices, its histories
 DDA_PREDICTOR = Seam(newmark, newmark.predictor)
 DDA_VELOCITY = Seam(newmark, newmark.velocity_corrector)
-DDA_ACCELERATION = Seam(newmark, newmark.acceleration_corrector)
 DDA_START = Seam(newmark, newmark.initial_acceleration)
-DDA_EFFECTIVE = Seam(newmark, newmark.effective_matrix)
 DDA_SQUARES = Seam(blocked, blocked._squared)
 DDA_STIFFNESS = Seam(gap_form, gap_form._stiffness)
 DDA_LOAD = Seam(gap_form, gap_form._load)
@@ -154,8 +151,6 @@ FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 
 # The bar
 BAR_WAVE_NUMBERS = Seam(exact_bar, exact_bar.wave_numbers)
-BAR_SHARES = Seam(exact_bar, exact_bar.shares)
-BAR_SUM = Seam(exact_bar.Bar, exact_bar.Bar._sum)
 BAR_HISTORIES = Seam(exact_bar, exact_bar.weighted_response)
 BAR_ROOTS = Seam(exact_bar, exact_bar.roots)
 BAR_STEP = Seam(modal, modal.step_increment)
@@ -190,7 +185,6 @@ DECISION_SPECIAL = Seam(search, search._without_special_cases)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
-PROBLEM_RUN = Seam(models, models._run)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)
