@@ -43,12 +43,10 @@ LEAST_SAMPLES = 400  # instants of the motion in which peaks are sought
 SAMPLES_IN_CONTACT = 9  # further ones in each contact
 # of a switch: whether it opens or closes, whether it slips or sticks
 KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
-# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024, and how many
-# that has in a second: of columns and blocks' series in steps, and of the waves in bars.
+# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024: of columns'
+# series in steps, and of the waves in bars.
 MOST_TERMS = 2.5e6
-TERMS_A_SECOND = 3e5
 MOST_BAR_TERMS = 6e7
-BAR_TERMS_A_SECOND = 5e6
 SWITCHES_LISTED = 6  # switches that a note names
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import fem_reference
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
@@ -20,7 +21,6 @@ from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    import fem_reference
     from fem_reference.history.unilateral import UnilateralResult
     from fem_reference.mesh.model import Model
 
@@ -37,8 +37,6 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
     InputError
         The problem refuses a value.
     """
-    import fem_reference
-
     b = scene.block
     f = scene.fem
     c = scene.contact
@@ -68,8 +66,6 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
 
 def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
-    import fem_reference
-
     t = scene.time
     d = scene.damping
     if t.scheme == "newmark":
@@ -82,8 +78,6 @@ def scheme_of(scene: Scene) -> fem_reference.Scheme:
 
 def locked_frequency(problem: fem_reference.Problem, model: Model | None = None) -> float:
     """Return the largest frequency of a mesh on a locked base [rad/s]."""
-    import fem_reference
-
     return fem_reference.highest_frequency(problem, model=model)
 
 
@@ -133,8 +127,6 @@ class Mesh(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        import fem_reference
-
         steps = self.scene.time.steps
         columns = self.scene.run.columns
         result: fem_reference.Result | fem_reference.AdaptiveResult
@@ -151,14 +143,10 @@ class Mesh(Prepared):
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution."""
-        import fem_reference
-
         return fem_reference.static(self.problem, model=self.model)
 
     def modes(self) -> tuple[Mode, ...]:
         """Return modes that the load reaches, the first axial one first."""
-        import fem_reference
-
         return to_modes(fem_reference.modes(self.problem, self.scheme, model=self.model))
 
     def diagnostics(self) -> Mapping[str, float]:
@@ -288,7 +276,6 @@ class FiniteElements(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        import fem_reference
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)

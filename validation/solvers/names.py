@@ -9,7 +9,7 @@ from validation.metrics.catalogue import CATALOGUE, PAIRS
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.scenes.tables import GateSection
-from validation.solvers.registry import FULL, get_solver, is_solver, replacement, solver_names
+from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
 from validation.solvers.user import UserSolver
 
 
@@ -26,7 +26,7 @@ def check_names(scene: Scene, source: str) -> None:
         solver = name.removesuffix(FULL)
         if not is_solver(solver):
             rule = f"must be among {', '.join(solver_names())}"
-            raise InputError(rule, source=source, field="run.solvers", value=repr(name), advice=replacement(name))
+            raise InputError(rule, source=source, field="run.solvers", value=repr(name))
         adapter = get_solver(solver)
         if isinstance(adapter, UserSolver):
             adapter.check_module()

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import dda
+import fem_reference
 from validation.runs.history import DISPLACEMENT, STRESS_ERROR, Array
 from validation.runs.modes import Mode
 from validation.runs.run import Run
@@ -16,8 +18,6 @@ from validation.solvers.contract import Prepared
 from validation.solvers.translation import naming, to_run
 
 if TYPE_CHECKING:
-    import dda
-    import fem_reference
     from fem_reference.plane.body import PlaneBody
     from fem_reference.plane.model import PlaneModel
 
@@ -29,8 +29,6 @@ class PlaneBlocks(Prepared):
     """The blocks, by `dda`."""
 
     def __init__(self, scene: Scene, plane: PlaneSection, scheme: dda.Scheme) -> None:
-        import dda
-
         self.scene = scene
         self.plane = plane
         self.scheme = scheme
@@ -51,8 +49,6 @@ class PlaneBlocks(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency, joints included [rad/s]."""
-        import dda
-
         return dda.highest_frequency(self.blocks.system)
 
     def history_run(self) -> Run:
