@@ -132,29 +132,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    _refuse_what_is_not_known(scene)
-    if has_swapped_columns(scene, foreign):
-        return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
-    answer = _judged(scene, foreign, tolerance)
-    if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
-        return answer
-    return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
-
-
-def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
-    """Return the answer to a history with two columns in their places, and what to type for them to be there."""
-    foreign = exchanged(foreign, *pair)
-    answer = _judged(scene, foreign, tolerance)
-    first, second = (name.replace("_", " ") for name in pair)
-    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
-    remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
-    sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
-    causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
-    return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
-
-
-def _refuse_what_is_not_known(scene: Scene) -> None:
-    """Refuse a scene that compare does not step, before anything of it is run."""
+    # refuse a scene that compare does not step, before anything of it is run
     features.refuse_bonded_column(scene, "compare")
     features.refuse_damping(scene, "compare")
     if scene.time.scheme != "newmark":
@@ -173,6 +151,24 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
         if is_frictional:
             of_friction.refuse_other_scenes(scene)
     features.refuse_sweep(scene)
+    if has_swapped_columns(scene, foreign):
+        return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
+    answer = _judged(scene, foreign, tolerance)
+    if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
+        return answer
+    return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
+
+
+def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
+    """Return the answer to a history with two columns in their places, and what to type for them to be there."""
+    foreign = exchanged(foreign, *pair)
+    answer = _judged(scene, foreign, tolerance)
+    first, second = (name.replace("_", " ") for name in pair)
+    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
+    remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
+    sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
+    causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
+    return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
 
 
 def _refuse_other_schemes(scene: Scene) -> None:

@@ -18,7 +18,6 @@ import numpy as np
 
 from validation.errors import PlausibilityWarning
 from validation.scenes.column import ColumnSection
-from validation.scenes.plane import PlaneSection
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
@@ -113,7 +112,10 @@ _WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is clea
 
 def _materials(scene: Scene) -> Iterator[Implausible]:
     if scene.plane is not None:
-        yield from _of_plane(scene.plane)
+        plane = scene.plane
+        largest = max([*map(abs, plane.stress), *(math.hypot(*load.traction) for load in plane.load)])
+        speed = math.sqrt(plane.young / plane.density)
+        yield from _material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
     elif scene.column is not None:
         yield from _of_layers(scene, scene.column)
     elif scene.rigid is None:
@@ -128,12 +130,6 @@ def _materials(scene: Scene) -> Iterator[Implausible]:
             "load.gravity": block.density * abs(load.gravity) * _height(scene) / modulus,
         }
         yield from _material("block", block.density, block.young, math.sqrt(modulus / block.density), strains)
-
-
-def _of_plane(plane: PlaneSection) -> Iterator[Implausible]:
-    largest = max([*map(abs, plane.stress), *(math.hypot(*load.traction) for load in plane.load)])
-    speed = math.sqrt(plane.young / plane.density)
-    yield from _material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
 
 
 def _of_layers(scene: Scene, column: ColumnSection) -> Iterator[Implausible]:

@@ -19,8 +19,8 @@ from validation.solvers import opened
 from validation.solvers.columns.layers import time_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
-from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_modes, to_run
 
 BAR_COLUMNS = ("displacement", "contact_pressure")
 

@@ -15,6 +15,7 @@ from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
+from validation.solvers import translation
 from validation.solvers.blocks.closed import block_of, load_of
 from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
@@ -38,12 +39,8 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
 
 def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
-    t = scene.time
-    d = scene.damping
-    if t.scheme == "newmark":
-        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
-    with naming(scene):
-        return dda.named_scheme(t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split)
+    scheme: dda.Scheme = translation.scheme_of(scene, dda)
+    return scheme
 
 
 class OneBlock(Prepared):

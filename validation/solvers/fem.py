@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,10 +15,10 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers import opened
+from validation.solvers import opened, translation
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
-from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_modes, to_run
 
 if TYPE_CHECKING:
     from fem_reference.history.unilateral import UnilateralResult
@@ -66,14 +66,8 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
 
 def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
-    t = scene.time
-    d = scene.damping
-    if t.scheme == "newmark":
-        return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
-    with naming(scene):
-        return fem_reference.named_scheme(
-            t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split
-        )
+    scheme: fem_reference.Scheme = translation.scheme_of(scene, fem_reference)
+    return scheme
 
 
 def locked_frequency(problem: fem_reference.Problem, model: Model | None = None) -> float:
@@ -86,13 +80,6 @@ def opening_frequency(problem: fem_reference.Problem, full: bool) -> float:
     from fem_reference.contact.frequency import highest_closed_frequency
 
     return highest_closed_frequency(problem, full)
-
-
-def to_modes(modes: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
-    """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
-    return tuple(
-        Mode(mode.frequency, mode.share, (complex(mode.eigenvalues[0]), complex(mode.eigenvalues[1]))) for mode in modes
-    )
 
 
 class Mesh(Prepared):
