@@ -1,0 +1,38 @@
+"""Adapter of glued blocks in the plane of the package `dda`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import dda
+from validation.solvers.plane import PlaneModelled
+
+
+class PlaneBlocks(PlaneModelled):
+    """The blocks, by `dda`."""
+
+    def built(self) -> dda.GluedBlocks:
+        """Return the blocks."""
+        plane = self.plane
+        material = dda.Material(plane.density, plane.young, plane.poisson, plane.hypothesis)
+        return dda.GluedBlocks(
+            dda.glued_blocks(
+                [dda.Block(polygon, material) for polygon in plane.polygons],
+                plane.glue * plane.young,
+                [clamp.edge for clamp in plane.clamp],
+                plane.clamp_glue * plane.young,
+                [dda.Traction(*load.edge, load.traction) for load in plane.load],
+                plane.stress,
+                plane.gravity,
+            )
+        )
+
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency, joints included [rad/s]."""
+        return dda.highest_frequency(self.model.system)
+
+    def stress_error(self) -> float:
+        """Return the largest error of a stress component at rest over the largest component of the loads' stress."""
+        stresses = self.model.strains @ self.model.system.blocks[0].material.elasticity().T
+        error = abs(stresses - np.array(self.plane.stress))
+        return float(np.max(error) / np.max(np.abs(self.plane.stress)))
