@@ -142,7 +142,7 @@ class Stepper:
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
-        self.stages = [Stage._make(one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]
+        self.stages: list[Any] = [Stage._make(one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]
         self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
         self.gg_displacement = np.where(np.isin(of.discounted, ("velocity", "(7)")), 1.0, of.gg)[:, None]
         self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
