@@ -121,23 +121,6 @@ def test_a_step_limited_by_stability_is_the_largest_that_the_solver_takes(
         solve(case.with_values({"time.step": found.advised.step * (1 + 1e-5)}), "dda")
 
 
-def test_stiff_glue_takes_the_step_of_a_conditionally_stable_scheme() -> None:
-    found = advise_wave(COLUMN.with_values(LINEAR | FREE), 5.0, 0.1)
-    bonded = 2 * np.sqrt(3) * 100 / found.blocks[0] / (np.sqrt(12) * SPEED)
-    assert bonded == pytest.approx(27.4e-3, rel=1e-3)
-    assert found.advised.step == pytest.approx(4.853e-6, rel=1e-3)
-
-
-def test_perfectly_bonded_blocks_keep_the_limit_of_linear_elements() -> None:
-    """The solver's limit is sqrt(12) c/h of a free element, whose highest mode equal ones with free ends share."""
-    layer = load_scene("waves-blocks").expand()[0].with_values(EXPLICIT | FREE)
-    found = advise_wave(layer, 200.0, 0.5)
-    (part,) = wave_advice.layers_of(layer)
-    free = 2 * part.thickness / found.blocks[0] / (np.sqrt(12) * part.speed)
-    assert found.limits_step == "stability"
-    assert found.advised.step == pytest.approx(free, rel=1e-9)
-
-
 def test_where_only_unstable_steps_would_do_the_advice_says_so() -> None:
     scene = COLUMN.with_values(FREE | {"time.alpha": 0.2, "time.delta": 0.6, "time.gg": 0.99})
     found = advise_wave(scene, 5.0, 0.5)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import thinned
-from flint import arb
-from oracles.bars_by_grid import bars_on_grid
 
 from fem_reference.events import bars_events
 from fem_reference.events.bars_events import BarsMotion, least_terms, solve
@@ -20,7 +17,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import Drive, half_sine, recorded, ricker, sine, triangle
+from fem_reference.events.column_drive import half_sine, ricker, triangle
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -145,91 +142,6 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
-
-
-RANDOM = range(6)
-
-
-def random_problem(seed: int) -> tuple[BarsProblem, float]:
-    """Three bars whose travel times are multiples of a sixteenth, under all that may act; and the end."""
-    random = np.random.default_rng(seed)
-    bars = []
-    for _ in range(3):
-        impedance, travel = random.uniform(0.5, 2.0), random.integers(4, 24) / 16
-        speed = random.uniform(0.5, 2.0)
-        bars.append(Bar(travel * speed, impedance / speed, impedance * speed, float(random.normal())))
-    if seed % 2:
-        joints = tuple(slips(random.uniform(2, 20), random.uniform(0.1, 0.6)) for _ in range(3))
-        return BarsProblem(tuple(bars), joints, base_impedance=1.5, base=sine(1.0, 0.7), top=half_sine(0.5, 0.8)), 5.0
-    joints = tuple(opens(random.uniform(2, 20), random.choice([0.0, 0.05])) for _ in range(3))
-    return BarsProblem(
-        tuple(bars), joints, 0.3, base=sine(0.4, 0.5, quarters=1), top=recorded([0.25, 1.0, 3.0], [0, 1, 0.5])
-    ), 5.0
-
-
-def on_grid(problem: BarsProblem, end: float, steps: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    dt = end / steps
-    travels = [round(float(one.travel) / dt) for one in problem.bars]
-
-    def value(drive: Drive, t: float) -> float:
-        piece, _ = drive().piece_at(t + 1e-12)
-        return float(piece.series(arb(t), 1.0, 1)[0])
-
-    laws = [(j.law, j.stiffness, j.gap if j.law == "unilateral" else j.strength) for j in problem.joints if j]
-    return bars_on_grid(
-        [float(one.impedance) for one in problem.bars],
-        travels,
-        [one.velocity for one in problem.bars],
-        [*laws],
-        steps,
-        dt,
-        problem.gravity,
-        lambda t: value(problem.base, t),
-        problem.base_impedance,
-        lambda t: value(problem.top, t),
-    )
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", thinned(RANDOM[:3], 3))
-def test_the_grid_of_characteristics_tends_to_the_motion(seed: int) -> None:
-    problem, end = random_problem(seed)
-    motion = solve(problem, end)
-    assert motion.switches
-    errors = []
-    for steps in (800, 1600, 3200):
-        _, openings, means = on_grid(problem, end, steps)
-        state = motion.at([end])
-        opening = state.gap if problem.joints[0].law == "unilateral" else state.slip  # type: ignore[union-attr]
-        errors.append(
-            max(
-                np.max(np.abs(openings[:, -1] - opening[:, 0])),
-                np.max(np.abs(means - state.mean_velocity[:, 0])),
-            )
-        )
-    assert errors[2] < 2e-3 and errors[2] < 0.7 * errors[0]  # of fronts the first order
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", thinned(RANDOM[:4], 4))
-def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
-    problem, end = random_problem(seed)
-    motion = solve(problem, end)
-    arrivals = {float(piece.start) for joint in motion.joints if joint for piece in joint.pieces}
-    edges = np.unique([*arrivals, end])
-    points, weights = np.polynomial.legendre.leggauss(12)
-    impulses = np.zeros(4)
-    for low, high in itertools.pairwise(edges):
-        inside = low + (high - low) * (1 + points) / 2
-        state = motion.at(inside.clip(0, end))
-        for number in range(3):
-            impulses[number] += (high - low) / 2 * weights @ state.force[number]
-    assert [motion.impulse(i, [end])[0] for i in range(3)] == pytest.approx(impulses[:3], abs=1e-10)
-    impulses[3] = 2 * 0.5 * 0.8 / math.pi if seed % 2 else 0.75 * 0.5 + 2.0 * 0.75
-    velocity = motion.at([end]).mean_velocity[:, 0]
-    for i, one in enumerate(problem.bars):
-        change = one.mass * (velocity[i] - one.velocity + problem.gravity * end)
-        assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
 
 
 def test_cut_bars_that_stay_bonded_move_as_one() -> None:

@@ -1,4 +1,4 @@
-"""The damped bar right beside its fronts, late, and its modes: against the Bessel kernel and the damped oscillator."""
+"""The damped bar right beside its fronts, late, and its modes: against its transform and the damped oscillator."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.bars import damped_by_kernel
+from oracles.bars import damped as damped_bar
 
 from fem_reference.exact import continuum, damped
 from validation.scenes.scene import load_scene
@@ -18,7 +18,7 @@ from validation.solvers.registry import get_solver
 
 FIRST = {"contact_pressure": (1.0, 2.0), "displacement": (0.5, 1.0)}  # arrival of the wave, and of every further one
 STIFF = 1e9  # of the spring over the bar: here a front is sharpest, the shares of the modes fall as 1 / b only
-CUT_OFF = 2e-12  # the smooth cut-off promises 1e-12; the kernel's own rounding at a stiff spring is as much as a half
+CUT_OFF = 2e-12  # the smooth cut-off promises 1e-12; the sums round by as much as a half
 
 
 @pytest.mark.parametrize(("a", "column"), thinned(product([0.003, 1.0], FIRST), 3))
@@ -30,7 +30,7 @@ def test_the_correction_reaches_as_far_as_the_cut_off_needs_it(column: str, a: f
     first, gap = FIRST[column]
     times = first + 3 * gap + np.array([-42, -37, -32, -22, -2, 3, 28, 33, 38]) / damped.MODES
     found = continuum.histories(times, STIFF, 2 * a, (column,))[0]
-    expected = [damped_by_kernel(column, t, STIFF, a) for t in times]
+    expected = [damped_bar(column, t, STIFF, a) for t in times]
     np.testing.assert_allclose(found, expected, rtol=0, atol=CUT_OFF)
 
 
@@ -43,7 +43,7 @@ def test_fronts_and_fast_modes_count_until_they_are_below_rounding(column: str, 
     t = first + 3 * gap * (1 if column == "contact_pressure" else 2) + behind
     assert 19 < a * t < 26
     found = continuum.histories(np.array([t]), STIFF, 2 * a, (column,))[0, 0]
-    assert found == pytest.approx(damped_by_kernel(column, t, STIFF, a), abs=CUT_OFF)
+    assert found == pytest.approx(damped_bar(column, t, STIFF, a), abs=CUT_OFF)
 
 
 @pytest.mark.parametrize(("gg", "step"), [(0.9, 1e-3), (0.5, 1e-3), (0.999, 1e-4), (1e-4, 1e-3)])

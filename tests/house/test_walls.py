@@ -125,24 +125,17 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
     columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
-    assert elements == {
-        "exact.py",
-        "solvers/fem.py",
-        "solvers/bar.py",
-        "solvers/events.py",
-        "solvers/plane_mesh.py",
-        *rigid,
-        *columns,
-    }
+    others = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane/mesh")}
+    assert elements == {"exact.py", *others, *rigid, *columns}
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
         "solvers/boxes.py",
         "solvers/blocks/closed.py",
         "solvers/blocks/opening.py",
-        "solvers/blocks/plane.py",
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
+        "solvers/plane/blocks.py",
     }
     for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
         lines = text(ROOT / "validation" / path)  # apart from the adapter, the closed forms of the scheme alone

@@ -175,3 +175,11 @@ def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> Non
             assert any(fnmatch(file.as_posix(), pattern) for pattern in patterns), file
             count += 1
     assert count > 100
+
+
+def test_actions_of_others_are_pinned_by_commit_and_write_nothing_by_default() -> None:
+    for path in (ROOT / ".github/workflows").glob("*.yml"):
+        text = path.read_text(encoding="utf-8")
+        pinned = re.findall(r"uses: \S+@(\S+)", text)
+        assert all(re.fullmatch(r"[0-9a-f]{40}", commit) for commit in pinned), path.name
+        assert yaml.safe_load(text)["permissions"] == {"contents": "read"}, path.name

@@ -19,20 +19,35 @@ as many digits as prove sixty of the histories.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from flint import arb, arb_series
 
+from fem_reference.exact.bar import Bar
 from validation.scenes.scene import Scene
-from validation.solvers.sixty_digits.block import DIGITS, NewmarkNumbers, digits
+from validation.solvers.sixty_digits.block import DIGITS, digits
 
 
 def history(scene: Scene, names: tuple[str, ...]) -> dict[str, list[arb]]:
-    """Return the columns at step 1 to the last, each proven to sixty digits of its largest value."""
-    steps = scene.time.steps
+    """Return the columns of a scene at step 1 to the last, each proven to sixty digits of its largest value."""
+    (_, _), (width, _), (_, height), _ = scene.block.outline
+    block, stiffness = scene.block, 2 * scene.contact.stiffness
+    bar = Bar(height, width, block.density, block.young, stiffness, scene.load.pressure)
+    return _proven(bar, scene.time, scene.time.discount, names, range(1, scene.time.steps + 1))
+
+
+def at_steps(bar: Bar, scheme: Any, names: Sequence[str], steps: Sequence[int]) -> dict[str, list[arb]]:
+    """Return the columns of a bar at some steps, each proven to sixty digits of the largest of them."""
+    return _proven(bar, scheme, scheme.gg, names, steps)
+
+
+def _proven(bar: Bar, scheme: Any, gg: float, names: Sequence[str], steps: Sequence[int]) -> dict[str, list[arb]]:
     count = 2 * DIGITS
     while True:
-        with digits(count, terms=steps + 1):
-            series = _series(scene)
-            columns = {name: [series[name][n] for n in range(1, steps + 1)] for name in names}
+        with digits(count, terms=max(steps) + 1):
+            series = _series(bar, scheme, arb(gg))
+            columns = {name: [series[name][n] for n in steps] for name in names}
             if all(_is_proven(values) for values in columns.values()):
                 return columns
         count *= 2
@@ -43,21 +58,19 @@ def _is_proven(values: list[arb]) -> bool:
     return all(value.rad() <= largest * arb(10) ** -DIGITS for value in values)
 
 
-def _series(scene: Scene) -> dict[str, arb_series]:
+def _series(bar: Bar, scheme: Any, gg: arb) -> dict[str, arb_series]:
     """Return the generating functions of displacement and contact pressure."""
-    s = NewmarkNumbers.of(scene)
     z = arb_series([0, 1])
-    half = arb(1) / 2 - s.alpha
-    damped = z * s.gg / (1 - z * s.gg)
-    P = s.alpha + z * half + damped * (s.delta + z * (1 - s.delta))
-    Q = z * half + damped * z * (1 - s.delta)
-    load = z / (1 - z) + (Q / P if s.consistent else 0)
+    half = arb(1) / 2 - scheme.alpha
+    delta = arb(scheme.delta)
+    damped = z * gg / (1 - z * gg)
+    P = scheme.alpha + z * half + damped * (delta + z * (1 - delta))
+    Q = z * half + damped * z * (1 - delta)
+    load = z / (1 - z) + (Q / P if scheme.start == "consistent" else 0)
 
-    (_, _), (width, _), (_, height), _ = scene.block.outline
-    E = arb(scene.block.young)
-    q = arb(scene.load.pressure)
-    kappa = 2 * arb(scene.contact.stiffness) * height / (E * width)
-    theta = ((1 - z) / P).sqrt() * (height / s.step * (arb(scene.block.density) / E).sqrt())
+    E, height, q = arb(bar.young), arb(bar.height), arb(bar.pressure)
+    kappa = arb(bar.base_stiffness) * height / (E * bar.width)
+    theta = ((1 - z) / P).sqrt() * (height / scheme.step * (arb(bar.density) / E).sqrt())
     x = (theta * (arb(-1) / 2)).exp()
     square = x * x
     scale = load * x / (theta * (1 - square * square) + kappa * (1 + square * square))

@@ -35,4 +35,4 @@ def matrices(prepared: Prepared) -> tuple[np.ndarray, ...]:
 
 def rule_of(scene: Scene) -> Rule:
     t, d = scene.time, scene.damping
-    return Rule(t.alpha, t.delta, t.discount, t.step, d.mass, d.stiffness)
+    return Rule(t.alpha, t.delta, t.discount, t.step, d.mass, d.stiffness, t.start)

@@ -16,17 +16,37 @@ def upright(n, p=SPRING):
     return M, K
 
 
-def stepped(M, K, forces, scheme):
+def stepped(M, K, forces, scheme, C=None):
     """Return D of every step (steps, n) from rest, in absolute accelerations, under forces (steps + 1, n)."""
     alpha, delta, gg, dt = scheme.alpha, scheme.delta, scheme.gg, scheme.step
+    C = np.zeros_like(M) if C is None else C
     D, V, A = np.zeros((3, len(M)))
     if scheme.start == "consistent":
         A = np.linalg.solve(M, forces[0])
-    found = []
+    rows = []
     for force in forces[1:]:
-        ahead = D + gg * dt * V + dt * dt * (0.5 - alpha) * A
-        new = np.linalg.solve(M + alpha * dt * dt * K, force - K @ ahead)
-        D = ahead + alpha * dt * dt * new
-        V, A = gg * V + dt * ((1 - delta) * A + delta * new), new
-        found.append(D)
-    return np.array(found)
+        D, V = D + gg * dt * V + dt * dt * (0.5 - alpha) * A, gg * V + dt * (1 - delta) * A
+        A = np.linalg.solve(M + delta * dt * C + alpha * dt * dt * K, force - C @ V - K @ D)
+        D, V = D + alpha * dt * dt * A, V + delta * dt * A
+        rows.append(D)
+    return np.array(rows)
+
+
+def glued(blocks, springs):
+    """Return M and K of blocks on springs at points, (first, second or None, point, normal, shear) on level edges.
+
+    Shear is along x and normal along y; of an upright edge the two are exchanged.
+    """
+    size = 6 * len(blocks)
+    M, K = np.zeros((2, size, size))
+    for i, block in enumerate(blocks):
+        part = slice(6 * i, 6 * i + 6)
+        M[part, part] = block.mass()
+        K[part, part] = block.elastic()
+    for first, second, point, normal, shear in springs:
+        gap = np.zeros((2, size))
+        gap[:, 6 * first : 6 * first + 6] = blocks[first].T(*point)
+        if second is not None:
+            gap[:, 6 * second : 6 * second + 6] = -blocks[second].T(*point)
+        K += gap.T @ np.diag([shear, normal]) @ gap
+    return M, K

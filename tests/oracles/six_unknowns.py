@@ -1,8 +1,10 @@
-"""A block with all six unknowns and corner springs in plain numpy, as another person writes it, with misread data.
+"""A block with all six unknowns and corner springs in plain numpy, as another person writes it, with slips as options.
 
 The unknowns are those of a constant-strain block, (u, v, r, ex, ey, gxy) about the centroid. Nothing of the suite is
 imported, but for the scene that is handed in.
 """
+
+import time
 
 import numpy as np
 
@@ -21,6 +23,7 @@ def history(
     shear=None,
     eccentricity=None,
     density=1.0,
+    springs=1.0,
     delta=None,
     start=None,
     discounts=1,
@@ -39,8 +42,8 @@ def history(
     if (hypothesis or block.hypothesis) == "plane strain":
         young, mu = young / (1 - mu**2), mu / (1 - mu)
     plate = young / (1 - mu**2)
-    normal = contact.stiffness
-    tangential = contact.shear if shear is None else shear * normal
+    normal = springs * contact.stiffness
+    tangential = springs * contact.shear if shear is None else shear * normal
     alpha = t.alpha if alpha is None else alpha
     delta = t.delta if delta is None else delta
     gg = t.discount**discounts
@@ -110,6 +113,7 @@ def central(scene):
 
 
 def delta_missing(scene):
+    """(7) as V = gg V0 + dt A."""
     return history(scene, delta=1.0)
 
 
@@ -151,3 +155,50 @@ def delta_missing_and_central(scene):
 
 def without_poisson_and_central(scene):
     return history(scene, poisson=0.0, eccentricity=0.0)
+
+
+def half_springs(scene):
+    return history(scene, springs=0.5)
+
+
+def double_density(scene):
+    return history(scene, density=2.0)
+
+
+def raises_in_one_scene(scene):
+    if scene.name.startswith("figure-8"):
+        raise_it()
+    return history(scene)
+
+
+def raise_it():
+    raise ZeroDivisionError("no step left")
+
+
+def raises(scene):
+    return np.linalg.solve(np.zeros((2, 2)), np.ones(2))
+
+
+def millimetres(scene):
+    displacement, pressure = history(scene)
+    return 1000 * displacement, pressure
+
+
+def not_a_number(scene):
+    displacement, pressure = history(scene)
+    displacement[3] = np.nan
+    return displacement, pressure
+
+
+def short(scene):
+    displacement, pressure = history(scene)
+    return displacement[:-1], pressure[:-1]
+
+
+def prints(scene):
+    print("step\n" * 20_000)
+    return history(scene)
+
+
+def hangs(scene):
+    time.sleep(600)

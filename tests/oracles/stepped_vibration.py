@@ -24,6 +24,7 @@ class Rule:
     step: float
     a0: float = 0.0
     a1: float = 0.0
+    start: str = "zero"
 
 
 def operators(rule: Rule, squares: Array) -> tuple[Array, Array]:

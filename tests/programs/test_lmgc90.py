@@ -2,7 +2,6 @@
 
 import importlib.util
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -14,25 +13,6 @@ installed = pytest.mark.skipif(absent, reason="NOT RUN: LMGC90 is not installed"
 both = pytest.mark.parametrize("solver", [LMGC90(), AsItComes()], ids=["chosen", "default"])
 SLOPE = math.radians(20.0)
 TOLERANCE = 2e-4  # of its Gauss-Seidel iteration, 1.666e-4, which the wrapper sets
-
-
-@pytest.mark.parametrize(
-    ("solver", "scene", "field"),
-    [
-        (LMGC90, rigid_scene({"tilt": 5.0}), r"rigid\.box\.tilt"),
-        (AsItComes, rigid_scene({"lift": 0.1}, stiffness=1e6), r"rigid\.box\.lift"),
-        (LMGC90, rigid_scene({"lift": 0.1}), r"rigid\.box\.lift"),
-    ],
-)
-def test_refuses_what_contact_sought_in_the_first_step_cannot_express(solver, scene, field):
-    with pytest.raises(NotImplementedError, match=field):
-        solver().solve(scene)
-
-
-def test_a_program_that_is_absent_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "compas_lmgc90", None)
-    with pytest.raises(NotImplementedError, match="is not installed: pip install"):
-        LMGC90().solve(rigid_scene())
 
 
 @installed
@@ -66,19 +46,6 @@ def test_a_box_flies_and_spins_as_the_midpoint_rule_does(solver, gravity, width,
 
 
 @installed
-@both
-@pytest.mark.parametrize(("friction", "density"), [(0.0, 1000.0), (15.0, 1000.0), (15.0, 10.0)])
-def test_a_box_slides_as_the_midpoint_rule_does_whatever_its_mass(solver, friction, density):
-    scene = rigid_scene({"density": density}, slope=20.0, friction=friction, steps=50)
-    held = math.tan(math.radians(friction)) * 9.81 * math.cos(SLOPE)
-    t = scene.time.step * np.arange(1, scene.time.steps + 1)
-    columns = solver.solve(scene)
-    expected = (9.81 * math.sin(SLOPE) - held) * t**2 / 2
-    np.testing.assert_allclose(columns["x_1"], expected, atol=TOLERANCE * held * t[-1] ** 2 / 2 + 1e-9)
-    assert columns["force_1"][-1] == pytest.approx(density * 9.81 * math.cos(SLOPE), rel=TOLERANCE)
-
-
-@installed
 @pytest.mark.parametrize("restitution", [0.3, 0.5, 1.0])
 @pytest.mark.parametrize("density", [10.0, 5000.0])
 def test_a_box_comes_back_at_e_times_the_speed_it_came_with(restitution, density, monkeypatch):
@@ -105,25 +72,6 @@ def test_a_box_turns_about_its_corner_as_a_rigid_body_does(solver):
     back = 9.81 * width / 2 / ((width**2 + height**2) / 3)
     expected = spin * t - back * t**2 / 2
     np.testing.assert_allclose(solver.solve(scene)["angle_1"], expected, rtol=0.02, atol=solver.own_step * spin * 0.2)
-
-
-@installed
-@both
-def test_a_ground_that_moves_takes_a_box_along(solver):
-    """Its driven velocity A w sin(w t) is summed by the trapezoidal rule, A (w h/2) / tan(w h/2) (1 - cos(w t))."""
-    scene = rigid_scene(friction=45.0, base_amplitude=0.1, base_frequency=1.0)
-    t = scene.time.step * np.arange(1, scene.time.steps + 1)
-    half = math.pi * solver.own_step
-    expected = 0.1 * half / math.tan(half) * (1 - np.cos(2 * math.pi * t))
-    np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, atol=TOLERANCE * 0.1)
-
-
-@installed
-def test_forces_of_a_pile_are_the_weights_above():
-    boxes = ({}, {"density": 500.0, "width": 0.5, "x": 0.1}, {"density": 2000.0, "height": 0.3})
-    columns = LMGC90().solve(rigid_scene(*boxes, friction=30.0, steps=20))
-    forces = [columns[f"force_{number}"][-1] for number in (1, 2, 3)]
-    assert forces == pytest.approx([9.81 * 1850.0, 9.81 * 850.0, 9.81 * 600.0], rel=10 * TOLERANCE)
 
 
 @installed

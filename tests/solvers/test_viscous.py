@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
-from oracles.stepped_vibration import Rule
+from oracles.plain_newmark import stepped
 
 import dda
 import fem_reference
@@ -24,19 +24,6 @@ AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 COLUMNS = ("displacement", "contact_pressure")
 
 
-def plain(rule: Rule, M: np.ndarray, K: np.ndarray, F: np.ndarray, steps: int, consistent: bool) -> np.ndarray:
-    """Return D of every step by the printed scheme with C, solved for the acceleration, (unknowns, steps)."""
-    C, dt = rule.a0 * M + rule.a1 * K, rule.step
-    D, V, A = np.zeros_like(F), np.zeros_like(F), np.linalg.solve(M, F) if consistent else np.zeros_like(F)
-    left, found = M + rule.delta * dt * C + rule.alpha * dt**2 * K, []
-    for _ in range(steps):
-        D, V = D + rule.gg * dt * V + dt**2 * (0.5 - rule.alpha) * A, rule.gg * V + dt * (1 - rule.delta) * A
-        A = np.linalg.solve(left, F - C @ V - K @ D)
-        D, V = D + rule.alpha * dt**2 * A, V + rule.delta * dt * A
-        found.append(D)
-    return np.array(found).T
-
-
 @pytest.mark.parametrize(
     ("solver", "values"),
     [
@@ -54,7 +41,8 @@ def plain(rule: Rule, M: np.ndarray, K: np.ndarray, F: np.ndarray, steps: int, c
 def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: dict[str, object]) -> None:
     scene = BLOCK.with_values(values)
     M, K, F, rows = matrices(get_solver(solver).prepare(scene))
-    expected = rows @ plain(rule_of(scene), M, K, F, scene.time.steps, scene.time.start == "consistent")
+    rule, forces = rule_of(scene), np.tile(F, (scene.time.steps + 1, 1))
+    expected = rows @ stepped(M, K, forces, rule, rule.a0 * M + rule.a1 * K).T
     history = solve(scene, solver).history
     for column, values_ in zip(COLUMNS, expected, strict=True):
         assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))

@@ -84,13 +84,6 @@ def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_sq
     assert np.allclose(stiff, statistics, atol=2e-5)
 
 
-def test_the_rigid_stop_rebounds_by_two_straight_lines():
-    theta = midpoints(40)
-    average = np.where(theta < 1 / 3, 3 - 8 * theta, 4 * theta - 1)
-    assert rebounds(spring_steps(SCHEMES["constant"], math.inf), theta) == pytest.approx(np.abs(2 * theta - 1))
-    assert rebounds(spring_steps(SCHEMES["average"], math.inf), theta) == pytest.approx(average)
-
-
 @pytest.mark.parametrize(
     ("alpha", "delta", "gg", "omega"),
     [(0.25, 0.5, 0.95, 1000.0), (0.3025, 0.6, 0.9, 3.0), (0.5, 1.0, 0.97, 0.4), (0.25, 0.5, 0.95, math.inf)],

@@ -32,13 +32,13 @@ def report(
     figures: Annotated[
         Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
     ] = None,
+    appendix: Annotated[
+        bool, typer.Option("--appendix", help="In the PDF, list the gates that passed, by the reason of their band.")
+    ] = False,
     docs: Annotated[
         str,
         typer.Option(help="With --site: folder of the documentation's pages, seen from it.", metavar="ADDRESS"),
     ] = "",
-    appendix: Annotated[
-        bool, typer.Option("--appendix", help="List the gates that passed, by the reason of their band, in the PDF.")
-    ] = False,
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write the results as PDF, as a site with calculators, or as figures; nothing is computed.

@@ -196,7 +196,7 @@ class DDA(Solver):
 
             return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
         if scene.plane is not None:
-            from validation.solvers.blocks.plane import PlaneBlocks
+            from validation.solvers.plane.blocks import PlaneBlocks
 
             return PlaneBlocks(scene, scene.plane, scheme_of(scene))
         if features.ROTATION in features.of(scene):

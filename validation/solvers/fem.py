@@ -276,7 +276,7 @@ class FiniteElements(Solver):
             kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
             return kind(scene, scheme_of(scene))
         if scene.plane is not None:
-            from validation.solvers.plane_mesh import PlaneMesh
+            from validation.solvers.plane.mesh import PlaneMesh
 
             return PlaneMesh(scene, scene.plane, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

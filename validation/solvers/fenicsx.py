@@ -37,7 +37,7 @@ from validation.solvers.fem import (
     opening_frequency,
     problem_of,
 )
-from validation.solvers.plane_mesh import body_of, elastic_model, points_and_cells
+from validation.solvers.plane.mesh import body_of, elastic_model, points_and_cells
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 

@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import resources
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -76,6 +78,13 @@ def page(
     )  # fmt: skip
 
 
+def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:
+    """Return the titles that neighbouring columns share, and how many do; nothing where none does."""
+    if not any(column["group"] for column in columns):
+        return []
+    return [(title, len([*shared])) for title, shared in groupby(columns, key=itemgetter("group"))]
+
+
 def _cleaned(text: str) -> str:
     """Return the lines of a text, with the marks of citations."""
     lines = (CITED.join(readable(part) for part in line.split(CITED)) for line in text.split("\n"))
@@ -93,7 +102,7 @@ def _environment(package: str) -> jinja2.Environment:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters["cited"] = _cited
+    environment.filters |= {"cited": _cited, "spans": _spans}
     return environment
 
 

@@ -1,21 +1,18 @@
-"""What both adapters of glued blocks in the plane do with their models."""
+"""What the adapters of blocks in the plane do alike with their models."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from validation.runs.history import DISPLACEMENT, STRESS_ERROR, Array
+from validation.runs.history import DISPLACEMENT, STRESS_ERROR
 from validation.runs.modes import Mode
 from validation.runs.run import Run
-from validation.scenes.plane import PlaneSection, Point
+from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
+from validation.solvers.plane.observed import MODES, observed_row
 from validation.solvers.translation import naming, to_modes, to_run
-
-MODES = 4  # that are reported
 
 
 class PlaneModelled(Prepared):
@@ -55,12 +52,3 @@ class PlaneModelled(Prepared):
     def modes(self) -> tuple[Mode, ...]:
         """Return the lowest modes, the one with the largest share of the static response first."""
         return to_modes(sorted(self.model.modes(self.scheme, MODES), key=lambda mode: -mode.share))
-
-
-def observed_row(plane: PlaneSection, observer: Callable[[Point, Point], Array]) -> Array:
-    """Return the row of the displacement that a scene observes."""
-    observe = plane.observe
-    rows = observer(*observe.place)
-    for edge in observe.less:
-        rows = rows - observer(*edge) / len(observe.less)
-    return np.array(observe.direction) @ rows

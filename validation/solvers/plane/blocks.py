@@ -1,11 +1,11 @@
-"""Adapter of glued blocks in the plane of the package `dda`."""
+"""The blocks themselves, by `dda`."""
 
 from __future__ import annotations
 
 import numpy as np
 
 import dda
-from validation.solvers.plane import PlaneModelled
+from validation.solvers.plane.modelled import PlaneModelled
 
 
 class PlaneBlocks(PlaneModelled):

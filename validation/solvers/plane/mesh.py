@@ -1,4 +1,4 @@
-"""Adapter of the elastic body of blocks in the plane, by finite elements on their outline."""
+"""The elastic body of the blocks' outline, by `fem`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
-from validation.solvers.plane import PlaneModelled
+from validation.solvers.plane.modelled import PlaneModelled
 
 if TYPE_CHECKING:
     from fem_reference.plane.body import PlaneBody
