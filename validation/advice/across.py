@@ -25,7 +25,6 @@ from validation.errors import InputError
 from validation.runs.modes import Mode
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.events import rectangle
 from validation.theory import landing, spectra
 from validation.theory.rebound import ReboundStatistics, rebound_statistics, spring_steps
 from validation.theory.stages import Stages
@@ -162,14 +161,14 @@ def _block_frequencies(scene: Scene) -> BlockFrequencies:
     """Return the frequencies of a block; of one that opens as of a rectangle with mu = 0 whose contact is closed."""
     features.refuse_column(scene, "advise")
     if scene.contact.law == "unilateral":
-        if rectangle(scene) is None or not math.isfinite(scene.contact.stiffness):
+        if scene.block.rectangle is None or not math.isfinite(scene.contact.stiffness):
             rule = "must be a rectangle on springs of finite stiffness where contact opens"
             raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
         impact = landing.contact_frequency(scene)
         modes = dda_modes(closed(scene))
         return BlockFrequencies(spectra.dda_frequency(scene), spectra.contact_frequency(scene), impact, modes)
     highest = highest_frequency(scene)
-    impact = highest if rectangle(scene) is None else landing.contact_frequency(scene)
+    impact = highest if scene.block.rectangle is None else landing.contact_frequency(scene)
     modes = dda_modes(scene)
     return BlockFrequencies(modes[0].frequency, highest, impact, modes)
 

@@ -222,9 +222,7 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
             foot += x.thickness
         return tuple(layers)
     b = scene.block
-    points = b.outline
-    upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
-    if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
+    if b.rectangle is None:
         raise InputError(
             "must be an upright rectangle on its lower edge for a wave",
             source=scene.name,

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from validation.errors import PlausibilityWarning
 from validation.scenes.column import ColumnSection
 from validation.scenes.rigid import RigidSection
@@ -127,7 +125,7 @@ def _materials(scene: Scene) -> Iterator[Implausible]:
         strains = {
             "load.pressure": abs(load.pressure) / modulus,
             "load.traction": abs(load.traction) * 2 * (1 + block.poisson) / block.young,
-            "load.gravity": block.density * abs(load.gravity) * _height(scene) / modulus,
+            "load.gravity": block.density * abs(load.gravity) * scene.block.extent[1] / modulus,
         }
         yield from _material("block", block.density, block.young, math.sqrt(modulus / block.density), strains)
 
@@ -217,10 +215,6 @@ def _time(scene: Scene) -> Iterator[Implausible]:
 # ---- blocks ---------------------------------------------------------------------------------------------------------
 
 
-def _height(scene: Scene) -> float:
-    return float(np.ptp([y for _, y in scene.block.outline]))
-
-
 def _of_block(scene: Scene) -> Iterator[Implausible]:
     """Yield times, speeds and lengths of a block that are out of proportion to it."""
     b = scene.block
@@ -228,7 +222,7 @@ def _of_block(scene: Scene) -> Iterator[Implausible]:
     t = scene.time
     yield from judged("damping_ratio", "contact.damping_ratio", c.damping_ratio)
     speed = math.sqrt(b.young / b.density)
-    height = _height(scene)
+    height = scene.block.extent[1]
     if not 0 < speed / height < math.inf:  # said already of the modulus
         return
     travel = height / speed
@@ -257,7 +251,7 @@ def _of_block(scene: Scene) -> Iterator[Implausible]:
 def _block_loads(scene: Scene) -> Iterator[Implausible]:
     """Yield sizes, gravity, loads and strength of a block."""
     b = scene.block
-    width, height = np.ptp(b.outline, axis=0).tolist()
+    width, height = b.extent
     stated = [name for name in ("side", "vertices") if name in b.model_fields_set]
     if stated:
         yield from judged("vertices" if b.vertices is not None else "size", f"block.{stated[0]}", max(width, height))
@@ -364,7 +358,7 @@ def _sink(scene: Scene) -> Iterator[Implausible]:
         springs = {"stiffness": p, "young": b.young, "tenfold": 10 * b.young}
         if load:
             sink = load / (2 * p)
-            yield from judged("sink", "contact.stiffness", sink / _height(scene), sink=sink, **springs)
+            yield from judged("sink", "contact.stiffness", sink / scene.block.extent[1], sink=sink, **springs)
         else:
             yield from judged("unloaded", "contact.stiffness", p / b.young, **springs)
 

@@ -133,6 +133,21 @@ class BlockSection(Section):
         return ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))  # type: ignore[return-value]
 
     @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height that the outline takes up [m]."""
+        width, height = np.ptp(self.outline, axis=0).tolist()
+        return width, height
+
+    @property
+    def rectangle(self) -> tuple[float, float] | None:
+        """Width and height of an upright rectangle that lies on its lower edge, None of another outline [m]."""
+        if len(self.outline) != 4 or (self.base, self.top) != (0, 2):
+            return None
+        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = self.outline
+        is_upright = y0 == y1 < y2 == y3 and x0 == x3 < x1 == x2
+        return (x1 - x0, y2 - y0) if is_upright else None
+
+    @property
     def base_length(self) -> float:
         """Length a of the base edge [m]."""
         (x1, y1), (x2, y2) = self.edge(self.base)

@@ -92,11 +92,10 @@ def _reach_of_block(scene: Scene) -> float:
     mass = max(b.mass, TINY)
     acceleration = (abs(q.pressure) + abs(q.traction)) * top / mass + abs(q.gravity)
     # The surface moves before the mean does: as long as a wave takes through the block, the bound would be too small.
-    size = np.ptp(np.array(b.outline), axis=0)
-    travel = math.hypot(*size.tolist()) * math.sqrt(b.density / b.young)
+    travel = math.hypot(*b.extent) * math.sqrt(b.density / b.young)
     time = scene.time.duration + scene.time.step + travel
     base_displacement = _base_motion(scene, time)
-    at_start = c.gap + sum(c.band) + ROUNDING * float(max(size))
+    at_start = c.gap + sum(c.band) + ROUNDING * max(b.extent)
     return abs(b.velocity) * time + acceleration * time * time / 2 + base_displacement + at_start
 
 
