@@ -105,7 +105,7 @@ def test_says_what_it_is() -> None:
         features.DAMPING,
     }
     beyond |= {features.ADAPTIVE, features.RIGID_BLOCKS, features.RIGID_JOINTS} | features.OF_MOVING_COLUMN
-    beyond |= features.COURSES | features.SCHEMES | features.CONTACT_METHODS
+    beyond |= features.COURSES | features.SCHEMES | features.CONTACT_METHODS | {features.PLANE}
     assert MuJoCo.handles == {feature.name for feature in features.FEATURES} - beyond
 
 
