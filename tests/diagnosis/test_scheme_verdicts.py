@@ -20,11 +20,12 @@ from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.schemes import companion_split, usual_split
+from validation.diagnosis.schemes import companion_split
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.scenes.scene import Scene
+from validation.theory.stages import equal_split
 
 ROUNDINGS = 1e-12  # relative, that two formulations of one recursion over 60 steps differ by
 
@@ -207,7 +208,7 @@ def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact() -> None:
     assert np.max(np.abs(rows[0] - rows[1])) < ROUNDINGS * np.max(np.abs(rows[0]))
     for rho_inf in (0.0, 0.6):
         usual = replace(variant, split=0.0, spectral=rho_inf)  # of equal matrices in both stages
-        assert companion_split(usual) == pytest.approx(usual_split(rho_inf), rel=1e-12)
+        assert companion_split(usual) == pytest.approx(equal_split(rho_inf), rel=1e-12)
 
 
 @pytest.mark.long

@@ -13,7 +13,6 @@ from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.events import ColumnEventMotion, drive_of
-from validation.solvers.events import TERMS_A_SECOND
 from validation.solvers.registry import get_solver, solve
 
 LAYERS = [
@@ -163,7 +162,6 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
     for limit, predicted in ((6e3, False), (10.0, True)):
         monkeypatch.setattr(ColumnEventMotion, "most_terms", limit)
         prepared = get_solver("column-events").prepare(scene)
-        assert 0 < prepared.expected_seconds() <= limit / TERMS_A_SECOND
         prepared.progress = shares.append
         run = prepared.run()
         assert run.outcome is Outcome.HORIZON

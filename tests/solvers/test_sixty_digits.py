@@ -8,10 +8,8 @@ from mpmath import mp, mpf
 from oracles import mp_reference
 
 from validation import solve
-from validation.errors import InputError
 from validation.runs.run import Outcome
-from validation.solvers.names import check_names
-from validation.solvers.registry import WITHDRAWN, get_solver, replacement
+from validation.solvers.registry import get_solver
 from validation.solvers.sixty_digits import block as precise_block
 
 COLUMNS = ("displacement", "contact_pressure")
@@ -50,17 +48,6 @@ def test_dda_60_is_an_ordinary_solver(scene):
     assert exact.history.time == pytest.approx(fast.history.time, rel=1e-15)
     for name in COLUMNS:
         assert fast.history.columns[name] == pytest.approx(exact.history.columns[name], rel=1e-11, abs=1e-20)
-
-
-@pytest.mark.parametrize("name", WITHDRAWN)
-def test_a_withdrawn_solver_is_refused_with_what_to_use_instead(scene, name):
-    with pytest.raises(InputError) as refused:
-        solve(scene, name)
-    assert (refused.value.field, refused.value.advice) == ("solver", replacement(name))
-    with pytest.raises(InputError) as refused:
-        check_names(scene.with_values({"run.solvers": ["dda", name]}), "scene.toml")
-    assert (refused.value.field, refused.value.advice) == ("run.solvers", replacement(name))
-    assert "was withdrawn, use dda-60" in str(refused.value)
 
 
 def test_what_a_double_cannot_hold_is_infinite_from_there_on(scene):

@@ -25,7 +25,6 @@ from validation.errors import InputError
 from validation.runs.modes import Mode
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.events import rectangle
 from validation.theory import landing
 from validation.theory.rebound import ReboundStatistics, rebound_statistics, spring_steps
 from validation.theory.stages import Stages
@@ -146,7 +145,7 @@ def advise_across(
 def _closed_block(scene: Scene) -> Scene:
     """Return a block whose contact stays closed, which has modes; one that opens must be a rectangle on springs."""
     features.refuse_column(scene, "advise")
-    is_known = rectangle(scene) is not None and math.isfinite(scene.contact.stiffness)
+    is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
     if scene.contact.law == "unilateral" and not is_known:
         rule = "must be a rectangle on springs of finite stiffness where contact opens"
         raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")

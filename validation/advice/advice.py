@@ -295,7 +295,21 @@ def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> di
 def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[Solution], reach: Reach) -> str:
     """Return the answer in one sentence: what to set, and what follows from it."""
     if not solutions:
-        return _unreachable(scene, solve_for, target, reach)
+        least, least_at, greatest, greatest_at = reach
+        refusal = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
+        if greatest is None or least is None or greatest_at is None or least_at is None:
+            return f"{refusal}: the mode has no damping ratio here, since a root of the step is not positive."
+        unit = " s" if solve_for == "dt" else ""
+        name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
+        if greatest - least < FLAT:
+            return f"{refusal}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
+        if least < target < greatest:
+            return f"{refusal}: it lies in a gap between attainable values."
+        if target > greatest:
+            return (
+                f"{refusal}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
+            )
+        return f"{refusal}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."
     first = solutions[0]
     answers = " or ".join(_answer(solve_for, s) for s in solutions)
     text = f"Set {answers}: the first axial mode of the DDA block is then damped at {percent(target)} of critical"
@@ -332,19 +346,3 @@ def _fixed_settings(scene: Scene, solve_for: str, solution: Solution) -> str:
         drag = f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
         return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {drag}"
     return ""
-
-
-def _unreachable(scene: Scene, solve_for: str, target: float, reach: Reach) -> str:
-    least, least_at, greatest, greatest_at = reach
-    refusal = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
-    if greatest is None or least is None or greatest_at is None or least_at is None:
-        return f"{refusal}: the mode has no damping ratio here, since a root of the step is not positive."
-    unit = " s" if solve_for == "dt" else ""
-    name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
-    if greatest - least < FLAT:
-        return f"{refusal}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
-    if least < target < greatest:
-        return f"{refusal}: it lies in a gap between attainable values."
-    if target > greatest:
-        return f"{refusal}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
-    return f"{refusal}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."

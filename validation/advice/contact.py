@@ -13,7 +13,6 @@ from typing import Any
 
 from validation.scenes.scene import Scene
 from validation.solvers import opened
-from validation.solvers.events import rectangle
 from validation.theory import landing, spectra
 from validation.theory.stepping import Stepping
 
@@ -49,7 +48,7 @@ def stepping(scene: Scene) -> Stepping | None:
     scheme = Stepping.of(scene)
     c = scene.contact
     has_map = scheme.scheme == "newmark" and c.rule in ("newmark", "implicit") and not c.has_dashpots
-    is_known = has_map and scheme.has_contact_forces and rectangle(scene) is not None
+    is_known = has_map and scheme.has_contact_forces and scene.block.rectangle is not None
     return scheme if is_known else None
 
 

@@ -63,13 +63,21 @@ def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
         yield from _landing(scene)
     yield from gained(scene, row)
     if opens and lands:
-        yield from _may_gain(scene)
+        omega = contact.omega(scene)
+        if omega > 1 and not landing.cannot_gain(scene):
+            stepping = Stepping.of(scene)
+            values = {"omega": omega, "alpha": stepping.alpha, "delta": stepping.delta}
+            yield alarm(MAY_GAIN, scene.name, values, scheme=stepping.numbers)
     limit = landing.hidden_from(scene)
     if limit is not None and scene.time.step > limit:
         yield alarm(HIDDEN, scene.name, {"step": scene.time.step, "limit": limit})
     yield from _penalty(scene, number(row, "contact.peak_force"), first_row(rows, Role.TRUTH))
     yield from _drag(scene, number(row, "contact.open_share") or 0.0)
-    yield from _pulling(scene)
+    tension = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
+    load = abs(opened.resultant_load(scene)) or landing.impact_force(scene, scene.block.velocity)
+    if tension > NOTABLE * load:
+        share = f", {100 * tension / load:.3g} % of the load" if load else ""
+        yield alarm(PULLING, scene.name, {"pull": tension}, share=share)
 
 
 def gained(scene: Scene, row: Row) -> Iterator[Alarm]:
@@ -108,14 +116,6 @@ def _landing(scene: Scene) -> Iterator[Alarm]:
     yield alarm(LARGE_STEP, scene.name, values, by_phase=by_phase)
 
 
-def _may_gain(scene: Scene) -> Iterator[Alarm]:
-    omega = contact.omega(scene)
-    if omega > 1 and not landing.cannot_gain(scene):
-        stepping = Stepping.of(scene)
-        values = {"omega": omega, "alpha": stepping.alpha, "delta": stepping.delta}
-        yield alarm(MAY_GAIN, scene.name, values, scheme=stepping.numbers)
-
-
 def _penalty(scene: Scene, peak: float | None, truth: Row | None) -> Iterator[Alarm]:
     exact = number(truth, "contact.peak_force")
     quarter = landing.quarter_mass_force(scene, 1.0)
@@ -133,11 +133,3 @@ def _drag(scene: Scene, share: float) -> Iterator[Alarm]:
         constant = -t.step / math.log(t.discount) if t.discount > 0 else 0.0
         values = {"gg": t.discount, "share": share, "constant": constant}
         yield alarm(DRAG, scene.name, values, percent=100 * share)
-
-
-def _pulling(scene: Scene) -> Iterator[Alarm]:
-    tension = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
-    load = abs(opened.resultant_load(scene)) or landing.impact_force(scene, scene.block.velocity)
-    if tension > NOTABLE * load:
-        share = f", {100 * tension / load:.3g} % of the load" if load else ""
-        yield alarm(PULLING, scene.name, {"pull": tension}, share=share)

@@ -60,7 +60,7 @@ def in_rows(
     count = max(len(columns) - 1, 0)  # columns beside which the last one is wrapped
     fits_beside = not columns or width is None or offsets[count] + NARROW <= width
     if width is not None and not fits_beside:
-        count = max(1, sum(offset - 2 <= width for offset in offsets[1:count + 1]))
+        count = max(1, sum(offset - 2 <= width for offset in offsets[1 : count + 1]))
     rows: list[list[str]] = []
     for line in lines:
         padded = zip(line, widths, strict=False)  # no cells are an empty line

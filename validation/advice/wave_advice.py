@@ -26,6 +26,7 @@ from validation.scenes import features
 from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
 from validation.theory import statics
+from validation.theory.edges import edge
 from validation.theory.stepping import Stepping
 from validation.theory.waves import Column
 
@@ -221,9 +222,7 @@ def layers_of(scene: Scene) -> tuple[Layer, ...]:
             foot += x.thickness
         return tuple(layers)
     b = scene.block
-    points = b.outline
-    upright = len(points) == 4 and points[0][1] == points[1][1] and points[2][1] == points[3][1]
-    if not (upright and points[0][0] == points[3][0] and points[1][0] == points[2][0] and b.base == 0):
+    if b.rectangle is None:
         raise InputError(
             "must be an upright rectangle on its lower edge for a wave",
             source=scene.name,
@@ -310,7 +309,7 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
         return _LargestStep(None, limit) if best is None else _LargestStep(None, limit, passed(best)[0], best)
     if first_good == 0:
         return _LargestStep(steps[0], "half a period")
-    step = _edge(good, steps[first_good], steps[first_good - 1])
+    step = edge(good, steps[first_good], steps[first_good - 1], ROUNDING)
     beyond = step * (1 + 1e-6)
     if not is_stable(beyond):
         return _LargestStep(step, "stability")
@@ -353,14 +352,6 @@ def _advised_scene(scene: Scene, path: _WavePath) -> Scene:
 def _why_none(scene: Scene, losses: list[float], allowed: float) -> str:
     """Return what keeps every step from being good enough."""
     return "gg" if min(losses) > allowed and scene.time.discount < 1 else "scheme"
-
-
-def _edge(good: Callable[[float], bool], inside: float, outside: float) -> float:
-    """Return the last good value between a good and a bad one."""
-    for _ in range(60):
-        middle = math.sqrt(inside * outside)
-        inside, outside = (middle, outside) if good(middle) else (inside, middle)
-    return inside
 
 
 def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:

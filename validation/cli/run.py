@@ -58,7 +58,6 @@ RequireOption = Annotated[
 ]
 VerboseOption = Annotated[bool, typer.Option("--verbose", help="Print every gate and how every run ended.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", help="Print nothing: the exit status is the answer.")]
-LONG_RUN = 5.0  # s, from which on `solve` says before it begins how long a run takes
 GATES_LISTED = 12  # of a scene, one by one without --verbose
 
 
@@ -312,7 +311,6 @@ def solve(
     from validation.runs import extras
     from validation.runs.files import write_csv
     from validation.runs.run import Outcome
-    from validation.solvers.contract import Role
     from validation.solvers.registry import FULL, distributed, get_solver
     from validation.solvers.user import UserSolver
 
@@ -331,9 +329,8 @@ def solve(
         extras.require("--fields", *extras.MESH)
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}", between_calls=True) as show:
-        if adapter.role is Role.REFERENCE:  # an exact motion says by itself how long it takes
-            show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
-        watch = partial(_watch, solver, show)
+        show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        watch = partial(_watch, show)
         ended = _run_case(adapter, case, is_full, fields, watch)
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
@@ -352,13 +349,8 @@ class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _watch(solver: str, show: Callable[[int, int, str], None], prepared: Prepared) -> None:
-    """Say how long a run takes where that is long, and show how far it is."""
-    seconds = prepared.expected_seconds()
-    if seconds is None:
-        return
-    if seconds > LONG_RUN:
-        echo(f"{solver}: takes at least about {seconds:.0f} s", err=True)
+def _watch(show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+    """Show how far a run is, where its solver says so."""
     prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
 
 

@@ -15,6 +15,7 @@ from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, fit_one, inte
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.theory.edges import edge
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
 ROUND_EXACT = 1e-6  # relative error that a fit without noise leaves of a factor
@@ -22,7 +23,7 @@ ROUND_DIGITS = 2  # significant digits of a factor that a person types, and that
 ROUND_ERROR = 1e-3  # relative error of a factor, beyond which its digits are not known well enough to be called round
 TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
 WIDEST_BAND = 5.0  # over the fitted one, that is tried
-HALVINGS = 8  # of the ratio between two trials, 1.084: an end is known to some 1e-4
+BAND_ERROR = 3.2e-4  # relative, to which an end of that interval is found
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 HALF = 0.5  # steps late: a mean of two
 UNEXPLAINED = "unexplained"
@@ -192,13 +193,7 @@ def band_interval(target: Target, variant: Variant, cause: str = "dead-band") ->
                 outer = band
                 break
             inner = band
-        for _ in range(HALVINGS):
-            middle = math.sqrt(inner * outer)
-            if same([middle])[0]:
-                inner = middle
-            else:
-                outer = middle
-        at_end = changed(variant, {field: inner})
+        at_end = changed(variant, {field: edge(lambda band: same([band])[0], inner, outer, BAND_ERROR)})
         return significant(values_of(target.column, [cause], at_end)[cause], 4)
 
     return end(1 / WIDEST_BAND), end(WIDEST_BAND)

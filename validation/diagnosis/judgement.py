@@ -398,7 +398,7 @@ def _undecided(target: Target, v: Variant, ids: Sequence[str]) -> dict[str, str]
         words["clipping"] = ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
         if explains(target, replace(v, clipped=not v.clipped)):
             words["clipping"] = "; these rows do not tell whether it is clipped"
-    if v.opens and schemes.stages(v)[-1].mean_force > 0:
+    if v.opens and schemes.stages(v)[-1].af > 0:
         is_of_gaps = v.contact == "mean gap"
         if not explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
             of = "that of the mean gap" if is_of_gaps else "the mean of those at both ends"

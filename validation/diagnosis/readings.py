@@ -159,19 +159,15 @@ def slips(
         unit = None if foreign.rounding is None else foreign.rounding / factor
         moved = foreign.displacement * sign / factor
         readings.append(Reading(stepping, moved, pressure, tuple(corrected), unit, rounding))
-    return _plain_second(readings)
+    # readings with the one that corrects least among the first two: wrong data look like wrong units
+    plain = min(readings, key=lambda reading: len(reading.corrected))
+    others = [reading for reading in readings if reading is not plain]
+    return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
 
 
 def _column_slips(column: str, sign: float, factor: float) -> list[Slip]:
     signs = [Slip("sign", column, -1.0)] if sign < 0 else []
     return signs + ([Slip("unit", column, factor)] if factor != 1 else [])
-
-
-def _plain_second(readings: list[Reading]) -> list[Reading]:
-    """Return readings with the one that corrects least among the first two: wrong data look like wrong units."""
-    plain = min(readings, key=lambda reading: len(reading.corrected))
-    others = [reading for reading in readings if reading is not plain]
-    return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
 
 
 def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:

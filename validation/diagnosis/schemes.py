@@ -1,20 +1,17 @@
-"""The time schemes of candidate changes as tables of numbers: one or two stages to a step, one entry to a scheme.
+"""The time schemes of candidate changes, each by its family and one number: names, tables and other names.
 
-With U = dt V and W = dt^2 A, u = gg U of the start of a step, and the end (Ug, Wg) of the stage before where there is
-one, a stage ends at
-
-    x1 - x = d_u u + d_g Ug + e_0 W + e_g Wg + beta W1,     U1 = u + g_0 W + g_g Wg + gamma W1,
-
-where M ((1 - a_m) W1 + a_m W) + dt^2 f((1 - a_f) x1 + a_f x) = dt^2 F gives W1. Newmark 1959; Hilber, Hughes and Taylor
-1977; Wood, Bossak and Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
+The tables are those of `validation.theory.stages`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
+Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from validation.diagnosis.variant import Family, Variant
+from validation.theory import stages as tables
+from validation.theory.stages import Stage, Stages
 
 LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
 EXPLICIT: tuple[Family, ...] = ("leapfrog", "symplectic-euler")
@@ -35,60 +32,28 @@ FAMILIES: dict[str, str] = {
 }
 
 
-class Stage(NamedTuple):
-    """The numbers of a stage [-], or arrays of those of many variants."""
-
-    d_u: Any
-    d_g: Any
-    e_0: Any
-    e_g: Any
-    beta: Any
-    g_0: Any
-    g_g: Any
-    gamma: Any
-    mean_mass: Any  # a_m
-    mean_force: Any  # a_f
-
-
-def stages(v: Variant) -> tuple[Stage, ...]:
+def stages(v: Variant) -> Stages:
     """Return the stages of a step of a variant."""
     r = v.spectral
     match v.family:
         case "newmark":
-            return (newmark_stage(v.alpha, v.delta),)
+            return tables.newmark(v.alpha, v.delta)
         case "hht":
-            return (_weighted(0.0, r),)
+            return tables.generalised_alpha(0.0, r)
         case "wbz":
-            return (_weighted((r - 1) / (r + 1), 0.0),)
+            return tables.wbz(r)
         case "chung-hulbert":
-            return (_weighted((2 * r - 1) / (r + 1), r / (r + 1)),)
+            return tables.chung_hulbert(r)
         case "theta":
-            return (Stage(1.0, 0.0, r * (1 - r), 0.0, r**2, 1 - r, 0.0, r, 0.0, 0.0),)
-        case "composite":  # the trapezoidal rule up to a share of the step, then a rule through start, middle and end
-            share = split_of(v)
-            q1 = (r + 1) / (2 * share * (r - 1) + 4)
-            q0 = (share - 1) * q1 + 0.5
-            q2 = 0.5 - share * q1
-            first = Stage(share, 0.0, share**2 / 4, 0.0, share**2 / 4, share / 2, 0.0, share / 2, 0.0, 0.0)
-            return first, Stage(q0 + q2, q1, q2 * q0, q2 * q1, q2 * q2, q0, q1, q2, 0.0, 0.0)
-    # leapfrog, whose U is that of the half step before
-    return (Stage(1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),)
-
-
-def newmark_stage(beta: float, gamma: float, mean_mass: float = 0.0, mean_force: float = 0.0) -> Stage:
-    """Return the stage of Newmark's formulas."""
-    return Stage(1.0, 0.0, 0.5 - beta, 0.0, beta, 1 - gamma, 0.0, gamma, mean_mass, mean_force)
-
-
-def _weighted(mean_mass: float, mean_force: float) -> Stage:
-    """Return generalised alpha of second order with the most damping of high frequencies."""
-    beta = (1 - mean_mass + mean_force) ** 2 / 4
-    return newmark_stage(beta, 0.5 - mean_mass + mean_force, mean_mass, mean_force)
+            return (Stage(e_0=r * (1 - r), beta=r**2, g_0=1 - r, gamma=r),)
+        case "composite":
+            return tables.composite(r, split_of(v))
+    return tables.LEAPFROG  # whose U is that of the half step before
 
 
 def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
-    return v.split or usual_split(v.spectral)
+    return v.split or tables.equal_split(v.spectral)
 
 
 def scheme_numbers(v: Variant) -> dict[str, Any]:
@@ -113,11 +78,6 @@ def companion_split(v: Variant) -> float:
     """
     share = split_of(v)
     return 1 - 2 * share * (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)
-
-
-def usual_split(rho_inf: float) -> float:
-    """Return (2 - sqrt(2 + 2 r)) / (1 - r), without its 0/0 at r = 1."""
-    return 2 / (2 + math.sqrt(2 + 2 * rho_inf))
 
 
 def other_names(v: Variant) -> str:

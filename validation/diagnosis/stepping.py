@@ -30,8 +30,9 @@ from numpy.typing import NDArray
 
 import dda
 from validation.diagnosis.contact_force import FORCED, Contact, Gaps, closed_force, force_of
-from validation.diagnosis.schemes import EXPLICIT, Stage, stages
+from validation.diagnosis.schemes import EXPLICIT, stages
 from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
+from validation.theory.stages import Stage
 
 OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
 BLOCK = 32  # steps that are summed up at once
@@ -141,7 +142,7 @@ class Stepper:
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
-        self.stages = [Stage(*one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]  # (variants, 1) each
+        self.stages: list[Any] = [Stage._make(one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]
         self.force = variants[0].contact if variants[0].contact in FORCED else "springs"
         self.gg_displacement = np.where(np.isin(of.discounted, ("velocity", "(7)")), 1.0, of.gg)[:, None]
         self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
@@ -226,13 +227,13 @@ class Stepper:
 
     # ---- one step ---------------------------------------------------------------------------------------------------
 
-    def step(self, q: Equations, c: Stage, dt: float, state: Array, middle: Array | None = None) -> Array:
+    def step(self, q: Equations, c: Any, dt: float, state: Array, middle: Array | None = None) -> Array:
         """Return the state at the end of a stage, before the contact is looked at.
 
         Parameters
         ----------
         c
-            The numbers of the stage.
+            The stage, a `Stage` whose numbers are arrays of those of every variant, (variants, 1).
         state
             At the start of the step, (..., variants, 4 + 3 d).
         middle
@@ -241,7 +242,7 @@ class Stepper:
         x = state[..., self.x]
         U = state[..., self.U]
         W = state[..., self.W]
-        a_f = c.mean_force
+        a_f = c.af
         ahead = self.gg_displacement * c.d_u * U + c.e_0 * W
         discounted = self.gg_velocity * U
         rate = discounted + c.g_0 * W
@@ -253,7 +254,7 @@ class Stepper:
         if self.d > 2:
             internal[..., 2] += q.shear * state[..., 1]
         pull = state[..., -1:] * q.load - internal - (1 - a_f) * times(q.stiffness, ahead)
-        right = dt * dt * pull - times(q.mass, c.mean_mass * W)
+        right = dt * dt * pull - times(q.mass, c.am * W)
         if self.is_damped:
             right = right - dt * times(q.damping, (1 - a_f) * rate + a_f * discounted)
         W1 = times(self.inverse(q, c, dt), right)
@@ -268,9 +269,9 @@ class Stepper:
         end[..., -1] = state[..., -1]
         return end
 
-    def inverse(self, q: Equations, c: Stage, dt: float) -> Array:
+    def inverse(self, q: Equations, c: Any, dt: float) -> Array:
         """Return the inverse of the matrix of a stage, (variants, d, d)."""
-        beta, gamma, a_m, a_f = (number[..., None] for number in (c.beta, c.gamma, c.mean_mass, c.mean_force))
+        beta, gamma, a_m, a_f = (number[..., None] for number in (c.beta, c.gamma, c.am, c.af))
         part = beta * dt * dt * q.stiffness
         if self.is_damped:
             part = part + gamma * dt * q.damping
@@ -295,7 +296,7 @@ class Stepper:
         from scipy.linalg import expm
 
         n = len(self.variants)
-        nothing = Stage(*np.zeros((len(Stage._fields), n, 1)))  # whose W1 is the acceleration at the start
+        nothing = Stage._make(np.zeros((len(Stage._fields), n, 1)))  # whose W1 is the acceleration at the start
         units = np.eye(self.size)[:, None, :]
         accelerations = np.moveaxis(self.step(q, nothing, dt, units)[..., self.W], 0, -1)
         G = np.zeros((n, self.size, self.size))
@@ -468,7 +469,7 @@ class Stepper:
                     q = self.equations(closed, moving.wide, moving.high)
                     end = self.step(q, c, dt, state, middle)
                 limit = np.where(closed, of.band * of.reopening + of.hold, -of.band)
-                a_f = c.mean_force[:, 0]
+                a_f = c.af[:, 0]
                 gap = np.where(by_mean_gap, (1 - a_f) * end[:, 0] + a_f * state[:, 0], end[:, 0])
                 now_closed = np.where(of.opens, gap < limit, True)
                 now_closed = np.where(of.lags == "opening", closed | now_closed, now_closed)

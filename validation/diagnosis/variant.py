@@ -161,11 +161,7 @@ def rectangle_of(scene: Scene) -> Rectangle | None:
 
 def upright(scene: Scene) -> bool:
     """Whether a scene's block is one upright rectangle on its lower edge."""
-    b = scene.block
-    points = b.outline
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points if len(points) == 4 else ((0.0, 0.0),) * 4
-    rectangle = y0 == y1 and x1 == x2 and y2 == y3 and x3 == x0 and x1 > x0 and y2 > y1
-    return rectangle and b.base == 0 and b.top == 2 and b.subdivide is None
+    return scene.block.rectangle is not None and scene.block.subdivide is None
 
 
 def _opens_only(scene: Scene) -> bool:

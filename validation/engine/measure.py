@@ -189,7 +189,18 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
 
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
-    parts = _measures(case, run)
+    # the parts of the study's measures that this run has
+    measures = set(case.measures)
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        measures -= {"history", "modes", "energy"}
+    if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
+        measures -= {"stability"}
+    contacts = {features.UNILATERAL, *features.OF_MOVING_COLUMN}
+    if "history" in measures and contacts & set(features.of(case.scene)):
+        measures |= {"switches"}
+        if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
+            measures |= {"horizon"}
+    parts = measures if "history" in measures else measures - {"modes"}
     needs = frozenset[str]().union(*(metric.needs for metric in measured_by(parts, case.only)))
     if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
         needs -= {STATIC, MODES, DIAGNOSTICS}
@@ -223,21 +234,6 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {error_text(error)}")
     return metrics
-
-
-def _measures(case: Case, run: Run) -> set[str]:
-    """Return the parts of the study's measures that this run has."""
-    measures = set(case.measures)
-    if run.history is None or run.outcome is not Outcome.COMPLETED:
-        measures -= {"history", "modes", "energy"}
-    if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-        measures -= {"stability"}
-    contacts = {features.UNILATERAL, *features.OF_MOVING_COLUMN}
-    if "history" in measures and contacts & set(features.of(case.scene)):
-        measures |= {"switches"}
-        if case.make_solver().role not in EXACT_IN_TIME:  # those have so many digits that nothing is amplified
-            measures |= {"horizon"}
-    return measures if "history" in measures else measures - {"modes"}
 
 
 def _reads_contact_record(case: Case) -> bool:

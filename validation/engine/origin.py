@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -47,9 +48,7 @@ def _mapping(value: object) -> Mapping[str, Any]:
 
 def _counted(values: list[Any]) -> Any:
     """Return the one value, or each with the number of its rows."""
-    counts: dict[str, int] = {}
-    for value in values:
-        counts[str(value)] = counts.get(str(value), 0) + 1
+    counts = Counter(map(str, values))
     if len(counts) == 1:
         return values[0]
     return "; ".join(f"{text} ({count} row{'s' * (count > 1)})" for text, count in counts.items())

@@ -62,15 +62,7 @@ def growth(values: Array) -> float | None:
     y = y / np.max(np.abs(y))
     if np.max(np.abs(y[:2])) * DEVELOPED > 1:
         return None
-    root = _largest_root(y)
-    half = len(y) // 2
-    mean = float(np.max(np.abs(y[-4:])) / np.max(np.abs(y[-4 - half : -half]))) ** (1 / half)
-    # Many modes that grow alike are no two powers: their common rate is then all there is to see.
-    return root if abs(root / mean - 1) < 5 * AGREED else mean
-
-
-def _largest_root(y: Array) -> float:
-    """Modulus of the largest root of the last values; a growing mode has one outside the unit circle, or a pair."""
+    # modulus of the largest root of the last values; a growing mode has one outside the unit circle, or a pair
     order = 2
     n = np.arange(len(y))[-6:]
     rate = float(np.max(np.abs(y)) / np.max(np.abs(y[:-1])))
@@ -79,7 +71,11 @@ def _largest_root(y: Array) -> float:
     vectors, singular_values, _ = np.linalg.svd(hankel.T, full_matrices=False)
     signal_space = vectors[:, : min(order, int(np.sum(singular_values > 1e-11 * singular_values[0])))]
     roots = np.linalg.eigvals(np.linalg.lstsq(signal_space[:-1], signal_space[1:], rcond=None)[0])
-    return rate * float(np.max(np.abs(roots)))
+    root = rate * float(np.max(np.abs(roots)))
+    half = len(y) // 2
+    mean = float(np.max(np.abs(y[-4:])) / np.max(np.abs(y[-4 - half : -half]))) ** (1 / half)
+    # Many modes that grow alike are no two powers: their common rate is then all there is to see.
+    return root if abs(root / mean - 1) < 5 * AGREED else mean
 
 
 def growth_of_run(m: Measurable) -> Value:

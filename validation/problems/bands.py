@@ -202,7 +202,8 @@ def band(time: Array, column: Array, changed: Mapping[str, Array]) -> Band | Non
     if not moved or not np.any(column[:rows]):
         return None
     most = np.max([*moved.values()], axis=0)
-    judged = _judged_rows(most)
+    within: Sequence[int] = np.flatnonzero(most <= LARGEST).tolist()
+    judged = within[-1] + 1 if within else 0
     if judged < LEAST:
         return None
     if most[judged - 1] < ROUNDED:
@@ -218,9 +219,3 @@ def moved_by(other: Array, column: Array) -> Array:
     return np.asarray(
         np.divide(difference, size_so_far, out=np.where(difference > 0, np.inf, 0.0), where=size_so_far > 0)
     )
-
-
-def _judged_rows(most: Array) -> int:
-    """Return the largest number of rows over which the data move the motion by no more than `LARGEST`."""
-    within: Sequence[int] = np.flatnonzero(most <= LARGEST).tolist()
-    return within[-1] + 1 if within else 0

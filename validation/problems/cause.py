@@ -227,22 +227,19 @@ def cause(problem: Problem, history: History, reference: Standard) -> Cause:
         return units
     causes = Search(runs, answer).causes()
     if causes:
-        return _with_passing_step(_named(causes), runs)
-    return compared(problem.scene, history) or Cause()
-
-
-def _with_passing_step(scheme: Cause, runs: Runs) -> Cause:
-    """Return a cause that is a scheme with the step at which that scheme would pass."""
-    if scheme.base is None or scheme.ids != ("scheme",) or not features.linear(runs.scene):
+        # a cause that is a scheme with the step at which that scheme would pass
+        scheme = _named(causes)
+        if scheme.base is None or scheme.ids != ("scheme",) or not features.linear(runs.scene):
+            return scheme
+        t = runs.scene.time
+        every = 2 * scheme.base.every
+        while every * t.steps <= MOST_STEPS:
+            finer = runs.sampled(replace(scheme.base, every=every))
+            if finer is not None and runs.apart(finer, runs.standard.exact.columns) <= 1:
+                return replace(scheme, passing_step=significant(t.step / every, 4))
+            every *= 2
         return scheme
-    t = runs.scene.time
-    every = 2 * scheme.base.every
-    while every * t.steps <= MOST_STEPS:
-        finer = runs.sampled(replace(scheme.base, every=every))
-        if finer is not None and runs.apart(finer, runs.standard.exact.columns) <= 1:
-            return replace(scheme, passing_step=significant(t.step / every, 4))
-        every *= 2
-    return scheme
+    return compared(problem.scene, history) or Cause()
 
 
 def _plain(answer: Columns, reference: Standard) -> Cause | None:
@@ -292,16 +289,13 @@ class Search:
         if causes and causes[0].left <= SAME:  # digit for digit
             return causes
         exact = self.runs.exact()
-        cheap = self._is_cheap()
+        # whether runs take so little that fits may begin from many numbers
+        scene_features = {*features.of(self.runs.scene)}
+        elastic_bars = features.OF_MOVING_COLUMN & scene_features and features.RIGID_BLOCKS not in scene_features
+        cheap = not elastic_bars and not {features.FRICTION, features.ROTATION} & scene_features
         for base in self._bases(exact, cheap):
             causes += [*self._laws(base), *self._changes(base, cheap)]
         return sorted(causes, key=lambda each: (each.left, len(each.ids)))
-
-    def _is_cheap(self) -> bool:
-        """Whether runs take so little that fits may begin from many numbers."""
-        scene_features = {*features.of(self.runs.scene)}
-        elastic_bars = features.OF_MOVING_COLUMN & scene_features and features.RIGID_BLOCKS not in scene_features
-        return not elastic_bars and not {features.FRICTION, features.ROTATION} & scene_features
 
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
         """Return the runs that one wrong number is put into: the exact motion's, and those of the usual schemes."""

@@ -132,7 +132,16 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
         The answer is not at the steps of the scene, or no exact motion could be computed.
     """
     reference = against or standard(problem)
-    _check_instants(problem, history, reference)
+    rows, step = len(reference.exact.time), problem.scene.time.step
+    if len(history.time) < rows:
+        raise InputError(f"must hold {rows} rows", source=problem.name, field="time", value=len(history.time))
+    apart = np.abs(history.time[:rows] - reference.exact.time)
+    if not np.all(apart <= SAME_INSTANT * step):
+        row = int(np.argmin(apart <= SAME_INSTANT * step))
+        expected, stated = reference.exact.time[row], history.time[row]
+        raise InputError(
+            f"must be {expected:.9g} s in row {row + 1}", source=problem.name, field="time", value=f"{stated:.9g}"
+        )
     if problem.scene.rigid is not None:
         return _judged_boxes(problem, history)
     names = problem.scene.run.columns
@@ -159,19 +168,6 @@ def _judged_boxes(problem: Problem, history: History) -> Judgement:
         within = until if word is Word.PASS else 0.0
         columns.append(Column(quantity.name, word, error, allowed, until, quantity.reason, within))
     return Judgement(problem.name, tuple(columns), tuple(numbers))
-
-
-def _check_instants(problem: Problem, history: History, reference: Standard) -> None:
-    rows, step = len(reference.exact.time), problem.scene.time.step
-    if len(history.time) < rows:
-        raise InputError(f"must hold {rows} rows", source=problem.name, field="time", value=len(history.time))
-    apart = np.abs(history.time[:rows] - reference.exact.time)
-    if not np.all(apart <= SAME_INSTANT * step):
-        row = int(np.argmin(apart <= SAME_INSTANT * step))
-        expected, stated = reference.exact.time[row], history.time[row]
-        raise InputError(
-            f"must be {expected:.9g} s in row {row + 1}", source=problem.name, field="time", value=f"{stated:.9g}"
-        )
 
 
 def _judged(name: str, values: Array | None, reference: Standard) -> Column:

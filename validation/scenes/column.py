@@ -113,7 +113,14 @@ class ColumnSection(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        self._check_base()
+        base_keys = sorted(name for name in self.model_fields_set if name.startswith("base_"))
+        required = {"springs": ["base_stiffness"], "transmitting": ["base_density", "base_speed"]}.get(self.base, [])
+        if wrong := [name for name in base_keys if name not in required]:
+            raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got {getattr(self, wrong[0])!r}")
+        if missing := [name for name in required if getattr(self, name) is None]:
+            raise ValueError(f"{missing[0]} is required with base = {self.base!r}, got nothing")
+        if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
+            raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
         self._check_law()
         for layer in self.layer:
             if not layer.thickness / layer.blocks > THINNEST * self.height:
@@ -125,22 +132,16 @@ class ColumnSection(Section):
                 raise ValueError(f"{name} must be at most the column's height {self.height:g}, got {outside[0]:g}")
         return self
 
-    def _check_base(self) -> None:
-        base_keys = sorted(name for name in self.model_fields_set if name.startswith("base_"))
-        required = {"springs": ["base_stiffness"], "transmitting": ["base_density", "base_speed"]}.get(self.base, [])
-        if wrong := [name for name in base_keys if name not in required]:
-            raise ValueError(f"{wrong[0]} does not go with base = {self.base!r}, got {getattr(self, wrong[0])!r}")
-        if missing := [name for name in required if getattr(self, name) is None]:
-            raise ValueError(f"{missing[0]} is required with base = {self.base!r}, got nothing")
-        if self.base == "springs" and any(joint.height == 0 for joint in self.joint):
-            raise ValueError("joint.height must be above 0 where the base is springs, got a joint at the base")
-
     def _check_law(self) -> None:
         motion = {"unilateral": "pressure", "frictional": "shear"}.get(self.law, self.motion)
         if self.motion != motion:
             raise ValueError(f"law = {self.law!r} goes with motion = {motion!r} only, got {self.motion!r}")
         if self.law == "bonded":
-            self._check_bonded()
+            for name, values in (("layer.young", self.layer), ("joint.stiffness", self.joint)):
+                if any(math.isinf(getattr(value, name.partition(".")[2])) for value in values):
+                    raise ValueError(f"{name} must be finite with law = 'bonded', got inf")
+            if self.base == "free":
+                raise ValueError("base = 'free' goes with law = 'unilateral' or 'frictional' only, got 'bonded'")
             return
         if self.glue is not None:
             raise ValueError(f"glue goes with law = 'bonded' only, got {self.glue:g}; stiffness is that of contacts")
@@ -153,13 +154,6 @@ class ColumnSection(Section):
         strengths = [(self.strength, self.friction), *((joint.strength, joint.friction) for joint in self.joint)]
         if any(strength is not None and friction is not None for strength, friction in strengths):
             raise ValueError("strength and friction exclude each other, got both")
-
-    def _check_bonded(self) -> None:
-        for name, values in (("layer.young", self.layer), ("joint.stiffness", self.joint)):
-            if any(math.isinf(getattr(value, name.partition(".")[2])) for value in values):
-                raise ValueError(f"{name} must be finite with law = 'bonded', got inf")
-        if self.base == "free":
-            raise ValueError("base = 'free' goes with law = 'unilateral' or 'frictional' only, got 'bonded'")
 
     @property
     def has_rigid_blocks(self) -> bool:

@@ -43,21 +43,6 @@ class Scene(SceneTables):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        self._check_sweep()
-        check_needs(self.tables())
-        self._check_lengths()
-        if self.rigid is not None:
-            for name in self.run.columns:
-                if name not in self.rigid.columns:
-                    raise ValueError(f"run: columns must be among {', '.join(self.rigid.columns)}, got {name!r}")
-        if self.damping.kinetic == "adaptive" and self.time.discount != 1:
-            raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
-        if self.kind == "block" and self.contact.rule not in ("newmark", "augmented"):
-            self._check_rule()
-        self._check_files()
-        return self
-
-    def _check_sweep(self) -> None:
         lists = self._swept()
         for field, values in lists.items():
             if not (isinstance(values, list) and values):
@@ -73,9 +58,8 @@ class Scene(SceneTables):
         count = max(lengths, default=1) if mode == "zip" else math.prod(lengths)
         if count > MOST_CASES:
             raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
-
-    def _check_lengths(self) -> None:
-        """Check lengths of load and springs against those of the block."""
+        check_needs(self.tables())
+        # check lengths of load and springs against those of the block
         width = self.fem.patch_width
         if width is not None and width > self.block.base_length / 2:
             rule = f"must be at most half the base length {self.block.base_length / 2:g}"
@@ -86,6 +70,16 @@ class Scene(SceneTables):
                 raise ValueError(
                     f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
                 )
+        if self.rigid is not None:
+            for name in self.run.columns:
+                if name not in self.rigid.columns:
+                    raise ValueError(f"run: columns must be among {', '.join(self.rigid.columns)}, got {name!r}")
+        if self.damping.kinetic == "adaptive" and self.time.discount != 1:
+            raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
+        if self.kind == "block" and self.contact.rule not in ("newmark", "augmented"):
+            self._check_rule()
+        self._check_files()
+        return self
 
     def _check_rule(self) -> None:
         """Check the scheme of a rule that steps the block by its own one."""
@@ -171,7 +165,19 @@ class Scene(SceneTables):
             excluded = _excluded(field, value)
             if both := [other for other in excluded if other in values]:
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
-            _set_dotted(data, field, value, self.name)
+            # set ``section.key`` in place; exclusive partners of the key are taken out
+            where = self.name
+            section, _, key = field.partition(".")
+            if not key:
+                section, key = "", section
+            if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
+                raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
+            table = data.setdefault(section, {}) if section else data
+            if not isinstance(table, dict):
+                raise InputError("must be section.key", source=where, field=field, value=repr(field))
+            for partner in _excluded(field, value):
+                table.pop(partner.partition(".")[2], None)
+            table[key] = value
             replaced_keys |= set(excluded)
         sweep = {f: v for f, v in self.sweep.items() if f not in replaced_keys}
         data["sweep"] = sweep if set(sweep) - {"mode"} else {}
@@ -195,21 +201,6 @@ def _short(value: object) -> str:
     if not isinstance(value, float):
         return str(value)
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)
-
-
-def _set_dotted(data: dict[str, Any], field: str, value: object, where: str) -> None:
-    """Set ``section.key`` in place; exclusive partners of the key are taken out."""
-    section, _, key = field.partition(".")
-    if not key:
-        section, key = "", section
-    if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
-        raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
-    table = data.setdefault(section, {}) if section else data
-    if not isinstance(table, dict):
-        raise InputError("must be section.key", source=where, field=field, value=repr(field))
-    for partner in _excluded(field, value):
-        table.pop(partner.partition(".")[2], None)
-    table[key] = value
 
 
 def _excluded(field: str, value: object) -> tuple[str, ...]:
@@ -252,6 +243,7 @@ def _sweepable() -> set[str]:
     }
 
 
+OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
 FILES = ("fem.mesh", "load.base_motion", "input.record")
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
@@ -324,7 +316,9 @@ def _number_meant(value: object) -> str | None:
 
 def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
     """Return the rule that an error of pydantic names, in our words, and the value where the message has it."""
-    message = error["msg"].replace("a valid tuple", "a list")
+    message = error["msg"]
+    for theirs, ours in OUR_WORDS.items():
+        message = message.replace(theirs, ours)
     rule, _, value = message.removeprefix("Value error, ").partition(", got ")
     if error["type"] == "extra_forbidden":
         rule = "unknown key"

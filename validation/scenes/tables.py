@@ -19,19 +19,6 @@ SMALLEST = 1e-60
 inverses, keep all digits of double precision."""
 
 
-def _real(value: object) -> float:
-    """Accept a finite TOML number and nothing that merely converts to one."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError("must be a number")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise ValueError("must be a finite number")
-    return number
-
-
 def _not_tiny(number: float) -> float:
     """Accept a positive number whose powers are numbers too."""
     if number < SMALLEST:
@@ -39,9 +26,9 @@ def _not_tiny(number: float) -> float:
     return number
 
 
-def _stiffness(value: object) -> float:
-    """Accept a number, or inf for a rigid stop, which plain data write as a word."""
-    return math.inf if value in (math.inf, "inf") else _real(value)
+def _infinite(value: object) -> object:
+    """Accept the word inf of plain data for a rigid stop."""
+    return math.inf if value == "inf" else value
 
 
 def _stiffness_as_data(value: float) -> float | str:
@@ -64,13 +51,13 @@ def _distinct(words: tuple[str, ...]) -> tuple[str, ...]:
     return words
 
 
-Real = Annotated[float, BeforeValidator(_real)]
-Angle = Annotated[float, BeforeValidator(_real), Field(gt=-90, lt=90)]  # deg
+Real = Annotated[float, Field(strict=True, allow_inf_nan=False)]  # nothing that merely converts to a number
+Angle = Annotated[Real, Field(gt=-90, lt=90)]  # deg
 Positive = Annotated[Real, Field(gt=0), AfterValidator(_not_tiny)]
 Stiffness = Annotated[
     float,
-    BeforeValidator(_stiffness),
-    Field(gt=0),
+    BeforeValidator(_infinite),
+    Field(gt=0, strict=True),
     AfterValidator(_not_tiny),
     PlainSerializer(_stiffness_as_data, when_used="json"),
 ]
@@ -117,16 +104,6 @@ class BlockSection(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        self._check_one_outline()
-        if self.subdivide is not None and not convex_quadrilateral(self.outline):
-            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
-        if self.hypothesis == "plane strain" and self.poisson >= 0.5:
-            raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
-        if self.vertices is not None:
-            check_polygon(self.vertices, self.base, self.top)
-        return self
-
-    def _check_one_outline(self) -> None:
         stated = {
             "side": self.side is not None,
             "width and height": self.width is not None or self.height is not None,
@@ -139,6 +116,13 @@ class BlockSection(Section):
             raise ValueError("one of side, width and height, or vertices must be given, got none")
         if stated["width and height"] and (self.width is None or self.height is None):
             raise ValueError("width and height must be given together, got one")
+        if self.subdivide is not None and not convex_quadrilateral(self.outline):
+            raise ValueError(f"subdivide goes with convex quadrilaterals only, got {len(self.outline)} vertices")
+        if self.hypothesis == "plane strain" and self.poisson >= 0.5:
+            raise ValueError(f"poisson must be below 0.5 in plane strain, got {self.poisson:g}")
+        if self.vertices is not None:
+            check_polygon(self.vertices, self.base, self.top)
+        return self
 
     @property
     def outline(self) -> tuple[Point, ...]:
@@ -147,6 +131,21 @@ class BlockSection(Section):
             return self.vertices
         w, h = (self.side, self.side) if self.side is not None else (self.width, self.height)
         return ((0.0, 0.0), (w, 0.0), (w, h), (0.0, h))  # type: ignore[return-value]
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height that the outline takes up [m]."""
+        width, height = np.ptp(self.outline, axis=0).tolist()
+        return width, height
+
+    @property
+    def rectangle(self) -> tuple[float, float] | None:
+        """Width and height of an upright rectangle that lies on its lower edge, None of another outline [m]."""
+        if len(self.outline) != 4 or (self.base, self.top) != (0, 2):
+            return None
+        (x0, y0), (x1, y1), (x2, y2), (x3, y3) = self.outline
+        is_upright = y0 == y1 < y2 == y3 and x0 == x3 < x1 == x2
+        return (x1 - x0, y2 - y0) if is_upright else None
 
     @property
     def base_length(self) -> float:
@@ -218,23 +217,14 @@ class ContactSection(Section):
         if self.friction is not None and self.shear_stiffness == 0:
             raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
         if math.isinf(self.stiffness):
-            self._check_rigid()
-        self._check_impacts()
-        if self.law == "locked" and self.shear_stiffness == 0:
-            raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
-        return self
-
-    def _check_rigid(self) -> None:
-        if self.law == "locked" or self.rule in ("energy-conserving", "augmented"):
-            stated_rule = 'law = "locked"' if self.law == "locked" else f'rule = "{self.rule}"'
-            raise ValueError(f"stiffness must be finite with {stated_rule}, got inf")
-        if self.shear_stiffness is None:
-            raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
-        if self.band[1] > 0:
-            raise ValueError(f"band must open at once, band[1] = 0, where stiffness = inf, got {list(self.band)}")
-
-    def _check_impacts(self) -> None:
-        """Check what turns an impact back: dashpots beside the springs, a law of impact, or a multiplier."""
+            if self.law == "locked" or self.rule in ("energy-conserving", "augmented"):
+                stated_rule = 'law = "locked"' if self.law == "locked" else f'rule = "{self.rule}"'
+                raise ValueError(f"stiffness must be finite with {stated_rule}, got inf")
+            if self.shear_stiffness is None:
+                raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
+            if self.band[1] > 0:
+                raise ValueError(f"band must open at once, band[1] = 0, where stiffness = inf, got {list(self.band)}")
+        # check what turns an impact back: dashpots beside the springs, a law of impact, or a multiplier
         if self.rule == "impact":
             if math.isfinite(self.stiffness):
                 raise ValueError(f'stiffness must be inf with rule = "impact", got {self.stiffness:g}')
@@ -251,6 +241,9 @@ class ContactSection(Section):
         if self.friction is not None and (self.has_dashpots or self.rule in ("impact", "augmented")):
             method = "dashpots" if self.has_dashpots else f'rule = "{self.rule}"'
             raise ValueError(f"friction does not go with {method}, got {self.friction:g} deg")
+        if self.law == "locked" and self.shear_stiffness == 0:
+            raise ValueError('shear_stiffness must be greater than 0 where law = "locked", got 0')
+        return self
 
     @property
     def is_rigid_stop(self) -> bool:
@@ -351,24 +344,21 @@ class TimeSection(Section):
         if self.gg is not None and self.gg_rate is not None:
             raise ValueError("gg and gg_rate exclude each other, got both")
         if self.scheme != "newmark":
-            self._check_scheme()
+            # check the numbers of a scheme that is not Newmark's
+            named = f'scheme = "{self.scheme}"'
+            for weight, value in (("alpha", self.stated_alpha), ("delta", self.stated_delta)):
+                if f"stated_{weight}" in self.model_fields_set:
+                    raise ValueError(f"{weight} is Newmark's and does not go with {named}, got {value:g}")
+            if self.rho_inf is None and self.scheme in ("chung-hulbert", "hht", "wbz"):
+                raise ValueError(f"rho_inf is required with {named}, got nothing")
+            if self.scheme == "hht" and self.rho_inf is not None and self.rho_inf < 0.5:
+                raise ValueError(
+                    f"rho_inf must be at least 0.5 with {named}, got {self.rho_inf:g}; "
+                    "HHT's alpha = -(1 - rho_inf) / (1 + rho_inf) lies between -1/3 and 0"
+                )
+            if self.scheme == "leapfrog" and self.start != "consistent":
+                raise ValueError(f'start must be "consistent" with {named}, got "{self.start}"')
         return self
-
-    def _check_scheme(self) -> None:
-        """Check the numbers of a scheme that is not Newmark's."""
-        named = f'scheme = "{self.scheme}"'
-        for weight, value in (("alpha", self.stated_alpha), ("delta", self.stated_delta)):
-            if f"stated_{weight}" in self.model_fields_set:
-                raise ValueError(f"{weight} is Newmark's and does not go with {named}, got {value:g}")
-        if self.rho_inf is None and self.scheme in ("chung-hulbert", "hht", "wbz"):
-            raise ValueError(f"rho_inf is required with {named}, got nothing")
-        if self.scheme == "hht" and self.rho_inf is not None and self.rho_inf < 0.5:
-            raise ValueError(
-                f"rho_inf must be at least 0.5 with {named}, got {self.rho_inf:g}; "
-                "HHT's alpha = -(1 - rho_inf) / (1 + rho_inf) lies between -1/3 and 0"
-            )
-        if self.scheme == "leapfrog" and self.start != "consistent":
-            raise ValueError(f'start must be "consistent" with {named}, got "{self.start}"')
 
     @property
     def alpha(self) -> float:

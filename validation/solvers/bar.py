@@ -5,10 +5,10 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import fem_reference
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array, Complex, History
 from validation.runs.modes import Mode, Switch
@@ -19,11 +19,8 @@ from validation.solvers import opened
 from validation.solvers.columns.layers import time_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.events import BAR_COLUMNS as OPENING_COLUMNS
-from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of, to_modes
-from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
-
-if TYPE_CHECKING:
-    import fem_reference
+from validation.solvers.fem import MESH_SECTIONS, OF_SUB_BLOCKS, problem_of, scheme_of
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_modes, to_run
 
 BAR_COLUMNS = ("displacement", "contact_pressure")
 

@@ -107,10 +107,6 @@ class Prepared:
         except OUT_OF_RANGE as error:  # of plain floats and factors, where an array would have become infinite
             return Run(Outcome.OVERFLOW, notes=(str(error),))
 
-    def expected_seconds(self) -> float | None:
-        """Return how long a run takes about, at least [s]; None where that is not known."""
-        return None
-
     def highest_frequency(self) -> float | None:
         """Return the largest frequency of the model, contacts closed and sticking [rad/s]; infinite on a rigid stop.
 

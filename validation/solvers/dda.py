@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import dda
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode
@@ -15,6 +15,7 @@ from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
+from validation.solvers import translation
 from validation.solvers.blocks.closed import block_of, load_of
 from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, OpeningSubBlocks
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
@@ -22,22 +23,15 @@ from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
 from validation.solvers.translation import check_columns, naming, to_run
 
-if TYPE_CHECKING:
-    import dda
-
 
 def base_motion(scene: Scene) -> dda.BaseMotion | None:
     """Return the motion of a scene's base, or None where it is fixed."""
-    import dda
-
     record = base_record(scene)
     return None if record is None else dda.BaseMotion(record.time, np.column_stack([record.x, record.y]))
 
 
 def model_of(scene: Scene) -> dda.TwoBlockModel:
     """Return the two-block model of a scene."""
-    import dda
-
     b = scene.block
     contact = dda.Contact(scene.contact.stiffness, scene.contact.shear)
     return dda.TwoBlockModel(block_of(scene), contact, load_of(scene, base_motion(scene)), b.base, b.top)
@@ -45,14 +39,8 @@ def model_of(scene: Scene) -> dda.TwoBlockModel:
 
 def scheme_of(scene: Scene) -> dda.Scheme:
     """Return the scheme of a scene."""
-    import dda
-
-    t = scene.time
-    d = scene.damping
-    if t.scheme == "newmark":
-        return dda.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
-    with naming(scene):
-        return dda.named_scheme(t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split)
+    scheme: dda.Scheme = translation.scheme_of(scene, dda)
+    return scheme
 
 
 class OneBlock(Prepared):
@@ -67,16 +55,12 @@ class OneBlock(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        import dda
-
         adaptive = features.ADAPTIVE in features.of(self.scene)
         check_columns(self.scene, (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS) if adaptive else dda.COLUMNS)
         return to_run(self.scene, self.solve_steps(self.scene.time.steps, self.scene.run.columns))
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps; a discount may follow the kinetic energy."""
-        import dda
-
         if features.ADAPTIVE in features.of(self.scene):
             floor = self.scene.damping.floor
             return dda.solve_adaptive(self.model, self.scheme, steps, columns, floor, self.full)
@@ -96,20 +80,14 @@ class OneBlock(Prepared):
 
     def package_modes(self) -> Sequence[dda.Mode]:
         """Return the modes as DDA gives them."""
-        import dda
-
         return dda.modes(self.model, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition numbers and residual."""
-        import dda
-
         return vars(dda.diagnostics(self.model, self.scheme))
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, mode by mode."""
-        import dda
-
         along = base_direction(self.scene)
         return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
@@ -118,8 +96,6 @@ class SubBlocks(OneBlock):
     """A block cut into glued sub-blocks."""
 
     def __init__(self, scene: Scene, full: bool) -> None:
-        import dda
-
         super().__init__(scene, full)
         b = scene.block
         with naming(scene):
@@ -127,26 +103,18 @@ class SubBlocks(OneBlock):
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
-        import dda
-
         return dda.solve_system(self.system, self.scheme, steps, columns, self.full)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency that the load reaches, joints included [rad/s]."""
-        import dda
-
         return dda.highest_frequency(self.system)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution."""
-        import dda
-
         return dda.static_system(self.system)
 
     def package_modes(self) -> Sequence[dda.Mode]:
         """Return the lowest modes as DDA gives them."""
-        import dda
-
         return dda.system_modes(self.system, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
@@ -155,8 +123,6 @@ class SubBlocks(OneBlock):
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response of the system."""
-        import dda
-
         along = base_direction(self.scene)
         return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
@@ -201,8 +167,6 @@ class DDA(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        import dda
-
         of_boxes = columns_of_boxes(MOST_BOXES)
         return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS, *of_boxes)
 
@@ -248,8 +212,6 @@ class Printed(OneBlock):
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
-        import dda
-
         return dda.solve_textbook(self.model, self.scheme, steps, columns)
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
@@ -268,14 +230,10 @@ class Textbook(DDA):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        import dda
-
         return dda.COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the printed recursion does not apply."""
-        import dda
-
         return dda.textbook_applicable(model_of(scene), scheme_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:

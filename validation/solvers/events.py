@@ -44,28 +44,16 @@ LEAST_SAMPLES = 400  # instants of the motion in which peaks are sought
 SAMPLES_IN_CONTACT = 9  # further ones in each contact
 # of a switch: whether it opens or closes, whether it slips or sticks
 KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
-# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024, and how many
-# that has in a second: of columns and blocks' series in steps, and of the waves in bars.
+# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024: of columns'
+# series in steps, and of the waves in bars.
 MOST_TERMS = 2.5e6
-TERMS_A_SECOND = 3e5
 MOST_BAR_TERMS = 6e7
-BAR_TERMS_A_SECOND = 5e6
 SWITCHES_LISTED = 6  # switches that a note names
-
-
-def rectangle(scene: Scene) -> tuple[float, float] | None:
-    """Return width and height of an upright rectangle on its lower edge, None for another outline [m]."""
-    points = scene.block.outline
-    if len(points) != 4 or (scene.block.base, scene.block.top) != (0, 2):
-        return None
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = points
-    upright = y0 == y1 and y2 == y3 and x0 == x3 and x1 == x2
-    return (x1 - x0, y2 - y0) if upright else None
 
 
 def data_of(scene: Scene) -> dict[str, float]:
     """Return what block and bar of a scene have in common: size, material, loads, gap and velocity."""
-    width, height = rectangle(scene) or (0.0, 0.0)
+    width, height = scene.block.rectangle or (0.0, 0.0)
     b = scene.block
     c = scene.contact
     q = scene.load
@@ -405,7 +393,7 @@ class BlockEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
-        if rectangle(scene) is None:
+        if scene.block.rectangle is None:
             return "the block is not an upright rectangle on its lower edge"
         return None if scene.time.discount == 1 else "the exact motion has no kinetic damping, and gg is below 1"
 

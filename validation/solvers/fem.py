@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import fem_reference
 from validation.runs import extras
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
@@ -15,13 +16,12 @@ from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
-from validation.solvers import opened
+from validation.solvers import opened, translation
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
-from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
+from validation.solvers.translation import check_columns, naming, switches_between_steps, to_modes, to_run
 
 if TYPE_CHECKING:
-    import fem_reference
     from fem_reference.history.unilateral import UnilateralResult
     from fem_reference.mesh.model import Model
 
@@ -38,8 +38,6 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
     InputError
         The problem refuses a value.
     """
-    import fem_reference
-
     b = scene.block
     f = scene.fem
     c = scene.contact
@@ -87,22 +85,12 @@ def points_and_cells_of_file(path: str) -> Any:
 
 def scheme_of(scene: Scene) -> fem_reference.Scheme:
     """Return the scheme of a scene."""
-    import fem_reference
-
-    t = scene.time
-    d = scene.damping
-    if t.scheme == "newmark":
-        return fem_reference.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
-    with naming(scene):
-        return fem_reference.named_scheme(
-            t.scheme, step=t.step, gg=t.discount, start=t.start, rho_inf=t.rho_inf, split=t.split
-        )
+    scheme: fem_reference.Scheme = translation.scheme_of(scene, fem_reference)
+    return scheme
 
 
 def locked_frequency(problem: fem_reference.Problem, model: Model | None = None) -> float:
     """Return the largest frequency of a mesh on a locked base [rad/s]."""
-    import fem_reference
-
     return fem_reference.highest_frequency(problem, model=model)
 
 
@@ -111,13 +99,6 @@ def opening_frequency(problem: fem_reference.Problem, full: bool) -> float:
     from fem_reference.contact.frequency import highest_closed_frequency
 
     return highest_closed_frequency(problem, full)
-
-
-def to_modes(modes: Sequence[fem_reference.Mode]) -> tuple[Mode, ...]:
-    """Translate modes; of the three eigenvalues the two greatest count, the third is zero."""
-    return tuple(
-        Mode(mode.frequency, mode.share, (complex(mode.eigenvalues[0]), complex(mode.eigenvalues[1]))) for mode in modes
-    )
 
 
 class Mesh(Prepared):
@@ -152,8 +133,6 @@ class Mesh(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        import fem_reference
-
         steps = self.scene.time.steps
         columns = self.scene.run.columns
         result: fem_reference.Result | fem_reference.AdaptiveResult
@@ -170,14 +149,10 @@ class Mesh(Prepared):
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution."""
-        import fem_reference
-
         return fem_reference.static(self.problem, model=self.model)
 
     def modes(self) -> tuple[Mode, ...]:
         """Return modes that the load reaches, the first axial one first."""
-        import fem_reference
-
         return to_modes(fem_reference.modes(self.problem, self.scheme, model=self.model))
 
     def diagnostics(self) -> Mapping[str, float]:
@@ -307,7 +282,6 @@ class FiniteElements(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        import fem_reference
         from fem_reference.contact.kernel import UNILATERAL_COLUMNS
 
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)

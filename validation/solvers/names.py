@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from validation.errors import InputError
 from validation.metrics.catalogue import CATALOGUE, PAIRS
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.scenes.tables import GateSection
-from validation.solvers.registry import FULL, get_solver, is_solver, replacement, solver_names
+from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
 from validation.solvers.user import UserSolver
 
 
@@ -26,7 +23,7 @@ def check_names(scene: Scene, source: str) -> None:
         solver = name.removesuffix(FULL)
         if not is_solver(solver):
             rule = f"must be among {', '.join(solver_names())}"
-            raise InputError(rule, source=source, field="run.solvers", value=repr(name), advice=replacement(name))
+            raise InputError(rule, source=source, field="run.solvers", value=repr(name))
         adapter = get_solver(solver)
         if isinstance(adapter, UserSolver):
             adapter.check_module()
@@ -46,27 +43,25 @@ def check_names(scene: Scene, source: str) -> None:
                 value=f"{', '.join(gate.pair)} and {gate.metric}",
             )
         pairs_and_metrics.add((gate.pair, gate.metric))
-        _check_gate(gate, scene.run.solvers, source, f"gate.{number}")
+        solvers = scene.run.solvers
+        field = f"gate.{number}"
+        if gate.metric not in CATALOGUE:
+            raise InputError(
+                f"must be among {', '.join(CATALOGUE)}", source=source, field=f"{field}.metric", value=repr(gate.metric)
+            )
+        missing = [name for name in gate.pair if name not in solvers]
+        if missing:
+            raise InputError(
+                "must be solvers that run.solvers lists", source=source, field=f"{field}.pair", value=repr(missing[0])
+            )
+        if gate.metric in PAIRS and len(gate.pair) < 2:
+            raise InputError(
+                f"must name a solver and a reference for {gate.metric}",
+                source=source,
+                field=f"{field}.pair",
+                value=list(gate.pair),
+            )
     _check_linear(scene, source)
-
-
-def _check_gate(gate: GateSection, solvers: Sequence[str], source: str, field: str) -> None:
-    if gate.metric not in CATALOGUE:
-        raise InputError(
-            f"must be among {', '.join(CATALOGUE)}", source=source, field=f"{field}.metric", value=repr(gate.metric)
-        )
-    missing = [name for name in gate.pair if name not in solvers]
-    if missing:
-        raise InputError(
-            "must be solvers that run.solvers lists", source=source, field=f"{field}.pair", value=repr(missing[0])
-        )
-    if gate.metric in PAIRS and len(gate.pair) < 2:
-        raise InputError(
-            f"must name a solver and a reference for {gate.metric}",
-            source=source,
-            field=f"{field}.pair",
-            value=list(gate.pair),
-        )
 
 
 def _check_linear(scene: Scene, source: str) -> None:

@@ -49,8 +49,7 @@ def energy_input(scene: Scene) -> float:
     b = scene.block
     along = scene.block.mass * scene.load.gravity * math.sin(math.radians(scene.load.slope))
     shear_energy = along**2 / (4 * scene.contact.shear) if scene.contact.shear else 0.0
-    height = float(np.ptp([y for _, y in b.outline]))
-    compliance = 1 / (4 * scene.contact.stiffness) + height / (2 * b.young * b.base_length)
+    compliance = 1 / (4 * scene.contact.stiffness) + b.extent[1] / (2 * b.young * b.base_length)
     return start_energy(scene) + abs(F) * scene.contact.gap + F**2 * compliance + shear_energy
 
 

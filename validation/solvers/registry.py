@@ -34,7 +34,6 @@ BUILT_IN = {
     "rigid-exact": "validation.solvers.rigid.boxes:RigidExact",
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
 }
-WITHDRAWN = {"fem-60": "dda-60 or fem with a finer mesh", "bar-60": "dda-60 or continuum"}  # and what to use instead
 USERS = "validation.solvers.user:UserSolver"
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
@@ -58,12 +57,6 @@ def is_solver(name: str) -> bool:
     return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
 
 
-def replacement(name: str) -> str | None:
-    """Return what to use instead of a solver that was withdrawn, None for any other name."""
-    plain = name.partition(":")[0]
-    return f"{plain} was withdrawn, use {WITHDRAWN[plain]}" if plain in WITHDRAWN else None
-
-
 def _is_target(module: str, attribute: str) -> bool:
     return all(part.isidentifier() for part in (*module.split("."), *attribute.split(".")))
 
@@ -84,7 +77,7 @@ def get_solver(name: str) -> Solver:
         return user
     if plain not in BUILT_IN:
         rule = f"must be one of {', '.join(solver_names())}, or module:attribute"
-        raise InputError(rule, field="solver", value=repr(name), advice=replacement(name))
+        raise InputError(rule, field="solver", value=repr(name))
     solver: Solver = _imported(BUILT_IN[plain])()
     return solver.option(option) if colon else solver
 

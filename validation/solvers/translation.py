@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from validation.errors import InputError
 from validation.runs.history import PRESSURE, Array, History
-from validation.runs.modes import Switch
+from validation.runs.modes import Mode, Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 
@@ -39,6 +39,26 @@ def to_run(scene: Scene, result: Any, columns: Mapping[str, Array] | None = None
     if outcome is None and scene.column is None:
         notes = (*notes, *tension_note(history))
     return Run(Outcome(outcome or "completed"), history, work, seconds, notes, getattr(result, "estimate", None))
+
+
+def scheme_of(scene: Scene, package: Any) -> Any:
+    """Return the scheme of a scene as a solver package states it: both state it by the same names."""
+    t = scene.time
+    d = scene.damping
+    if t.scheme == "newmark":
+        return package.Scheme(t.alpha, t.delta, t.discount, t.step, t.start, d.mass, d.stiffness)
+    numbers = {"step": t.step, "gg": t.discount, "start": t.start, "rho_inf": t.rho_inf, "split": t.split}
+    with naming(scene):
+        return package.named_scheme(t.scheme, **numbers)
+
+
+def to_modes(modes: Iterable[Any]) -> tuple[Mode, ...]:
+    """Translate modes; of their eigenvalues the two greatest count, a third is zero."""
+    translated = []
+    for mode in modes:
+        first, second = (complex(value) for value in mode.eigenvalues[:2])
+        translated.append(Mode(mode.frequency, mode.share, (first, second)))
+    return tuple(translated)
 
 
 def switches_between_steps(states: Mapping[str, NDArray[Any]], time: Array, slips: bool = False) -> tuple[Switch, ...]:

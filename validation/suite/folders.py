@@ -125,11 +125,6 @@ def sources_of(name: str) -> str:
     return "" if folder is None else str(folder.fields.get("sources", ""))
 
 
-def studies_with_registers() -> list[str]:
-    """Return the names of the studies that judge a register of statements."""
-    return [name for name, folder in study_folders().items() if "register" in folder.fields]
-
-
 def register_of(name: str) -> Register:
     """Return the register of statements of a study that has one."""
     folder = study_folders()[name]

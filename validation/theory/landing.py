@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +29,7 @@ from numpy.typing import NDArray
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
+from validation.theory.edges import edge
 from validation.theory.stepping import Stepping
 
 PHASES = np.linspace(0.0, 1.0, 33)
@@ -50,15 +50,12 @@ SMALLEST, LARGEST = 1e-3, 10.0
 """w_c dt between which a step is looked for."""
 GRID = 1.12
 """Ratio of neighbouring steps in that search."""
+NEIGHBOURS = 1e-3
+"""Relative distance of an allowed step from one that is not, to which the longest and the shortest are found."""
 
 GAP = np.array([1.0, -0.5])  # w over (x, e)
 MASS = np.array([1.0, 1 / 12])
 STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
-
-
-def quarter_mass_frequency(scene: Scene) -> float:
-    """Return sqrt(8 p / m), of springs much stiffer than the block, p >> E [rad/s]."""
-    return math.sqrt(8 * scene.contact.stiffness / scene.block.mass)
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
@@ -509,6 +506,9 @@ def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float
     def off(omega: float) -> float:
         return stepped_landing(stepping, ratio, omega * unit, transit).error
 
+    def is_allowed(omega: float) -> bool:
+        return off(omega) <= error
+
     errors = np.array([off(float(omega)) for omega in omegas])
     best = int(np.argmin(errors))
     good = np.flatnonzero(errors <= error)
@@ -524,20 +524,11 @@ def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float
     last = first + int(wrong_above[0]) - 1 if wrong_above.size else len(omegas) - 1
     longest = float(omegas[last])
     if last + 1 < len(omegas):
-        longest = _edge(off, error, longest, float(omegas[last + 1]))
-    shortest = _edge(off, error, float(omegas[first]), float(omegas[first - 1])) * unit if first else None
+        longest = edge(is_allowed, longest, float(omegas[last + 1]), NEIGHBOURS)
+    shortest = None
+    if first:
+        shortest = edge(is_allowed, float(omegas[first]), float(omegas[first - 1]), NEIGHBOURS) * unit
     return AllowedSteps(longest * unit, shortest, float(errors[best]), float(omegas[best]) * unit)
-
-
-def _edge(off: Callable[[float], float], error: float, good: float, wrong: float) -> float:
-    """Return the last good value on the way to a wrong one, to a thousandth."""
-    while abs(wrong / good - 1) > 1e-3:
-        middle = math.sqrt(good * wrong)
-        if off(middle) <= error:
-            good = middle
-        else:
-            wrong = middle
-    return good
 
 
 def springs_for(scene: Scene, speed: float, penetration: float) -> float:

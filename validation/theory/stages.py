@@ -94,9 +94,7 @@ def composite(rho_inf: float = 0.0, split: float | None = None) -> Stages:
 
 def equal_split(rho_inf: float) -> float:
     """Return the split at which both stages have one matrix; 2 - sqrt 2 at rho_inf = 0, 1/2 at 1."""
-    if rho_inf == 1:
-        return 0.5
-    return (2 - math.sqrt(2 + 2 * rho_inf)) / (1 - rho_inf)
+    return 2 / (2 + math.sqrt(2 + 2 * rho_inf))  # (2 - sqrt(2 + 2 r)) / (1 - r) without its 0/0 at r = 1
 
 
 def check_rho(rho_inf: float, least: float = 0.0) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from validation.scenes.scene import Scene
 
 
@@ -24,7 +22,7 @@ def size(scene: Scene) -> tuple[float, float]:
 
 def height(scene: Scene) -> float:
     """Return the height of the block [m]."""
-    return float(np.ptp([y for _, y in scene.block.outline]))
+    return scene.block.extent[1]
 
 
 def static_displacement(scene: Scene) -> float:

@@ -18,7 +18,6 @@ from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.columns.elements import ground_of
-from validation.solvers.events import rectangle
 
 PACKAGE, RECIPE = "openseespy", "pip install openseespy==3.7.1.2"
 RIGID = 1e-4  # strain by weight and impact up to which a block that turns is taken for rigid
@@ -233,7 +232,7 @@ def _reasons_of_column(scene: Scene) -> Iterator[str]:
 
 def _reasons_of_block(scene: Scene) -> Iterator[str]:
     b, q = scene.block, scene.load
-    size = rectangle(scene)
+    size = scene.block.rectangle
     if size is None:
         yield "block.vertices: the mass of the triangle's legs is that of an upright rectangle alone"
         return

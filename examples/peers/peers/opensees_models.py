@@ -24,7 +24,6 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
-from validation.solvers.events import rectangle
 
 LEFT, RIGHT, TOP = 1, 2, 3  # nodes of the block
 GROUND = 10  # added to a node: what it stands on
@@ -75,7 +74,7 @@ def block(ops: Any, scene: Scene) -> Look:
 
 def corners(scene: Scene) -> dict[int, Array]:
     """Return where the nodes of the block are at t = 0 [m]: turned about the corner that stays down."""
-    width, height = rectangle(scene) or (0.0, 0.0)
+    width, height = scene.block.rectangle or (0.0, 0.0)
     tilt = math.radians(scene.block.tilt)
     turn = np.array([[math.cos(tilt), -math.sin(tilt)], [math.sin(tilt), math.cos(tilt)]])
     down = np.array([0.0 if tilt >= 0 else width, 0.0])

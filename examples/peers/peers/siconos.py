@@ -127,9 +127,7 @@ def substeps(scene: Scene, rate: float, fine: bool) -> int:
 
 def block(scene: Scene, fine: bool) -> dict[str, np.ndarray]:
     """Run a block and return all its columns."""
-    from validation.solvers.events import rectangle
-
-    sizes = rectangle(scene)
+    sizes = scene.block.rectangle
     if sizes is None:
         raise NotImplementedError("block.vertices: the block must be an upright rectangle on its lower edge")
     if scene.contact.law == "locked":

@@ -111,7 +111,12 @@ def agreement(scene: Scene, place: Array, rounding: Array) -> Agreement:
         return Agreement(True, misfit)
     if not _within((rest / unit)[: max(4, len(rest) // 20)]):
         return Agreement(False, misfit)
-    amplified = _amplified(scene, scene_run)
+    # what the scene makes of other arithmetic up to each step [m], (steps, 2); infinite where it has no run
+    c, grown = scene.contact, np.zeros_like(scene_run)
+    for name, value in (("contact.stiffness", c.stiffness), ("contact.friction", c.friction or 0.0)):
+        shaken = displacements(scene.with_values({name: value * (1 + SHAKEN)}))
+        grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - scene_run))
+    amplified = np.asarray(np.maximum.accumulate(grown, axis=0))
     tells = int(np.sum(np.all(amplified <= APART * size, axis=1)))
     same = tells >= TOLD * len(rest) and _within((rest / (unit + amplified))[:tells])
     return Agreement(same, misfit, tells if same and tells < len(rest) else None)
@@ -161,15 +166,6 @@ def surrounded(
 def _within(over: Array) -> bool:
     """Whether both columns are within their units, root mean square."""
     return bool(np.all(np.sqrt(np.mean(over**2, axis=0)) <= WITHIN))
-
-
-def _amplified(scene: Scene, scene_run: Array) -> Array:
-    """Return what the scene makes of other arithmetic up to each step [m], (steps, 2); infinite where it has no run."""
-    c, grown = scene.contact, np.zeros_like(scene_run)
-    for name, value in (("contact.stiffness", c.stiffness), ("contact.friction", c.friction or 0.0)):
-        shaken = displacements(scene.with_values({name: value * (1 + SHAKEN)}))
-        grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - scene_run))
-    return np.asarray(np.maximum.accumulate(grown, axis=0))
 
 
 def displacements(scene: Scene) -> Array | None:

@@ -91,7 +91,7 @@ def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
 def _block(scene: Scene) -> Iterator[Number]:
     b = scene.block
     dt = scene.time.step
-    height = float(np.ptp([y for _, y in b.outline]))
+    height = b.extent[1]
     speed = math.sqrt(statics.moduli(scene)[0] / b.density)
     yield Number("m", scene.block.mass, "kg", "mass of the block")
     yield Number("p/E", scene.contact.stiffness / b.young, "", "springs over Young's modulus, unit thickness")

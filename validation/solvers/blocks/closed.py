@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import dda
 from validation.scenes.scene import Scene
-
-if TYPE_CHECKING:
-    import dda
 
 # A locked corner must have a shear spring; one so soft stands for none and moves no digit of the largest frequency.
 FRICTIONLESS = 1e-12  # of the normal stiffness
@@ -17,23 +14,17 @@ FRICTIONLESS = 1e-12  # of the normal stiffness
 
 def closed_corners(stiffness: float, shear: float) -> dda.Contact:
     """Return corners that stay closed and stick."""
-    import dda
-
     return dda.Contact(stiffness, shear or FRICTIONLESS * stiffness)
 
 
 def block_of(scene: Scene) -> dda.Block:
     """Return the block of a scene."""
-    import dda
-
     b = scene.block
     return dda.Block(b.outline, dda.Material(b.density, b.young, b.poisson, b.hypothesis))
 
 
 def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
     """Return the loads of a scene, over a base that moves or not."""
-    import dda
-
     return dda.Load(motion=motion, **scene.load.numbers)
 
 
@@ -42,8 +33,6 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
 
     What has no pressure, such as a block that is thrown, is given one: its impact moves the same unknowns.
     """
-    import dda
-
     b = scene.block
     corners = closed_corners(scene.contact.stiffness, scene.contact.shear)
     load = replace(load_of(scene), pressure=scene.load.pressure or 1.0)
@@ -52,8 +41,6 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
 
 def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:
     """Return the largest frequency of a whole block in the unknowns that its load moves [rad/s]."""
-    import dda
-
     return max(mode.frequency for mode in dda.modes(model, scheme))
 
 
@@ -66,8 +53,6 @@ def opening_frequency(scene: Scene, scheme: dda.Scheme) -> float:
 
 def opening_system_frequency(scene: Scene) -> float:
     """Return the largest frequency of glued sub-blocks that may leave their base [rad/s]."""
-    import dda
-
     b = scene.block
     if math.isinf(scene.contact.stiffness):
         return math.inf
@@ -81,8 +66,6 @@ def rolling_frequency(scene: Scene, scheme: dda.Scheme) -> float:
     The directions of the springs turn against the block, so that the stiffer of the two acts along both. A pressure and
     a traction move all six unknowns, as a block that turns does.
     """
-    import dda
-
     c = scene.contact
     if math.isinf(c.stiffness):
         return math.inf

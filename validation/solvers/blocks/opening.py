@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import dda
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array
 from validation.runs.modes import Switch
@@ -20,7 +21,6 @@ from validation.solvers.contract import Prepared, completed
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    import dda
     from dda.rotation.solution import RollingResult
 
 FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
@@ -36,8 +36,6 @@ class OpeningBlock(Prepared):
     """A whole block on corners that carry no tension."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None, full: bool) -> None:
-        import dda
-
         self.scene = scene
         self.scheme = scheme
         self.full = full
@@ -50,8 +48,6 @@ class OpeningBlock(Prepared):
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""
-        import dda
-
         return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, self.options)
 
     def highest_frequency(self) -> float:
@@ -60,8 +56,6 @@ class OpeningBlock(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        import dda
-
         passes = (PASSES,) if self.options.rule == "augmented" else ()
         check_columns(self.scene, (*dda.COLUMNS, *OPENING, *passes))
         model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
@@ -91,8 +85,6 @@ class OpeningBlock(Prepared):
 
 def law_of(scene: Scene) -> dda.Unilateral:
     """Return the contact law of a scene; a corner has half of the cohesion of the whole base."""
-    import dda
-
     c = scene.contact
     tangent = None if c.friction is None else math.tan(math.radians(c.friction))
     cohesion = c.cohesion * scene.block.base_length / 2  # N
@@ -102,8 +94,6 @@ def law_of(scene: Scene) -> dda.Unilateral:
 
 def options_of(scene: Scene, full: bool) -> dda.UnilateralOptions:
     """Return how the steps of a scene take its contact, with the number that its rule needs."""
-    import dda
-
     c = scene.contact
     return dda.UnilateralOptions(
         c.rule,
@@ -151,8 +141,6 @@ class OpeningSubBlocks(OpeningBlock):
     """Glued sub-blocks on points that carry no tension."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None, full: bool) -> None:
-        import dda
-
         super().__init__(scene, scheme, motion, full)
         b = scene.block
         with naming(scene):
@@ -165,6 +153,4 @@ class OpeningSubBlocks(OpeningBlock):
 
     def solve(self, columns: Sequence[str]) -> dda.ContactResult:
         """Make the steps."""
-        import dda
-
         return dda.solve_opening_system(self.opening, self.scheme, self.scene.time.steps, columns, self.options)

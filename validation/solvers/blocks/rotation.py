@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import dda
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array
 from validation.runs.modes import Switch
@@ -17,7 +18,6 @@ from validation.solvers.contract import Prepared, completed
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    import dda
     from dda.rotation.solution import RollingResult
 
 AREA = "area"  # column: of the outline, over that of the start [-]
@@ -64,7 +64,6 @@ class RollingBlock(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        import dda
         from dda.rotation.solution import solve_rolling
 
         check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))

@@ -18,7 +18,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
-from validation.solvers.events import BAR_TERMS_A_SECOND, KINDS, MOST_BAR_TERMS, Motion, digits_of_switches
+from validation.solvers.events import KINDS, MOST_BAR_TERMS, Motion, digits_of_switches
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
@@ -131,12 +131,6 @@ class BarsOfColumn(Motion):
         ]
         t = self.instants()
         return [self._values(name, t) for name in self.names]
-
-    def expected_seconds(self) -> float:
-        """Return how long a run takes about, without its echoes and up to the limit of work [s]."""
-        from fem_reference.events.bars_events import least_terms
-
-        return min(least_terms(self.problem, self.end), self.work().limit) / BAR_TERMS_A_SECOND
 
     def _values(self, name: str, t: Array) -> Array:
         """Return a column of the history."""

@@ -19,7 +19,7 @@ from validation.scenes.drive import read_drive
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
-from validation.solvers.events import MOST_TERMS, TERMS_A_SECOND, Motion
+from validation.solvers.events import MOST_TERMS, Motion
 from validation.solvers.translation import naming
 
 if TYPE_CHECKING:
@@ -131,12 +131,6 @@ class ColumnEventMotion(Motion):
         state = self.motion.at(self.instants())
         self.radius = float(state.displacement_radius.max())
         return [self._column(name, state) for name in self.names]
-
-    def expected_seconds(self) -> float:
-        """Return how long a run takes about, without its switches and up to the limit of work [s]."""
-        from fem_reference.events.column_events import least_terms
-
-        return min(least_terms(self.problem, self.end)[1], self.work().limit) / TERMS_A_SECOND
 
     def _column(self, name: str, state: ColumnHistory) -> Array:
         """Return a column of the history; of two blocks that meet at a height it is the lower one's."""

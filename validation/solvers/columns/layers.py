@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import fem_reference
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.run import Run
 from validation.scenes import features
@@ -15,16 +15,11 @@ from validation.solvers.columns.names import OF_COLUMN, amplitude, column_of
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver
 from validation.solvers.translation import to_run
 
-if TYPE_CHECKING:
-    import fem_reference
-
 STILL = 1e-9  # Hz, for a frequency of zero, at which transfer matrices divide by zero
 
 
 def time_of(scene: Scene) -> fem_reference.Scheme:
     """Return the step and the discount of a scene, for what is exact in time and knows no scheme."""
-    import fem_reference
-
     t = scene.time
     d = scene.damping
     return fem_reference.Scheme(0.25, 0.5, t.discount, t.step, "consistent", d.mass, d.stiffness)

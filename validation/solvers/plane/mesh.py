@@ -2,61 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from validation.runs.history import DISPLACEMENT, STRESS_ERROR
-from validation.runs.modes import Mode
-from validation.runs.run import Run
 from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Prepared
-from validation.solvers.plane.observed import MODES, observed_row
-from validation.solvers.translation import naming, to_run
+from validation.solvers.plane.modelled import PlaneModelled
 
 if TYPE_CHECKING:
-    import fem_reference
     from fem_reference.plane.body import PlaneBody
     from fem_reference.plane.model import PlaneModel
 
 ELEMENTS = 8  # along the shorter side, if the scene does not say: a slender cantilever's tip to 2e-6
 
 
-class PlaneMesh(Prepared):
+class PlaneMesh(PlaneModelled):
     """The elastic body of the blocks' outline, by `fem`."""
 
-    def __init__(self, scene: Scene, plane: PlaneSection, scheme: fem_reference.Scheme) -> None:
-        self.scene = scene
-        self.plane = plane
-        self.scheme = scheme
-        with naming(scene):
-            self.model = elastic_model(scene, plane)
-            self.row = observed_row(plane, self.model.observer)
+    def built(self) -> PlaneModel:
+        """Return the elements."""
+        return elastic_model(self.scene, self.plane)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency of the mesh [rad/s]."""
-        return self.model.highest_frequency()
+        return float(self.model.highest_frequency())
 
-    def history_run(self) -> Run:
-        """Step the mesh from rest."""
-        result = self.model.history(self.scheme, self.scene.time.steps, self.row[None])
-        return to_run(self.scene, result, {DISPLACEMENT: result.columns["0"]})
-
-    def static(self) -> Mapping[str, float]:
-        """Return displacement and stress error at rest."""
-        with naming(self.scene):
-            values = {DISPLACEMENT: float(self.row @ self.model.rest)}
-            if any(self.plane.stress):
-                values[STRESS_ERROR] = self.model.stress_error()
-        return values
-
-    def modes(self) -> tuple[Mode, ...]:
-        """Return the lowest modes, the one with the largest share of the static response first."""
-        modes = sorted(self.model.modes(self.scheme, MODES), key=lambda mode: -mode.share)
-        return tuple(
-            Mode(mode.frequency, mode.share, (complex(mode.eigenvalues[0]), complex(mode.eigenvalues[1])))
-            for mode in modes
-        )
+    def stress_error(self) -> float:
+        """Return the largest error of a stress component at rest over the largest component of the loads' stress."""
+        return float(self.model.stress_error())
 
 
 def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:

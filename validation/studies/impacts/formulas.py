@@ -14,7 +14,6 @@ from validation.engine.finished import Derived, Finished
 from validation.metrics.values import finite, or_nan
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.solvers.events import rectangle
 from validation.suite.bands import Band, about, cases, near
 
 BLOCK = "block-events"
@@ -29,13 +28,13 @@ LIMIT = "rigid wall"
 
 def transit(scene: Scene) -> float:
     """Return h / c, the time of a wave through the block [s]."""
-    _, height = rectangle(scene) or (0.0, 0.0)
+    _, height = scene.block.rectangle or (0.0, 0.0)
     return height * math.sqrt(scene.block.density / scene.block.young)
 
 
 def stiffness_ratio(scene: Scene) -> float:
     """Return the springs' stiffness over that of the bar, 2 p h / (E a) [-]."""
-    width, height = rectangle(scene) or (math.nan, math.nan)
+    width, height = scene.block.rectangle or (math.nan, math.nan)
     return 2 * scene.contact.stiffness * height / (scene.block.young * width)
 
 
@@ -58,7 +57,7 @@ def bounce(scene: Scene) -> tuple[float, float, float]:
     """
     b = scene.block
     g = scene.load.gravity
-    width, height = rectangle(scene) or (math.nan, math.nan)
+    width, height = scene.block.rectangle or (math.nan, math.nan)
     w = math.sqrt(2 * scene.contact.stiffness / (b.density * width * height))
     V = math.sqrt(b.velocity**2 + 2 * g * scene.contact.gap)
     landing = (V + b.velocity) / g

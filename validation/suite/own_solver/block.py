@@ -38,7 +38,12 @@ def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
     """
     judged = [t for t in results if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
     failed = [t for t in judged if t.status == Status.FAIL]
-    misread = _misread(judged, failed)
+    # what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong
+    resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
+    measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
+    misreadings = block_data.misreadings(measured)
+    statics = [t for t in failed if t.group == "statics"]
+    misread = {} if any(not _follows(t, misreadings) for t in statics) else misreadings
     plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
     lines = [
         *_table(results),
@@ -114,19 +119,6 @@ def _headline(judged: Sequence[GateReport], failed: Sequence[GateReport], plain:
     rest = [group for group in GROUPS if group not in groups_at_fault and any(t.group == group for t in plain)]
     if rest:
         yield f"        {', '.join(rest)}: {MAY_FOLLOW}"
-
-
-def _misread(judged: Sequence[GateReport], failed: Sequence[GateReport]) -> dict[Misreading, list[str]]:
-    """Return what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong.
-
-    Where it rests does not depend on the scheme, so that a slip of the scheme beside a misreading hides neither. A
-    fault in the statics of the plain square does show there.
-    """
-    resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
-    measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
-    misreadings = block_data.misreadings(measured)
-    statics = [t for t in failed if t.group == "statics"]
-    return {} if any(not _follows(t, misreadings) for t in statics) else misreadings
 
 
 def _follows(result: GateReport, misread: Collection[Misreading]) -> bool:
