@@ -49,7 +49,7 @@ def report(
     figures[/bold]
     """
     from validation.errors import InputError
-    from validation.report.book import build, write_figures
+    from validation.runs import extras
     from validation.runs.results import Results
 
     if docs and site is None:
@@ -58,6 +58,15 @@ def report(
         out = PDF
     if out is not None and out.suffix.lower() != ".pdf":
         raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
+    for option, path, libraries in (
+        ("--out", out, extras.PDF),
+        ("--site", site, extras.SITE),
+        ("--figures", figures, extras.PDF),
+    ):
+        if path is not None:
+            extras.require(option, *libraries)
+    from validation.report.book import build, write_figures
+
     store = Results(results)
     names = studies or None
     if out is not None:

@@ -18,7 +18,7 @@ from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
-from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, not_installed, ranking, rivals, row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
     Reading,
@@ -116,7 +116,12 @@ class Case:
     @property
     def rivals(self) -> tuple[str, ...]:
         """Names of the other solvers of the scene."""
-        return RIVALS if self.scene.block.poisson == 0 else ("fem",)
+        return _rivals_of(self.scene)
+
+
+def _rivals_of(scene: Scene) -> tuple[str, ...]:
+    """Return the names of the solvers that a history of a scene is held against beside DDA."""
+    return RIVALS if scene.block.poisson == 0 and rectangle_of(scene) is not None else ("fem",)
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -132,25 +137,9 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    # refuse a scene that compare does not step, before anything of it is run
-    features.refuse_bonded_column(scene, "compare")
-    features.refuse_damping(scene, "compare")
-    if scene.time.scheme != "newmark":
-        _refuse_other_schemes(scene)
+    _refuse_what_is_not_known(scene)
     if scene.column is None:
-        is_frictional = features.FRICTION in features.of(scene)
-        is_rectangle = rectangle_of(scene) is not None
-        if is_frictional or not is_rectangle:
-            features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
-        if not (is_frictional or is_rectangle or features.linear(scene)):
-            raise InputError(
-                "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
-                source=scene.name,
-                value=", ".join(_beyond(scene)),
-            )
-        if is_frictional:
-            of_friction.refuse_other_scenes(scene)
-    features.refuse_sweep(scene)
+        foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, _rivals_of(scene))))
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
     answer = _judged(scene, foreign, tolerance)
@@ -169,6 +158,28 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
     sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
     return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
+
+
+def _refuse_what_is_not_known(scene: Scene) -> None:
+    """Refuse a scene that compare does not step, before anything of it is run."""
+    features.refuse_bonded_column(scene, "compare")
+    features.refuse_damping(scene, "compare")
+    if scene.time.scheme != "newmark":
+        _refuse_other_schemes(scene)
+    if scene.column is None:
+        is_frictional = features.FRICTION in features.of(scene)
+        is_rectangle = rectangle_of(scene) is not None
+        if is_frictional or not is_rectangle:
+            features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
+        if not (is_frictional or is_rectangle or features.linear(scene)):
+            raise InputError(
+                "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
+                source=scene.name,
+                value=", ".join(_beyond(scene)),
+            )
+        if is_frictional:
+            of_friction.refuse_other_scenes(scene)
+    features.refuse_sweep(scene)
 
 
 def _refuse_other_schemes(scene: Scene) -> None:

@@ -17,6 +17,7 @@ from typing import IO
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs import extras
 from validation.runs.history import Array, History
 from validation.runs.regular import kind_of, regular
 
@@ -160,15 +161,18 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
 
 
 def check_ending(path: Path | None, field: str) -> None:
-    """Refuse a figure's file of an unknown kind, before anything is computed.
+    """Refuse a figure's file of an unknown kind, or that cannot be drawn here, before anything is computed.
 
     Raises
     ------
     InputError
-        The path ends in none of `FIGURE_ENDINGS`.
+        The path ends in none of `FIGURE_ENDINGS`, or what draws figures is not installed.
     """
-    if path is not None and path.suffix.lower() not in FIGURE_ENDINGS:
+    if path is None:
+        return
+    if path.suffix.lower() not in FIGURE_ENDINGS:
         raise InputError(f"must end in {', '.join(FIGURE_ENDINGS)}", field=field, value=repr(path.name))
+    extras.require(field, *extras.FIGURES)
 
 
 def _umask() -> int:

@@ -9,16 +9,17 @@ from importlib import resources
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
-
-import jinja2
-from markupsafe import Markup, escape
 
 from validation.report.blocks import Block, as_data
 from validation.report.names import unescaped
 from validation.report.references import CITED, marked, references
 from validation.runs.text import shown, visible
+
+if TYPE_CHECKING:
+    import jinja2
+    from markupsafe import Markup
 
 STYLE = "page.css"
 SCRIPT = "filter.js"
@@ -93,6 +94,8 @@ def _cleaned(text: str) -> str:
 
 @cache
 def _environment(package: str) -> jinja2.Environment:
+    import jinja2
+
     packages = dict.fromkeys((package, __package__))
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(name, "") for name in packages]),
@@ -108,6 +111,8 @@ def _environment(package: str) -> jinja2.Environment:
 
 def _finalized(value: Any) -> Any:
     """Return a value as a page writes it: texts are visible, what is markup already is left."""
+    from markupsafe import Markup
+
     if not isinstance(value, str) or isinstance(value, Markup):
         return value
     return visible(value.replace(CITED, "@"))
@@ -115,6 +120,7 @@ def _finalized(value: Any) -> Any:
 
 def _cited(text: str) -> Markup:
     """Return a text whose citations are links to the page of references, as author and year."""
+    from markupsafe import Markup, escape
 
     def link(match: re.Match[str]) -> str:
         source = references()[match[1]]
