@@ -125,7 +125,7 @@ def advise_across(
     block = _closed_block(scene)
     modes = dda_modes(block)
     highest = highest_frequency(block)
-    impact = highest if rectangle(scene) is None else landing.contact_frequency(scene)
+    impact = highest if scene.block.rectangle is None else landing.contact_frequency(scene)
     hertz = modes[0].frequency / (2 * math.pi) if frequency is None else float(frequency)
     wish = scene.contact.law == "unilateral" if no_gain is None else no_gain
     steppings, unreachable = _candidates(scene, float(damping), 2 * math.pi * hertz)
