@@ -300,38 +300,31 @@ RETURNED = {"rule": "impact", "restitution": 0.5}
 GOOD = average(1e-3)
 
 
-@pytest.mark.parametrize(
-    ("law", "field"),
-    [
-        ({"stiffness": math.inf, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "cohesion": 1.0, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "rules": "lagged", "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "band": (1e-6, 0.0), "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "damping": -1.0}, "damping"),
-        ({"stiffness": 1e9, "damping": math.nan}, "damping"),
-    ],
-)
-def test_laws_that_take_no_dashpot(law, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        Unilateral(**law)
+RUBBING = {"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "damping": 1.0}
 
 
 @pytest.mark.parametrize(
-    ("options", "field"),
+    ("kind", "given", "field"),
     [
-        ({"rule": "impact"}, "restitution"),
-        ({"rule": "newmark", "restitution": 0.5}, "restitution"),
-        ({"rule": "impact", "restitution": 1.1}, "restitution"),
-        ({"rule": "impact", "restitution": math.nan}, "restitution"),
-        ({"rule": "augmented", "penetration": 0.0}, "penetration"),
-        ({"rule": "augmented", "pass_limit": 0}, "pass_limit"),
-        ({"rule": "uzawa"}, "rule"),
+        (Unilateral, {"stiffness": math.inf, "damping": 1.0}, "damping"),
+        (Unilateral, RUBBING, "damping"),
+        (Unilateral, RUBBING | {"cohesion": 1.0}, "damping"),
+        (Unilateral, RUBBING | {"rules": "lagged"}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "band": (1e-6, 0.0), "damping": 1.0}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "damping": -1.0}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "damping": math.nan}, "damping"),
+        (UnilateralOptions, {"rule": "impact"}, "restitution"),
+        (UnilateralOptions, {"rule": "newmark", "restitution": 0.5}, "restitution"),
+        (UnilateralOptions, {"rule": "impact", "restitution": 1.1}, "restitution"),
+        (UnilateralOptions, {"rule": "impact", "restitution": math.nan}, "restitution"),
+        (UnilateralOptions, {"rule": "augmented", "penetration": 0.0}, "penetration"),
+        (UnilateralOptions, {"rule": "augmented", "pass_limit": 0}, "pass_limit"),
+        (UnilateralOptions, {"rule": "uzawa"}, "rule"),
     ],
 )
-def test_options_out_of_range(options, field):
+def test_laws_and_options_out_of_range(kind, given, field):
     with pytest.raises(ValueError, match=f"^{field}: "):
-        UnilateralOptions(**options)
+        kind(**given)
 
 
 @pytest.mark.parametrize(

@@ -80,19 +80,6 @@ def test_sliding_is_the_free_recursion_to_rounding(p, scheme):
         assert len(own) > 12 and np.max(np.abs(own - must)) < 1e-12 * np.max(parts)
 
 
-def test_a_rising_base_is_a_falling_block():
-    for seed in (0, 2):
-        model, scheme = rubbing_model(seed), Scheme(0.5, 1.0, 1.0, DT)
-        model = replace(model, velocity=0.0, contact=replace(model.contact, gap=1e-4))
-        rising = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 0.7]])
-        moved = solve_unilateral(replace(model, motion=rising), scheme, 120, PLACE)
-        thrown = solve_unilateral(replace(model, velocity=-0.7), scheme, 120, PLACE)
-        for name in ("normal", "shear", "gap", "slide"):
-            assert apart(getattr(moved, name), getattr(thrown, name)) < 1e-9, name
-        way = moved.columns["displacement"] - 0.7 * moved.time
-        assert np.max(np.abs(way - thrown.columns["displacement"])) < 1e-12
-
-
 @pytest.mark.parametrize("seed", thinned(range(4), 2))
 def test_energy_is_kept_on_a_base_that_shakes(seed):
     model = replace(rubbing_model(seed), motion=shaken(np.random.default_rng(seed)))

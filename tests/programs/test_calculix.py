@@ -34,25 +34,6 @@ def column_scene(**column: object) -> Scene:
     return scene.with_values({f"column.{key}": value for key, value in column.items()})
 
 
-@pytest.mark.parametrize(
-    ("scene", "said"),
-    [
-        (scene_of("sliding", contact__cohesion=1e3), "no cohesion"),
-        (scene_of("locked", time__gg=0.99), "discount gg"),
-        (scene_of("rocking", run__rotation="first-order"), "first order"),
-        (scene_of("locked", block__vertices=[[0, 0], [2, 0], [3, 2], [0, 2]]), "no upright rectangle"),
-        (scene_of("locked", run__columns=["gap_m"]), "none of the columns"),
-        (scene_of("locked", damping__mass=1.0), "Rayleigh"),
-        (column_scene(glue=1e9), "glue is"),
-        (column_scene(joint=[{"height": 12.0, "stiffness": 1e9}]), "top of the column"),
-        (column_scene(joint=[{"height": 0.0, "stiffness": 1e9}]), "without mass"),
-    ],
-)
-def test_it_refuses_by_name(scene, said):
-    with pytest.raises(NotImplementedError, match=said):
-        CalculiX().solve(scene)
-
-
 def test_features_without_a_model_are_not_handled():
     absent = {"sub-blocks", "rigid contact", "dead bands", "lagged friction", "damping tables", "self-adaptive damping"}
     assert not absent & CalculiX.handles

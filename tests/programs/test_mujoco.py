@@ -10,7 +10,6 @@ from conftest import thinned
 
 from validation.problems.problem import problem, problem_of
 from validation.problems.truth import exact
-from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
 PEERS = Path(__file__).parents[2] / "examples" / "peers"
@@ -53,60 +52,6 @@ def layered(**column: object) -> Scene:
     run = {"columns": ["displacement", "contact_pressure", "displacement_1", "displacement_2"]}
     time = {"step": 0.001, "steps": 80}
     return parse_scene({"column": {**given, **column}, "input": drive, "time": time, "run": run}, "layers")
-
-
-TRIANGLE = {"block": {"vertices": [[0, 0], [2, 0], [1.5, 2], [0, 2]], "density": 2700.0, "young": 1e9}}
-ROCKING = problem("rocking").scene
-REFUSED = {
-    "no upright rectangle": (MuJoCo, parse_scene({**problem("locked").scene.definition(), **TRIANGLE}, "x")),
-    "gg below 1": (MuJoCo, changed("locked", time__gg=0.99)),
-    "no rate": (MuJoCo, changed("column", time__gg=0.0)),
-    "first-order": (MuJoCo, changed("rocking", run__rotation="first-order")),
-    "returns nothing of a landing": (MuJoCo, changed("rocking", contact__gap=0.1)),
-    "its springs are soft": (MuJoCo, changed("rocking", block__young=1e7)),
-    "turns far": (AsItComes, changed("rocking", load__pressure=1e3)),
-    "no cohesion": (AsItComes, changed("sliding", contact__cohesion=1e3)),
-    "no glue": (AsItComes, changed("rebound", load__traction=1e3)),
-    "no base that moves": (AsItComes, changed("sliding", load__base_motion="x.csv")),
-    "a joint on the top": (MuJoCo, layered(joint=[{"height": 10.0, "stiffness": 1e9}])),
-    "two joints": (MuJoCo, layered(joint=[{"height": 4.0, "stiffness": 1e9}] * 2)),
-    "more than 2000 masses": (MuJoCo, layered().with_values({"time.step": 1e-6})),
-    "sub-steps": (MuJoCo, changed("locked", time__steps=2_000_000, time__step=0.01)),
-    "transmitting base has no mass": (
-        MuJoCo,
-        layered(base="transmitting", base_density=1.0, base_speed=1.0, joint=[{"height": 0.0, "stiffness": 1e9}]),
-    ),
-}
-
-
-@pytest.mark.parametrize("said", REFUSED)
-def test_refuses_in_words_before_it_runs(said: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    solver, scene = REFUSED[said]
-    with pytest.raises(NotImplementedError, match=said):
-        solver().solve(scene)
-
-
-@pytest.mark.parametrize("name", ["locked", "rocking", "column"])
-def test_a_program_that_is_not_there_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(NotImplementedError, match=r"not installed: pip install mujoco==4\.0\.0"):
-        AsItComes().solve(problem(name).scene)
-
-
-def test_says_what_it_is() -> None:
-    assert set(MuJoCo().about) == {"program", "version", "recipe", "model", "settings"}
-    assert MuJoCo().about["settings"] != AsItComes().about["settings"]
-    beyond = features.COURSES | {
-        features.SUB_BLOCKS,
-        features.DEAD_BAND,
-        features.RIGID,
-        features.LAGGED,
-        features.DAMPING,
-    }
-    beyond |= {features.ADAPTIVE, features.RIGID_BLOCKS, features.RIGID_JOINTS} | features.OF_MOVING_COLUMN
-    beyond |= features.COURSES | features.SCHEMES | features.CONTACT_METHODS
-    assert MuJoCo.handles == {feature.name for feature in features.FEATURES} - beyond
 
 
 @installed

@@ -1,7 +1,6 @@
 """OpenSees as a solver: its model is the block of one strain, its integrator is the suite's with 1/4 and 1/2."""
 
 import importlib.util
-import sys
 
 import numpy as np
 import pytest
@@ -94,44 +93,6 @@ def test_the_forces_do_the_work_of_the_loads() -> None:
     across, down = q.traction * w, weight * np.cos(slope) + pressed
     expected = [across + weight * np.sin(slope), 0, across * h / 2, -down, -pressed * q.eccentricity, -pressed * h / 2]
     np.testing.assert_allclose(linear_fields(told).T @ forces, expected, atol=1e-12 * down)
-
-
-COLUMN = load_scene("field-column").definition()["column"]
-
-
-@pytest.mark.parametrize(
-    ("scene", "says"),
-    [
-        (load_scene("field-locked").with_values({"block.subdivide": [2, 2]}), "sub-blocks"),
-        (load_scene("field-locked").with_values({"time.gg": 0.99}), "time.gg"),
-        (load_scene("field-locked").with_values({"damping.kinetic": "adaptive"}), "self-adaptive damping"),
-        (load_scene("field-locked").with_values({"load.base_motion": "moved.csv"}), "base motion"),
-        (load_scene("field-locked").with_values({"block.poisson": 0.5}), "block.poisson"),
-        (load_scene("field-locked").with_values({"block.vertices": [[0, 0], [2, 0], [1, 2]]}), "block.vertices"),
-        (load_scene("field-creep").with_values({"contact.cohesion": 1e3}), "contact.cohesion"),
-        (load_scene("field-creep").with_values({"contact.rules": "lagged"}), "lagged friction"),
-        (load_scene("field-creep").with_values({"contact.band": [0.0, 1e-3]}), "dead bands"),
-        (load_scene("field-creep").with_values({"contact.stiffness": "inf"}), "rigid contact"),
-        (load_scene("field-creep").with_values({"damping.mass": 1.0}), "damping tables"),
-        (load_scene("field-rocking").with_values({"run.rotation": "first-order"}), "run.rotation"),
-        (load_scene("field-rocking").with_values({"load.pressure": 1e5}), "load.pressure"),
-        (load_scene("field-rocking").with_values({"block.young": 1e8}), "block.young"),
-        (changed("field-column", column=COLUMN | {"glue": 1e12}), "column.glue"),
-        (changed("field-column", column=COLUMN | {"joint": [{"height": 3.5, "stiffness": 1e9}]}), "column.heights"),
-        (changed("field-column", run={"columns": ["contact_pressure"]}), "run.columns"),
-    ],
-)
-@pytest.mark.parametrize("solver", [OpenSees, AsItComes])
-def test_what_is_not_expressed_is_refused_by_name(scene, says, solver) -> None:
-    with pytest.raises(NotImplementedError, match=says):
-        solver().solve(scene)
-
-
-def test_a_program_that_is_absent_is_named_with_its_recipe(monkeypatch) -> None:
-    monkeypatch.setitem(sys.modules, "openseespy", None)
-    monkeypatch.setitem(sys.modules, "openseespy.opensees", None)
-    with pytest.raises(NotImplementedError, match="OpenSees is not installed: pip install openseespy=="):
-        OpenSees().solve(load_scene("field-locked"))
 
 
 @pytest.mark.parametrize("solver", [OpenSees, AsItComes])

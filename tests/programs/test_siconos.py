@@ -14,7 +14,6 @@ from programs.rigid_scenes import rigid_scene
 from validation import solve
 from validation.problems.problem import problem_of
 from validation.problems.truth import exact
-from validation.scenes import features
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
@@ -114,49 +113,6 @@ def test_its_own_rigid_contact_rocks(program):
 def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does(program):
     with pytest.raises(NotImplementedError, match=r"contact\.cohesion: is lost"):
         siconos.Siconos().solve(scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))
-
-
-REFUSED = [
-    (siconos.Siconos, scene("locked", time__gg=0.99), r"time\.gg"),
-    (siconos.Siconos, scene("rocking", contact__gap=0.01), r"contact\.gap"),
-    (siconos.Siconos, scene("rocking", block__velocity=-0.5), r"block\.velocity"),
-    (siconos.Siconos, scene("rocking", contact__cohesion=10.0), r"contact\.cohesion"),
-    (siconos.Siconos, scene("rocking", contact__stiffness=1e6), r"contact\.stiffness"),
-    (siconos.Siconos, scene("rocking", block__young=1e5), r"block\.young"),
-    (siconos.Siconos, scene("rocking", load__pressure=1e4), "load: pressure"),
-    (siconos.Siconos, scene("rocking", run__columns=["displacement", "rotation"]), "displacement: "),
-    (siconos.Siconos, scene("column", column__glue=1e12), r"column\.glue"),
-    (siconos.AsItComes, scene("opening"), "displacement: is that of contact springs"),
-    (siconos.AsItComes, scene("creep", run__columns=["horizontal_displacement"]), "friction holds the block"),
-    (siconos.AsItComes, scene("sliding", load__gravity=-9.81), "nothing presses"),
-    (siconos.AsItComes, scene("column", column__glue=1e12), r"column\.glue"),
-]
-
-
-@pytest.mark.parametrize(("kind", "given", "field"), REFUSED)
-def test_what_is_not_expressed_is_refused_by_field_before_the_program_is_asked(monkeypatch, kind, given, field):
-    monkeypatch.setattr(siconos, "ask", lambda request: pytest.fail("it was asked"))
-    with pytest.raises(NotImplementedError, match=field):
-        kind().solve(given)
-
-
-def test_a_block_that_is_no_rectangle_is_refused():
-    corners = [[0.0, 0.0], [2.0, 0.0], [1.5, 2.0], [0.5, 2.0]]
-    with pytest.raises(NotImplementedError, match=r"block\.vertices"):
-        siconos.Siconos().solve(scene("locked", block__vertices=corners))
-
-
-def test_no_program_is_said_with_its_recipe(monkeypatch, tmp_path):
-    monkeypatch.setattr(siconos, "PYTHON", str(tmp_path / "none"))
-    with pytest.raises(NotImplementedError, match="not installed: Debian"):
-        siconos.Siconos().solve(scene("locked"))
-
-
-def test_what_it_handles_are_words_of_scenes_and_what_it_says_is_complete():
-    assert siconos.Siconos.handles <= {one.name for one in features.FEATURES}
-    for kind in (siconos.Siconos, siconos.AsItComes):
-        assert set(kind().about) == {"program", "version", "recipe", "model", "settings"}
-        assert all(len(text) <= 400 for text in kind().about.values())
 
 
 def test_the_springs_matrices_hold_the_suites_static_solution():

@@ -1,6 +1,5 @@
 """Yade as a solver: what it refuses, that its bodies are the scene's block, and its own integrator."""
 
-import math
 import shutil
 
 import numpy as np
@@ -21,46 +20,6 @@ def scene_of(name, **tables):
     for table, values in tables.items():
         data.setdefault(table, {}).update(values)
     return parse_scene(data, name)
-
-
-REFUSED = [
-    (scene_of("locked", block={"poisson": 0.2}), "block.poisson"),
-    (scene_of("locked", block={"subdivide": [2, 2]}), "block.subdivide"),
-    (scene_of("locked", time={"gg": 0.9}), "time.gg"),
-    (scene_of("locked", damping={"mass": 1.0}), "damping"),
-    (scene_of("opening", contact={"band": [0.0, 1e-4]}), "contact.band"),
-    (scene_of("opening", contact={"stiffness": math.inf, "shear_stiffness": 0.0}), "contact.stiffness"),
-    (scene_of("sliding", contact={"rules": "lagged"}), "contact.rules"),
-    (scene_of("rocking", load={"pressure": 1e5}), "run.geometry"),
-    (scene_of("rocking", contact={"cohesion": 1e5}), "contact.cohesion"),
-    (scene_of("rocking", block={"young": 1e6}), "block.young"),
-    (scene_of("locked", run={"columns": ["gap_m"]}), "gap_m"),
-    (scene_of("column", run={"columns": ["stress_1"]}), "stress_1"),
-]
-
-
-@pytest.mark.parametrize(("scene", "field"), REFUSED, ids=[field for _, field in REFUSED])
-def test_what_it_cannot_express_is_refused_by_name(scene, field):
-    with pytest.raises(NotImplementedError, match=field):
-        Yade().solve(scene)
-
-
-def test_another_outline_is_refused():
-    leaning = scene_of("locked").definition()
-    leaning["block"] = {"vertices": [[0, 0], [2, 0], [2.5, 2], [0.5, 2]], "density": 2700.0, "young": 1e9}
-    with pytest.raises(NotImplementedError, match=r"block\.vertices"):
-        Yade().solve(parse_scene(leaning, "leaning"))
-
-
-def test_steps_beyond_all_patience_are_refused():
-    with pytest.raises(NotImplementedError, match="explicit scheme would need"):
-        Yade().solve(scene_of("rebound", contact={"stiffness": 1e17}, block={"young": 1e22}))
-
-
-def test_a_program_that_is_absent_is_named(monkeypatch):
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(NotImplementedError, match="Yade is not installed: apt-get install yade"):
-        Yade().solve(scene_of("locked"))
 
 
 def test_two_bodies_have_the_frequencies_of_the_block_of_one_strain():

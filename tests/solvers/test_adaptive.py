@@ -83,18 +83,6 @@ def test_rest_is_the_static_solution(solver: str) -> None:
         assert np.max(np.abs(undamped[column][last] - static[column])) > 0.5 * abs(static[column])
 
 
-def test_a_fall_takes_about_as_many_steps_as_the_docs_say_and_ends_nearer_to_rest_with_smaller_steps() -> None:
-    ends = []
-    for omega in (0.01, 0.001):
-        scheme = dda.Scheme(0.25, 0.5, 1.0, omega, "consistent")
-        found = adapted_modes(scheme, np.ones(1), np.ones(1), int(3 / omega), 0.0)
-        falling = np.flatnonzero(found.discount < 1)
-        ends.append(abs(found.modes[0, falling[-1]] - 1))
-    assert np.all(np.diff(falling) == 1)  # the first fall alone: the next one comes after w t = 3
-    assert len(falling) * omega ** (2 / 3) == pytest.approx(2.5, abs=0.05)
-    assert ends[1] < 0.6 * ends[0] < 0.6
-
-
 @pytest.mark.parametrize(
     ("omega", "factor", "left"), [(0.001, 2.46, 0.15), (0.01, 2.37, 0.32), (0.05, 2.17, 0.51), (0.2, 1.71, 0.70)]
 )

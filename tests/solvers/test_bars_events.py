@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -93,42 +92,6 @@ def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     fine = scene_of(column, columns, 16, input=drive, time=time)
     assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
     assert distance(fine, 16, exact) < 0.12
-
-
-def written(directory: Path, header: str, *rows: tuple[float, float]) -> str:
-    file = directory / f"{header}.csv"
-    file.write_text(f"time,{header}\n" + "".join(f"{t},{value}\n" for t, value in rows))
-    return str(file)
-
-
-@pytest.mark.long
-def test_records_are_taken_row_by_row(tmp_path: Path) -> None:
-    columns = ["displacement", "force_3", "gap_3"]
-    pulse = scene_of(OPENS, columns, input={"at": "top", "shape": "triangle", "pressure": 2e5, "duration": 0.01})
-    record = written(tmp_path, "pressure", (0.0, 2e5), (0.01, 0.0))
-    same = history(scene_of(OPENS, columns, input={"at": "top", "record": record}), "bars-events")
-    for name, values in history(pulse, "bars-events").items():
-        assert same[name] == pytest.approx(values, rel=1e-12, abs=1e-18)
-    rising = written(tmp_path, "acceleration", (0.0, 50.0), (0.01, 50.0))
-    ramp = written(tmp_path, "velocity", (0.0, 0.0), (0.01, 0.5), (0.02, 0.5), (1.0, 0.5))
-    by_rate = history(scene_of(OPENS, columns, input={"at": "base", "record": ramp}), "bars-events")
-    by_acceleration = history(scene_of(OPENS, columns, input={"at": "base", "record": rising}), "bars-events")
-    for name, values in by_rate.items():
-        assert by_acceleration[name] == pytest.approx(values, rel=1e-12, abs=1e-18)
-
-
-@pytest.mark.long
-def test_layers_without_joints_between_them_are_bars_of_pieces() -> None:
-    halves = [LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[0] | {"thickness": 1.0, "blocks": 1}, LAYERS[1]]
-    joints = [{"height": 0.0, "stiffness": 2e9, "gap": 1e-3}]
-    columns = ["displacement", "contact_pressure", "velocity_2", "stress_5"]
-    one = get_solver("bars-events").prepare(scene_of(WELDED | {"joint": joints}, columns))
-    two = get_solver("bars-events").prepare(scene_of(WELDED | {"joint": joints, "layer": halves}, columns))
-    assert one.problem == two.problem and len(one.problem.bars) == 2  # type: ignore[attr-defined]
-    exact = history(one.scene, "bars-events")
-    fine = scene_of(WELDED | {"joint": joints}, columns, 16, time={"step": 1e-4 / 16, "steps": 3200})
-    assert distance(fine, 16, exact, *SMOOTH[:1]) < 0.01
-    assert distance(fine, 16, exact) < 0.06
 
 
 @pytest.mark.parametrize(

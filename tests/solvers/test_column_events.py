@@ -99,39 +99,6 @@ def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
 
 
-RIGID = [{"thickness": 2.0, "density": 2400.0, "young": math.inf, "blocks": 2}]
-STANDS = {"motion": "pressure", "law": "unilateral", "gravity": 9.81, "settled": True, "heights": []}
-LEANS = {"motion": "shear", "law": "frictional", "stiffness": 1e7, "strength": 2e3, "heights": []}
-
-
-@pytest.mark.parametrize(
-    ("column", "frequency"),
-    [
-        (STANDS | {"layer": RIGID, "stiffness": 1e6}, 20.0),
-        (STANDS | {"layer": RIGID, "stiffness": 1e8}, 20.0),
-        (LEANS | {"layer": RIGID}, 2.0),
-        (STANDS | {"layer": [RIGID[0] | {"young": 1e9}], "stiffness": 1e6}, 20.0),
-    ],
-    ids=["soft", "opens", "slips", "elastic"],
-)
-def test_a_column_shaken_by_a_ricker_pulse_is_the_limit_of_dda(column: dict[str, Any], frequency: float) -> None:
-    drive = {"at": "base", "shape": "ricker", "velocity": 0.3, "frequency": frequency}
-    columns = ["displacement", "contact_pressure"]
-    step = 0.03 / frequency
-    exact = history(scene_of(column, columns, 100, input=drive, time={"step": step}))
-    errors = {}
-    for refined in (20, 80):
-        stepped = history(scene_of(column, columns, 100 * refined, input=drive, time={"step": step / refined}), "dda")
-        of_columns = []
-        for name in columns:
-            off = np.abs(stepped[name][refined - 1 :: refined] - exact[name]).max()
-            of_columns.append(off / np.abs(exact[name]).max())
-        errors[refined] = max(of_columns)
-    coarse = errors[20]
-    fine = errors[80]
-    assert fine < coarse / 8  # order 2 divides by 16, less what the steps in which a contact changes add
-
-
 def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains() -> None:
     columns = ["displacement", "contact_pressure", *names("displacement", "stress"), "force_1", "force_3", "force_4"]
     columns += ["gap_1", "gap_3"]

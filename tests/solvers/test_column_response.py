@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import scipy.linalg
 from conftest import thinned
 from oracles.stepped_vibration import fit
 
@@ -17,9 +16,6 @@ from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response
 from fem_reference.problem.result import Result as FemResult
 from validation import load_scene, response
-from validation.errors import InputError
-from validation.theory import waves
-from validation.theory.stepping import Stepping
 
 NAMES = ("displacement", "contact_pressure")
 Drawn = tuple[Column, Ground, list[int], dict[str, float]]
@@ -102,40 +98,6 @@ def test_many_stepped_columns_end_where_the_closed_form_says() -> None:
     assert sum(check(seed) for seed in range(6, 26)) > 15
 
 
-@pytest.mark.parametrize("scheme", [{}, {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.99}])
-def test_blocks_on_a_rigid_base_answer_as_their_wavenumber_says(scheme: dict[str, object]) -> None:
-    scene = load_scene("waves-blocks").expand()[0]
-    column = {"motion": "shear", "layer": [{"thickness": 30.0, "density": 2000.0, "young": 1e9, "blocks": 12}]}
-    scene = scene.with_values({"column": column, "run.columns": ["displacement"]} | scheme)
-    f = np.array([2.0, 11.0, 37.0])
-    stepping = Stepping.of(scene)
-    k = waves.Column(2.5, 2000.0, 5e8).wavenumber(stepping.squared_frequency(2 * np.pi * f))
-    w = 2 * np.pi * f  # the told base's own inertia follows w^2, the free blocks' W2: not the same for coarse blocks
-    difference = stepping.squared_frequency(w) - w * w
-    A, B = waves.Column(2.5, 2000.0, 5e8).ends(stepping.squared_frequency(w))
-    expected = (B + difference * 2000.0 * 2.5 / 6) / B / np.cos(k * 30.0)
-    assert np.allclose(response(scene, f, "dda").displacement, expected, rtol=1e-10)
-    assert np.all(np.abs(A) > 0)
-
-
-def test_fine_columns_answer_as_the_exact_layers() -> None:
-    scene, f = load_scene("waves-site"), np.array([0.5, 2.0, 5.0])
-    exact, errors = response(scene, f, "layers"), []
-    for elements in (1, 2):
-        found = response(scene.with_values({"fem.elements": elements, "fem.degree": 1}), f, "fem", exact=True)
-        errors.append([np.max(np.abs(found.columns[c] / exact.columns[c] - 1)) for c in NAMES])
-    assert np.allclose(np.log2(np.divide(*errors)), 2, atol=0.1)
-    assert response(scene, 1e-3, "layers").displacement[0] == pytest.approx(2.0, rel=1e-3)
-    with pytest.raises(InputError, match="must be above 0 on a transmitting base"):
-        response(scene, 0.0, "dda")
-    rigid = scene.with_values(
-        {"column": {"motion": "shear", "layer": [{"thickness": 3.0, "density": 2e3, "young": 1e9}]}}
-    )
-    for solver in ("dda", "fem", "layers"):
-        assert response(rigid, 0.0, solver).displacement[0] == pytest.approx(1.0, rel=1e-9)
-    assert exact.base
-
-
 def test_a_pressure_on_the_top_has_the_scenes_size() -> None:
     scene = load_scene("waves-base").expand()[0]
     drive = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.01}
@@ -144,19 +106,3 @@ def test_a_pressure_on_the_top_has_the_scenes_size() -> None:
         found = response(pressed, [1e-3], solver)
         assert not found.base
         assert abs(found.contact_pressure[0]) == pytest.approx(3e5, rel=1e-3)
-
-
-def test_a_sweep_over_a_layered_column_eliminates_a_band_for_each_frequency(monkeypatch: pytest.MonkeyPatch) -> None:
-    layer = {"thickness": 5.0, "density": 2000.0, "young": 5e8, "blocks": 20}
-    scene = load_scene("waves-site").with_values({"column.layer": [layer] * 10})
-    sizes, own = [], scipy.linalg.solve_banded
-
-    def counted(shape: tuple[int, int], band: np.ndarray, right: np.ndarray, **options: bool) -> np.ndarray:
-        sizes.append((shape, len(right)))
-        return np.asarray(own(shape, band, right, **options))
-
-    monkeypatch.setattr(scipy.linalg, "solve_banded", counted)
-    monkeypatch.setattr("dda.column.stepping.Stepper.run", None)  # no step is run
-    found = response(scene, np.linspace(0.1, 200.0, 50), "dda")
-    assert sizes == [((2, 2), 201)] * 50
-    assert np.all(np.isfinite(found.table()))

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.column_cases import CASES
 
 from validation.engine.case import Case
 from validation.engine.measure import attempt, execute
@@ -61,24 +60,6 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
     scene = dropped().with_values({"time.steps": 5})
     execute(Case(scene, "dda", measures=("history",), only=only), "key", "study")
     assert asked[0] is kept
-
-
-def test_a_scene_of_dropped_blocks_ends_as_the_exact_motion_does() -> None:
-    prepared = get_solver("dda").prepare(dropped())
-    run = prepared.run()
-    assert run.outcome is Outcome.COMPLETED
-    for name, value in CASES["A2"].exact.items():
-        assert run.history.columns[name][-1] == pytest.approx(value, rel=2e-4), name
-    np.testing.assert_array_equal(run.history.columns["force_6"], run.history.columns["contact_pressure"])
-    force, gap = run.history.columns["force_6"], run.history.columns["gap_6"]
-    assert np.all((force == 0) | (gap == 0)) and gap.max() > 0 and force.max() > 0
-    switches = prepared.switches()
-    exact = [0.004883, 0.006858, 0.008876, 0.010846, 0.012783, 0.017403, 0.020670, 0.023681, 0.025085, 0.025338]
-    assert [(switch.corner, switch.opens) for switch in switches] == [
-        *((f"{j} m", False) for j in range(5)),
-        *((f"{j} m", True) for j in (4, 3, 2, 0, 1)),
-    ]
-    assert [switch.time for switch in switches] == pytest.approx(exact, abs=3e-5)
 
 
 @pytest.mark.long

@@ -8,8 +8,7 @@ import pytest
 from validation.errors import InputError
 from validation.runs.contact import LOST, STORED
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers.dda import DDA, model_of
-from validation.solvers.events import BlockEvents
+from validation.solvers.dda import DDA
 
 COLUMNS = ["displacement", "horizontal_displacement", "state_m", "state_n", "slide_m", "slide_n", "shear_force_n"]
 
@@ -60,30 +59,6 @@ def test_lagged_friction_and_its_bands_are_taken():
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
 
 
-def test_a_slope_is_a_turned_weight_on_locked_springs_too():
-    beta = math.radians(20)
-    locked = {"law": "locked", "stiffness": 1e9, "shear_stiffness": 4e8}
-    both = ["displacement", "horizontal_displacement"]
-    for cut in ({}, {"subdivide": [2, 2]}):
-        given = {
-            "title": "locked",
-            "contact": locked,
-            "load": {"gravity": 9.81, "slope": 20.0},
-            "run": {"columns": both},
-        }
-        given |= {"block": {"side": 2.0, "density": 2700.0, "young": 1e9} | cut, "time": {"step": 1e-3, "steps": 100}}
-        found = DDA().build(parse_scene(given, "locked.toml"), False)
-        history = found.run().history.columns
-        assert np.max(history["horizontal_displacement"]) > 0 > np.min(history["displacement"])
-        static = found.static()
-        weight = 10800 * 9.81
-        settled = -weight * math.cos(beta) * (1 / 2e9 + 1 / 4e9)  # of the springs, and of the strain under W/2
-        assert static["contact_pressure"] == pytest.approx(weight * math.cos(beta) / 2.0, rel=1e-6)
-        assert cut or static["displacement"] == pytest.approx(settled, rel=1e-12)
-    model = model_of(parse_scene(given, "locked.toml"))
-    assert model.force[:2] == pytest.approx([weight * math.sin(beta), -weight * math.cos(beta)], rel=1e-14)
-
-
 @pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])
 def test_a_base_that_shakes_carries_a_block_that_rubs(tmp_path, block):
     time = np.linspace(0.0, 0.05, 51)
@@ -95,32 +70,3 @@ def test_a_base_that_shakes_carries_a_block_that_rubs(tmp_path, block):
     assert np.max(np.abs(moved["horizontal_displacement"] - still["horizontal_displacement"])) > 1e-4
     total = sum(seen.energies.values())
     assert np.ptp(total) < 1e-11 * np.max(np.abs(list(seen.energies.values()))) and seen.slip[-1] > rests.slip[-1]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("load", "contact", "band"),
-    [
-        ({"pressure": 2e5, "eccentricity": 0.2}, {"friction": 22.0}, (1.6, 2.4)),
-        ({"slope": 10.0, "base_motion": ""}, {"friction": 22.0}, (1.6, 2.4)),
-        ({"slope": 30.0, "pressure": 2e5, "traction": -5e4}, {"friction": 22.0, "cohesion": 2e4}, (0.5, 1.5)),
-    ],
-)
-def test_average_acceleration_tends_to_the_exact_events(tmp_path, load, contact, band):
-    """Of second order; of first with cohesion, whose force is lost at once where a corner opens."""
-    rng, time = np.random.default_rng(1), np.linspace(0.0, 0.05, 11)
-    way = np.concatenate([[[0.0, 0.0]], np.cumsum(rng.uniform(-1, 1, (10, 2)) * [4e-4, 1e-4], axis=0)])
-    np.savetxt(tmp_path / "base.csv", np.column_stack([time, way]), delimiter=",", header="time,x,y", comments="")
-    if "base_motion" in load:
-        load = load | {"base_motion": str(tmp_path / "base.csv")}
-    errors, exact = [], None
-    for steps in (1000, 2000, 4000, 8000):
-        scheme = {"step": 0.04 / steps, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
-        given = scene(contact, load, columns=["displacement", "horizontal_displacement", "slide_m"])
-        given = given.model_copy(update={"time": given.time.model_validate(scheme)})
-        if exact is None:
-            exact = BlockEvents().build(given, False).run().history.columns
-        found, every = DDA().build(given, False).run().history.columns, steps // 1000
-        apart = [np.max(np.abs(found[name][every - 1 :: every] - exact[name])) for name in exact]
-        errors.append(max(far / np.max(np.abs(exact[name])) for far, name in zip(apart, exact, strict=True)))
-    assert band[0] < -np.polyfit(range(4), np.log2(errors), 1)[0] < band[1] and errors[-1] < 1e-3

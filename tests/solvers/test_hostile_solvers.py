@@ -117,20 +117,6 @@ def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("target", "outcome", "said"), [*SURVIVED, *FATAL])
-def test_a_hostile_solver_is_a_row_with_a_name(
-    scene: Scene, mark: str, target: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv(VARIABLE, "1.5" if outcome is Outcome.TIMEOUT else "60")
-    row = row_of(scene, target)
-    assert told(row, outcome, said), (row.outcome, row.notes)
-    if outcome is Outcome.COMPLETED:
-        assert row_of(scene, target).outcome is outcome, "what it has left does not disturb the next scene"
-    worker.close_all()
-    assert left(mark) == []
-
-
-@pytest.mark.long
 @pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize("target", ["deadly:forks_and_stays", "deadly:forks"])
 def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, target: str) -> None:

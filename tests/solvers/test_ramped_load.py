@@ -9,9 +9,7 @@ import pytest
 from conftest import refused, thinned, typed
 
 import dda
-from dda.one_block.natural_modes import modal_form
 from validation.errors import InputError
-from validation.runs.history import Array
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import BUILT_IN, get_solver, solve
 
@@ -26,33 +24,6 @@ def locked(**values: Any) -> Scene:
 
 def opening(**values: Any) -> Scene:
     return locked(contact__law="unilateral", **values)
-
-
-def oscillator(w: float, t: Array, ramp: float) -> Array:
-    """Return x of x'' + w^2 x = w^2 min(1, t / ramp), from rest: its static value is 1."""
-    late = np.maximum(t - ramp, 0.0)
-    return (np.minimum(t, ramp) - (np.sin(w * t) - np.sin(w * late)) / w) / ramp
-
-
-@pytest.mark.parametrize(("young", "ramp"), [(1e9, RAMP), (4e8, 0.05)])
-def test_each_mode_of_the_block_tends_to_the_closed_form_with_the_second_order(young: float, ramp: float) -> None:
-    model = dda.TwoBlockModel(
-        dda.Block([(0, 0), (2, 0), (2, 2), (0, 2)], dda.Material(2700.0, young, 0.0)),
-        dda.Contact(1e9, 1e9),
-        dda.Load(pressure=5e6, ramp=ramp),
-    )
-    modal = modal_form(model.gap_form.reduced())
-    amplitudes = (model.gap_form.reduced().observers["displacement"] @ modal.shapes) * modal.load / modal.frequencies**2
-    errors = []
-    for step in (2e-4, 1e-4, 5e-5):
-        result = dda.solve(model, dda.Scheme(0.25, 0.5, 1.0, step), round(0.1 / step))
-        exact = sum(
-            a * model.load_size * oscillator(w, result.time, ramp)
-            for a, w in zip(amplitudes, modal.frequencies, strict=True)
-        )
-        errors.append(np.max(np.abs(result.columns["displacement"] - exact)) / np.max(np.abs(exact)))
-    orders = np.diff(-np.log2(errors))
-    assert orders == pytest.approx(2.0, abs=0.1) and errors[-1] < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -93,22 +64,6 @@ def test_a_contact_that_stays_closed_is_the_locked_one_under_a_ramp(start: str) 
     history = solve(opening(**values), "dda").displacement
     reference = solve(locked(**values), "dda").displacement
     assert history == pytest.approx(reference, abs=1e-9 * np.max(np.abs(reference)))
-
-
-@pytest.mark.parametrize("gap", [0.5, 0.3])
-def test_a_block_that_falls_under_a_growing_weight_follows_the_cubic(gap: float) -> None:
-    """Linear acceleration integrates u'' = -g t / T without an error, up to the step that ends at T."""
-    scene = opening(
-        contact__gap=gap, load__gravity=9.81, load__pressure=0.0, load__ramp=0.2, time__alpha=1 / 6, time__delta=0.5,
-        time__step=0.001, time__steps=280, time__allow_unstable=True,
-    )  # fmt: skip
-    run = solve(scene, "dda")
-    t = run.history.time
-    late = np.maximum(t - 0.2, 0.0)
-    exact = -9.81 * (t**3 - late**3) / (6 * 0.2)
-    free = exact > -0.9 * gap
-    assert free.sum() > 250
-    assert run.displacement[free] == pytest.approx(exact[free], rel=1e-9, abs=1e-15)
 
 
 @pytest.mark.parametrize("rule", ["newmark", "implicit"])

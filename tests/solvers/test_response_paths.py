@@ -92,19 +92,6 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.long
-def test_what_a_space_does_not_resolve_is_solved_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = BLOCK.with_values({"block.subdivide": [4, 4], "block.poisson": 0.3, "fem.elements": 8})
-    f = [5.0, 90.0, 200.0]
-    sound = {solver: response(scene, f, solver) for solver in ("dda", "fem")}
-    for module in (dda.system.response, fem_reference.history.response):
-        monkeypatch.setattr(module, "LARGEST", 3)
-    for solver, whole in sound.items():
-        found = response(scene, f, solver)
-        for column in COLUMNS:
-            assert np.allclose(found.columns[column], whole.columns[column], rtol=1e-8)
-
-
-@pytest.mark.long
 def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> NoReturn:
         raise AssertionError("a step was run")
@@ -122,16 +109,6 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
     assert len(eliminations) == 30
     for solver in ("fem", "bar", "continuum"):
         assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 30), solver).table()))
-
-
-def test_fine_elements_answer_as_the_bar() -> None:
-    f = np.linspace(1.0, 240.0, 40)
-    bar, errors = response(BLOCK, f, "bar"), []
-    for elements in (8, 16, 32):
-        found = response(BLOCK.with_values({"fem.elements": elements}), f, "fem")
-        errors.append(np.max(np.abs(found.displacement - bar.displacement)))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.1)
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.1)
 
 
 def test_small_steps_answer_as_the_limit_with_the_rate_of_the_discount() -> None:

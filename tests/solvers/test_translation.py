@@ -10,13 +10,12 @@ import pytest
 from conftest import scene_of
 
 from fem_reference.exact.bar import applicable
-from validation.runs.history import History
 from validation.runs.modes import contact_index
 from validation.scenes.scene import Scene
 from validation.solvers.dda import SubBlocks, model_of
 from validation.solvers.fem import problem_of
 from validation.solvers.registry import get_solver
-from validation.solvers.translation import tension_note, to_run
+from validation.solvers.translation import to_run
 
 
 def test_a_run_keeps_every_count_second_and_note_of_a_solver_under_its_name(scene: Scene) -> None:
@@ -33,15 +32,6 @@ def test_a_run_keeps_every_count_second_and_note_of_a_solver_under_its_name(scen
     assert run.history is not None and set(run.history.columns) == {"displacement", "contact_pressure"}
     del result.estimate
     assert to_run(scene, result).estimate is None
-
-
-def test_tension_is_reported_at_its_worst_instant() -> None:
-    time = 0.5 * np.arange(1, 6)
-    history = History(time, {"contact_pressure": np.array([1.0, -2.0, 5.0, -7.5e3, -3.0])})
-    assert tension_note(history) == ("the locked contact carries tension: -7500 Pa at t = 2 s",)
-    assert tension_note(History(time, {"contact_pressure": np.array([0.0, 1.0, 2.0, 3.0, 0.0])})) == ()
-    assert tension_note(History(time, {"displacement": -time})) == ()
-    assert tension_note(History(time, {"contact_pressure": np.array([1.0, -2.0, np.nan, 0.0, 0.0])})) == ()
 
 
 @pytest.mark.parametrize("changes", [{"traction": 1.0}, {"gravity": 1.0}, {"eccentricity": 0.1}], ids=str)

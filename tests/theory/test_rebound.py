@@ -8,6 +8,7 @@ import pytest
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.theory import stages
 from validation.theory.rebound import (
+    Motion,
     conserving_steps,
     impact_steps,
     midpoints,
@@ -107,6 +108,14 @@ def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
     assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)
     for e in (0.0, 0.37, 1.0):
         assert rebounds(impact_steps(e, 0.75), midpoints(20)) == pytest.approx(np.full(20, e), abs=1e-12)
+
+
+def test_a_step_of_impulses_moves_by_both_of_its_velocities():
+    """Three quarters of the end's, a quarter of the start's; what lies far away falls on."""
+    none = np.zeros(2)
+    after = impact_steps(0.5, 0.75)(Motion(np.array([0.4, 9.0]), np.array([-1.0, -1.0]), none, none, none))
+    assert after.x == pytest.approx([0.4 + 0.75 * 0.5 - 0.25, 8.0], rel=1e-15)
+    assert after.v == pytest.approx([0.5, -1.0], rel=1e-15)
 
 
 def test_a_dashpots_rebound_depends_on_scheme_and_step():

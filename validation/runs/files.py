@@ -103,6 +103,8 @@ def check_output(path: Path) -> Path:
     InputError
         A directory, a socket or a disk stands there, a link leads to itself, or the directory does not exist.
     """
+    if "\0" in str(path):
+        raise InputError("must not hold a NUL", field="path", value=repr(str(path)))
     target = path if _is_stream(path) else Path(os.path.realpath(path))
     if target.is_symlink() and not target.exists():
         raise InputError("cannot be written: a link that leads to itself", source=path, advice="choose another place")

@@ -92,8 +92,8 @@ def bending_ratio(squares: int, glue: float) -> float:
 
     Example
     -------
-    >>> round(bending_ratio(8, 2.0), 10), round(bending_ratio(4, 1.0), 10)
-    (1.0748753965, 1.125)
+    >>> round(bending_ratio(8, 2.0), 10), round(bending_ratio(2, 1.0), 10)
+    (1.0748753965, 2.25)
     """
     x = np.arange(squares) - (squares - 1) / 2
     neighbours = np.diff(np.eye(squares), axis=0)  # e_{i+1} - e_i

@@ -1,0 +1,64 @@
+"""What the programs of blocks and columns cannot express is refused by name before any is asked; so is absence."""
+
+import re
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from peers import calculix, mujoco, opensees, siconos, yade
+
+from validation.scenes import features
+from validation.scenes.scene import load_scene
+
+REFUSALS: dict[str, list[tuple[str, dict[str, Any], str]]] = tomllib.loads(
+    Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8")
+)
+PROGRAMS = {
+    "siconos": siconos.Siconos,
+    "siconos-default": siconos.AsItComes,
+    "yade": yade.Yade,
+    "mujoco": mujoco.MuJoCo,
+    "mujoco-default": mujoco.AsItComes,
+    "calculix": calculix.CalculiX,
+    "opensees": opensees.OpenSees,
+    "opensees-default": opensees.AsItComes,
+}
+ROWS = [(name, *row) for name in PROGRAMS for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
+
+
+@pytest.fixture
+def _nothing_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("mujoco", "openseespy", "openseespy.opensees"):
+        monkeypatch.setitem(sys.modules, module, None)
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    monkeypatch.setattr(siconos, "PYTHON", "/nowhere/python3")
+
+
+@pytest.mark.usefixtures("_nothing_is_there")
+@pytest.mark.parametrize(("name", "problem", "values", "words"), ROWS)
+def test_what_a_program_cannot_express_is_refused_by_name(
+    name: str, problem: str, values: dict[str, Any], words: str
+) -> None:
+    scene = load_scene(f"field-{problem}").with_values(values)
+    with pytest.raises(NotImplementedError, match=re.escape(words)):
+        PROGRAMS[name]().solve(scene)
+
+
+@pytest.mark.usefixtures("_nothing_is_there")
+@pytest.mark.parametrize("problem", ["locked", "rocking", "column"])
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_that_is_absent_is_named_with_its_recipe(name: str, problem: str) -> None:
+    columns = {} if problem == "column" else {"run.columns": ["rotation"] if problem == "rocking" else ["displacement"]}
+    with pytest.raises(NotImplementedError, match=r"not installed: (pip install|apt-get install|Debian: apt-get)"):
+        PROGRAMS[name]().solve(load_scene(f"field-{problem}").with_values(columns))
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_says_what_it_is_and_handles_features_of_scenes(name: str) -> None:
+    program = PROGRAMS[name]
+    assert set(program().about) == {"program", "version", "recipe", "model", "settings"}
+    assert max(map(len, program().about.values())) <= 400
+    assert set(program.handles) <= {feature.name for feature in features.FEATURES}
