@@ -390,6 +390,8 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError:
         raise InputError("must be UTF-8 text", source=path, value="bytes that are not") from None
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
+        if "\0" in str(path):  # which no file's name holds
+            raise InputError("cannot be read: its name holds a zero byte", source=path) from None
         advice = None
         if comma := DECIMAL_COMMA.search(path.read_text(encoding="utf-8-sig", errors="replace")):
             advice = f"{comma[1]}: a number has a point, and no comma"
