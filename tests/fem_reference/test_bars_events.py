@@ -187,6 +187,13 @@ def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
         assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
 
 
+def test_a_wave_from_a_half_space_like_the_bar_doubles_at_its_end() -> None:
+    """A stiff joint of strength enough lets it pass; the joint's time of rise is 2 / k."""
+    problem = BarsProblem((UNIT,), (slips(1e5, 1e3),), base_impedance=1.0, base=sine(1.0, 0.1))
+    surface = solve(problem, 3.0).point(0, 1.0, [1.5, 2.75]).velocity
+    assert surface == pytest.approx([2 * math.sin(0.2 * math.pi * t) for t in (0.5, 1.75)], abs=1e-3)
+
+
 def test_cut_bars_that_stay_bonded_move_as_one() -> None:
     whole = BarsProblem((bar(-1.0, 2.0),), (opens(10),), gravity=0.05)
     cut = BarsProblem((bar(-1.0, 0.75), bar(-1.0, 1.25)), (opens(10), BONDED), gravity=0.05)
