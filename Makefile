@@ -2,6 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+REPORT := $(VENV)/.report
 READY := $(VENV)/.ready
 DOCS := $(VENV)/.docs
 PEERS := $(VENV)/.peers
@@ -13,13 +14,13 @@ PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 
 .PHONY: report report-all field gallery test test-all gates lint portable docs bench mutants dist clean
 
-report: $(READY)  ## the core study, error against run time, and their PDF, written also when gates fail
+report: $(REPORT)  ## the core study, error against run time, and their PDF, written also when gates fail
 	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
 
-report-all: $(READY)  ## every study and one PDF
+report-all: $(REPORT)  ## every study and one PDF
 	@$(BIN)/dda-validate run all; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
 
-gallery: $(READY)  ## the results as a static site with calculators, in reports/gallery; runs the core study if there are none
+gallery: $(REPORT)  ## the results as a static site with calculators, in reports/gallery; runs the core study if there are none
 	@test -d reports/results/studies || $(BIN)/dda-validate run core
 	@$(BIN)/dda-validate report --site reports/gallery
 
@@ -62,9 +63,13 @@ dist: $(RELEASE)  ## the archives of a release in dist/, built and checked from 
 clean:
 	rm -rf $(VENV) site build dist *.egg-info examples/peers/*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis reports/results reports/field reports/gallery reports/submissions reports/*.pdf
 
-$(READY): pyproject.toml constraints.txt
+$(REPORT): pyproject.toml constraints.txt
 	@$(PYTHON) -c "import ensurepip" 2>/dev/null || { echo "needs the venv module of Python: apt-get install python3-venv"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable '.[report,exact,mesh]' --constraint constraints.txt
+	@touch $@
+
+$(READY): $(REPORT)
 	$(BIN)/python -m pip install --quiet --editable '.[dev]' --constraint constraints.txt
 	@touch $@
 

@@ -46,5 +46,3 @@ class InputError(ValueError):
 
 class PlausibilityWarning(UserWarning):
     """A value of a scene that no rock, soil or concrete has, most often one in another unit."""
-
-

@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from validation.runs import extras
+
 if TYPE_CHECKING:
     from fem_reference.events.block_events import BlockHistory
 
@@ -171,6 +173,7 @@ def frictional_block(
 
 
 def _block(time: ArrayLike, **data: Any) -> BlockAnswer:
+    extras.require("the exact motion of a block", *extras.EXACT)
     from fem_reference.events.block_events import solve
     from fem_reference.events.block_model import BlockProblem
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validation.errors import InputError
+from validation.runs import extras
 from validation.runs.columns import unit_of
 from validation.runs.files import check_ending
 from validation.runs.history import DISPLACEMENT
@@ -66,13 +67,10 @@ class Solution(Run):
         Raises
         ------
         InputError
-            The history has no such column, or the file's ending is another.
+            The history has no such column, the file's ending is another, or matplotlib is not installed.
         ValueError
             The run has no history.
         """
-        from validation.report.figures.response import save_as
-        from validation.report.figures.solution import solution_figure
-
         history = self._finished()
         names = list(history.columns) if columns is None else list(columns)
         for name in names:
@@ -80,6 +78,10 @@ class Solution(Run):
                 raise InputError(f"must be among {', '.join(history.columns)}", field="columns", value=repr(name))
         target = None if path is None else Path(path)
         check_ending(target, "path")
+        extras.require("plot", *extras.FIGURES)
+        from validation.report.figures.response import save_as
+        from validation.report.figures.solution import solution_figure
+
         figure = solution_figure(history, names, self.solver, self.scene.rigid is not None)
         if target is not None:
             save_as(figure, target)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import meshio
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 from skfem import Basis
 from skfem.helpers import sym_grad
 
-from fem_reference.mesh import elasticity
+from fem_reference.mesh import elasticity, files
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import Model
 from fem_reference.problem.problem import Array, Problem
@@ -53,12 +52,13 @@ class FieldWriter:
     Raises
     ------
     ValueError
-        If the file's ending is neither.
+        If the file's ending is neither, or meshio is not installed.
     """
 
     def __init__(self, problem: Problem, model: Model, path: Path, step: float, steps: int) -> None:
         if path.suffix not in SUFFIXES:
             raise ValueError(f"fields: must end in one of {SUFFIXES}, got {str(path)!r}")
+        self._meshio = files.library()
         self._problem = problem
         self._path = path
         self._step = step
@@ -85,9 +85,9 @@ class FieldWriter:
         cells = [("quad" if mesh.t.shape[0] == 4 else "triangle", mesh.t.T)]
         if self._path.suffix == ".vtu":
             point_data, cell_data = self._data(self._frames[-1][1])
-            meshio.write(self._path, meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data))
+            self._meshio.write(self._path, self._meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data))
             return
-        with meshio.xdmf.TimeSeriesWriter(str(self._path), data_format="XML") as writer:
+        with self._meshio.xdmf.TimeSeriesWriter(str(self._path), data_format="XML") as writer:
             writer.write_points_cells(points, cells)
             for instant, D in self._frames:
                 point_data, cell_data = self._data(D)

@@ -5,16 +5,13 @@ Coordinates are relative to the start of the base, so that a block far from the 
 
 from __future__ import annotations
 
-import io
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 
-import meshio
 import numpy as np
 from numpy.typing import NDArray
 from skfem import Mesh, MeshQuad, MeshTri
-from skfem.io.meshio import from_meshio
 
+from fem_reference.mesh.files import read_mesh
 from fem_reference.problem.problem import Array, Problem
 
 
@@ -116,15 +113,7 @@ def from_file(problem: Problem) -> TaggedMesh:
 
 
 def _read(path: str) -> Mesh:
-    messages = io.StringIO()  # meshio prints and exits where no reader of it takes the file
-    try:
-        with redirect_stdout(messages), redirect_stderr(messages):
-            data = meshio.read(path)
-            data.points = data.points[:, :2]
-            mesh = from_meshio(data)
-    except (Exception, SystemExit) as error:  # its readers raise anything at a file that is not whole
-        words = " ".join(messages.getvalue().split()) or f"{type(error).__name__}: {error}"
-        raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {words}") from error
+    mesh = read_mesh(path)
     if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
         raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {type(mesh).__name__} in {path!r}")
     return mesh

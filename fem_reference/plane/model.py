@@ -107,7 +107,8 @@ class PlaneModel:
         x, y = self.basis.doflocs
         component = elasticity.components(self.basis)
         turn = np.where(component == 0, -y, x)
-        return np.column_stack([elasticity.translation(self.basis), turn])[self.free]
+        motions: Array = np.column_stack([elasticity.translation(self.basis), turn])
+        return motions[self.free]
 
     @cached_property
     def rest(self) -> Array:

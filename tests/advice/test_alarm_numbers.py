@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import made_case, made_group, made_row
+from oracles.made_cases import made_row
 
 from validation.advice import budget
-from validation.advice.alarms import RINGING, TENSION, Alarm, alarms, fixed_discount
-from validation.report.appendix import alarms as appendix_alarms
-from validation.report.chapters import budget as chapters_budget
-from validation.report.chapters.text import case_label
+from validation.advice.alarms import RINGING, TENSION, alarms, fixed_discount
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 from validation.theory import spectra
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
-REST = np.full(STEPS, -0.01)
 
 
 def raised(scene: Scene, rows: dict[str, dict[str, Any]], histories: dict[str, History] | None = None) -> Any:
@@ -75,20 +70,6 @@ def test_ringing_falls_to_one_per_cent_in_so_many_steps(root: float, radius: flo
     """0.95^90 = 0.0099 and 0.98^228 = 0.00999."""
     alarm = raised(SCENE, {"dda": {"contact.least_root": root, "contact.spectral_radius": radius}}).get(RINGING)
     assert (None if alarm is None else alarm.sentence) == words
-
-
-def test_alarms_are_told_by_kind_scene_and_number_of_cases() -> None:
-    def group(name: str, *kinds: str) -> Any:
-        own = tuple(Alarm(kind, f"{name}[{i}]", f"it is {name}", {"root": -1.0, "radius": 1.0}).record()
-                    for i, kind in enumerate(kinds))  # fmt: skip
-        return replace(made_group(made_case(SCENE, {}), made_case(SCENE, {}), alarms=own), name=name)
-
-    found = {name: group(name, RINGING, "odd") for name in "ab"}
-    (_, table) = appendix_alarms.alarm_table(found)
-    assert table.rows == (
-        (RINGING, "a (1 of 2), b (1 of 2)", "a: it is a."), ("odd", "a (1 of 2), b (1 of 2)", "a: it is a."),
-    )  # fmt: skip
-    assert appendix_alarms.alarm_table({"a": group("a")}) == []
 
 
 def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:
@@ -186,23 +167,6 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
-
-
-def test_the_caption_of_a_budget_says_what_holds_of_its_settings() -> None:
-    def told(**changes: Any) -> dict[str, Any]:
-        return {"limits": {"wave transit": 1.0}, "floor": 1.0516, "gg": 1.0, "gg_rate": None} | changes
-
-    plain = chapters_budget._caption([told()])
-    assert "DDA's first natural frequency is 1.052 times the bar's;" in plain
-    assert not any(word in plain for word in ("held as a rate", "gg acts per step"))
-    assert "is 1.052 to 1.102 times the bar's" in chapters_budget._caption([told(floor=1.102), told()])
-    assert "The discount is held as a rate." in chapters_budget._caption([told(gg=0.9, gg_rate=30.0)])
-    per_step = chapters_budget._caption([told(gg=0.9, limits={"overdamped below": 1e-5})])
-    assert "gg acts per step" in per_step
-    values = {"time.step": 0.01, "contact.stiffness": 1e10, "fem.elements": 8}
-    scene = load_scene("figures-3-4").with_values(values, label=True)
-    assert case_label(scene.name, scene) == "dt = 0.01 s, p = 10E, n = 8"
-    assert case_label(scene.name, scene, chapters_budget.OVER) == "p = 10E"
 
 
 def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact
@@ -70,32 +69,6 @@ def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
     assert soft.values["own"] == pytest.approx(0.9307, abs=1e-4) and soft.values["high"] < 0.75
     pulls = raised(PAPER.with_values({"contact.band": [0.0, 1e-3]}), tmp_path)[kinds.PULLING]
     assert pulls.values["pull"] == pytest.approx(2e6)  # 2 p f0, a fifth of the load
-
-
-HARD = STIFF | {"time.step": 1e-5}
-LANDED = {"contact.gap": 1e-3, "switches.first_closing": 5e-3}
-
-
-@pytest.mark.parametrize(
-    ("kind", "values", "metrics", "words"),
-    [
-        (kinds.GAINED, {}, {"energy.switching_gain": 0.25}, "have added 25 % to the energy"),
-        (kinds.DRAG, {"time.gg": 0.98}, {"contact.open_share": 0.4}, "40 % of the time: speeds fall with the time "
-         "constant 0.0495 s"),
-        (kinds.PENALTY, HARD, {"contact.peak_force": 6e7}, "6e+07 N, is 4 times that of the exact bar"),
-        (kinds.PULLING, {"contact.band": [0.0, 1e-3]}, {}, "up to 2e+06 N, 20 % of the load"),
-        (kinds.HIDDEN, {"time.step": 2e-3}, {}, "dt = 0.002 s is beyond 0.001897 s"),
-        (kinds.MAY_GAIN, STIFF | AVERAGE, LANDED, "alpha = 0.25, delta = 0.5 with w_c dt = 8.56"),
-        (kinds.MAY_GAIN, STIFF | {"time.alpha": 0.4, "time.allow_unstable": True}, LANDED, "alpha = 0.4, delta = 1"),
-        (kinds.LARGE_STEP, STIFF, LANDED, "w_c dt = 8.56: an unloaded landing leaves the centre of mass 0.48 to"),
-    ],
-)  # fmt: skip
-def test_a_sentence_tells_the_numbers_of_its_run(
-    kind: str, values: dict[str, Any], metrics: dict[str, float], words: str
-) -> None:
-    rows = {"dda": made_row("dda", metrics), "bar-events": made_row("bar-events", {"contact.peak_force": 1.5e7})}
-    told = {alarm.kind: alarm.sentence for alarm in kinds.contact_alarms(PAPER.with_values(values), rows)}
-    assert words in told[kind]
 
 
 @pytest.mark.parametrize("gg", [0.98, 0.5, 0.0])
@@ -179,36 +152,6 @@ def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
     row, _ = execute(Case(fallen.with_values({"contact.stiffness": found.stiffness}), "block-events"), "", "")
     assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.02)
     assert contact.needed(PAPER, 0.0, 0.05, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
-
-
-@pytest.mark.long
-def test_springs_are_raised_until_the_exact_block_stays_above_the_penetration() -> None:
-    tried: list[float] = []
-
-    def probe(p: float) -> float:
-        tried.append(p)
-        return 3e-4 * (tried[0] / p) ** 0.5  # three times too deep at first
-
-    found = contact.needed(PAPER, 1.0, 0.05, 1e-4, probe)
-    assert found.first_guess == tried[0] > 10800 / 8e-8
-    assert found.stiffness == pytest.approx(9 * tried[0]) and found.depth == pytest.approx(1e-4)
-    never = contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: 2e-4)
-    assert never.depth == 2e-4 and never.stiffness > 1e4 * never.first_guess
-    assert contact.needed(PAPER, 1.0, 0.05, 1e-4, lambda p: None).depth is None
-
-
-def test_forces_of_an_impact() -> None:
-    """The second contact is the greatest at p = 100 E, 1.47 times that of a quarter of the mass."""
-    scene = PAPER.with_values(STIFF | {"load.pressure": 0.0, "block.velocity": -2.0, "time.step": 1e-5})
-    row, _ = execute(Case(scene.with_values({"time.steps": 600}), "block-events"), "", "")
-    assert row.metrics["contact.peak_force"] == pytest.approx(landing.impact_force(scene, -2.0), rel=0.02)
-    assert landing.impact_force(scene, -2.0) == pytest.approx(1.471 * landing.quarter_mass_force(scene, 2.0), rel=1e-3)
-    soft = scene.with_values({"contact.stiffness": 1e7})
-    assert landing.impact_force(soft, 1.0) == pytest.approx(2 * landing.quarter_mass_force(soft, 1.0), rel=1e-2)
-    stop = scene.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
-    assert math.isinf(landing.impact_force(stop, 1.0))
-    assert landing.wave_force(scene, -2.0) == pytest.approx(2700 * 608.5806194501846 * 2 * 2)
-    assert scene.block.mass == 10800
 
 
 def test_a_landing_is_not_known_for_every_scene() -> None:

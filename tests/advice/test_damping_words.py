@@ -13,12 +13,8 @@ from conftest import typed
 
 from validation import load_scene, solve
 from validation.advice import advice
-from validation.advice.spectra import ModeDamping, parts, runs, sentence
 
 OPTIONS = ("--set", "time.gg=0.98")
-CASE = load_scene("figures-3-4").with_values(
-    {"time.step": 0.002, "time.steps": 50, "time.gg": 0.98, "fem.elements": 4, "fem.degree": 1}
-)
 
 
 def frequencies() -> np.ndarray:
@@ -57,35 +53,6 @@ def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> 
     assert found["references"]["bar"] == pytest.approx(expected, rel=1e-5)
 
 
-def mode(**changes: Any) -> ModeDamping:
-    values = {"name": "first axial", "frequency": 300.0, "damping": 0.05, "spectral_radius": 0.875, "omega_dt": 0.6,
-              "algorithmic": 0.04, "kinetic": 0.01, "period_elongation": 0.1, "least_root": 0.1}  # fmt: skip
-    return ModeDamping(**(values | changes))
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({}, "is damped at 5 % of critical, 4 % algorithmic and 1 % kinetic"),
-        ({"kinetic": 0.0}, "is damped at 5 % of critical, all of it algorithmic"),
-        ({"algorithmic": 0.0}, "is damped at 5 % of critical, all of it kinetic"),
-        ({"damping": 1.5}, "is overdamped at 150 % of critical, 4 % algorithmic and 1 % kinetic"),
-        ({"least_root": -0.95, "omega_dt": 7.25}, "flips sign every step and keeps 87.5 % of its amplitude per step "
-         "(w dt = 7.25)"),
-        ({"damping": None}, "has no damping ratio (a root is not positive) and keeps 87.5 % of its amplitude per step"),
-        ({"spectral_radius": 1.25}, "grows by a factor of 1.25 per step"),
-        ({"damping": 0.0, "spectral_radius": 1.0}, "is not damped"),
-    ],
-)  # fmt: skip
-def test_a_mode_is_told_in_words_with_its_numbers(changes: dict[str, Any], words: str) -> None:
-    assert runs(mode(**changes)) == words
-    assert parts(mode(algorithmic=None)) == "kinetic and algorithmic"
-    contact = mode(name="contact", least_root=-0.95, omega_dt=7.25)
-    assert sentence(CASE, [mode(**changes), mode(name="mode 2"), contact]) == (
-        f"At dt = 0.002 s the first axial mode (300 rad/s) {words}; the contact mode {runs(contact)}."
-    )
-
-
 # ---- advise -------------------------------------------------------------------------------------------------------
 
 
@@ -107,24 +74,3 @@ def solution(**changes: Any) -> advice.Solution:
               "settling_from": "envelope", "alpha": 0.6, "delta": 1.1, "step": 0.003, "gg": 0.97, "gg_rate": 10.15,
               "settings": {"time.step": 0.003}, "contact": None}  # fmt: skip
     return advice.Solution(**(values | changes))
-
-
-def test_the_advice_names_the_solution_whose_contact_flips() -> None:
-    flipping = mode(name="contact", least_root=-0.95, omega_dt=7.25)
-    found = [solution(), solution(value=0.009, contact=flipping, settling_steps=9, settling_seconds=0.081)]
-    text = advice._sentence(CASE, "dt", 0.05, found, (None, None, None, None))
-    assert text.startswith("Set dt = 0.003 s or dt = 0.009 s: ") and "in each case" in text
-    assert "within 40 steps (0.12 s) or 9 steps (0.081 s), but the contact mode flips sign" in text
-    assert "per step (w dt = 7.25) at dt = 0.009 s; gg" in text
-
-
-@pytest.mark.parametrize(
-    ("target", "words"),
-    [
-        (0.5, "at 50 % of critical: the largest attainable value is 30 %, at dt = 0.02 s."),
-        (0.01, "at 1 % of critical: the smallest attainable value is 2 %, at dt = 0.001 s."),
-        (0.1, "at 10 % of critical: it lies in a gap between attainable values."),
-    ],
-)
-def test_what_is_out_of_reach_is_told_with_where_the_end_is(target: float, words: str) -> None:
-    assert advice._sentence(CASE, "dt", target, [], (0.02, 0.001, 0.3, 0.02)).endswith(words)

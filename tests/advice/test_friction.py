@@ -59,17 +59,6 @@ def test_a_run_without_states_is_told_what_to_do() -> None:
     assert "smaller time.step" in alarm.sentence
 
 
-def test_a_creep_is_told_in_millimetres_a_second_and_beside_g_over_w() -> None:
-    scene = STANDS.with_values({"time.step": 2e-4, "time.steps": 5000})
-    found = advice.sliding(scene)
-    assert found is not None
-    row = Row("", "", scene.name, "dda", Outcome.COMPLETED, {"contact.slip_rate": 0.25 * found.creep})
-    told = {alarm.kind: alarm for alarm in advice.friction_alarms(scene, {"dda": row})}[advice.CREEPS]
-    assert f"slips on by {250 * found.creep:.3g} mm/s, 0.25 times g / w_n" in told.sentence
-    assert "the block is stable, 20 deg below 30 deg" in told.sentence
-    assert told.values == {"rate": 0.25 * found.creep, "scale": found.creep}
-
-
 def test_a_slope_to_the_other_side_is_the_same_slope(tmp_path: Path) -> None:
     here = advice.sliding(SLIDES)
     there = SLIDES.with_values({"load.slope": -SLIDES.load.slope})

@@ -21,10 +21,6 @@ CH = {"time.scheme": "chung-hulbert", "time.rho_inf": 0.0, "time.start": "consis
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.01, "contact.law": "unilateral"})
 
 
-def block(**changes: Any) -> Scene:
-    return BLOCK.with_values({key.replace("__", "."): value for key, value in changes.items()})
-
-
 def measured_rise(scene: Scene) -> float:
     prepared = get_solver("dda").prepare(scene)
     prepared.keeps_contact_record = True

@@ -134,7 +134,7 @@ def test_overflow_is_a_numerical_failure_that_leaves_no_history_behind(scene_fil
 def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(scene_file: Path, tmp_path: Path) -> None:
     done = typed("run", scene_file, "--set", "contact.stiffness=1e308", "--results", tmp_path / "results")
     assert "not examined: small: alarms and damping budget: FloatingPointError: divide by zero" in done.stdout
-    assert not done.stderr
+    assert "RuntimeWarning" not in done.stderr
 
 
 @pytest.mark.long

@@ -8,10 +8,6 @@ import pytest
 from conftest import thinned
 from oracles.unilateral_checks import DT, apart, random_model, size
 
-import dda.contact.dashpot as dashpot
-import dda.contact.impact as impact
-import dda.one_block.impact_step as impact_step
-import dda.one_block.unilateral_step as step
 from dda import (
     BaseMotion,
     Block,
@@ -26,7 +22,6 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.contact.kernel import FOUND
 from dda.one_block.unilateral_form import unilateral_form
 from dda.rotation.solution import RollingModel
 from validation.theory import stages
@@ -267,26 +262,6 @@ def test_two_corners_keep_newtons_law_each(seed):
 # ---- passes ----------------------------------------------------------------------------------------------------------
 
 
-def check_passes():
-    """A pass leaves 1/(1 + r C) of the penetration, and the history is that of the rigid stop."""
-    scheme = Scheme(0.5, 1.0, 1.0, 1e-3, "consistent")
-    rigid = solve_unilateral(replace(PAPER, contact=Unilateral(math.inf)), scheme, 50)
-    for ratio, passes in ((0.1, 495.42), (1.0, 55.66), (10.0, 10.54), (100.0, 4.72)):
-        springs = replace(PAPER, contact=Unilateral(ratio * 1e9))
-        result = solve_unilateral(springs, scheme, 50, options=UnilateralOptions("augmented", energies=True))
-        assert result.outcome == "completed"
-        assert np.min(result.gap_m) >= -1e-9
-        assert apart(result.columns["displacement"], rigid.columns["displacement"]) < 3e-7
-        assert result.step_passes.mean() == pytest.approx(passes, abs=0.1)
-        assert np.all(result.step_solves >= result.step_passes) and np.all(result.step_passes >= 1)
-        total, lost = balance(result)
-        assert np.max(np.abs(total + lost)) < 1e-12 * size(result) and np.all(result.energies["springs"] == 0)
-
-
-def test_passes_lead_to_the_rigid_stop():
-    check_passes()
-
-
 @pytest.mark.parametrize(("dt", "rC"), [(1e-2, 9.75042), (2e-3, 0.715198), (1e-3, 0.271164), (1e-4, 0.00368836)])
 def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     """Passes of a first step: ln(|w_f| / tolerance) / ln(1 + r C) with r = 2p of both corners."""
@@ -325,38 +300,31 @@ RETURNED = {"rule": "impact", "restitution": 0.5}
 GOOD = average(1e-3)
 
 
-@pytest.mark.parametrize(
-    ("law", "field"),
-    [
-        ({"stiffness": math.inf, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "cohesion": 1.0, "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "rules": "lagged", "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "band": (1e-6, 0.0), "damping": 1.0}, "damping"),
-        ({"stiffness": 1e9, "damping": -1.0}, "damping"),
-        ({"stiffness": 1e9, "damping": math.nan}, "damping"),
-    ],
-)
-def test_laws_that_take_no_dashpot(law, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        Unilateral(**law)
+RUBBING = {"stiffness": 1e9, "shear": 1e9, "friction": 0.3, "damping": 1.0}
 
 
 @pytest.mark.parametrize(
-    ("options", "field"),
+    ("kind", "given", "field"),
     [
-        ({"rule": "impact"}, "restitution"),
-        ({"rule": "newmark", "restitution": 0.5}, "restitution"),
-        ({"rule": "impact", "restitution": 1.1}, "restitution"),
-        ({"rule": "impact", "restitution": math.nan}, "restitution"),
-        ({"rule": "augmented", "penetration": 0.0}, "penetration"),
-        ({"rule": "augmented", "pass_limit": 0}, "pass_limit"),
-        ({"rule": "uzawa"}, "rule"),
+        (Unilateral, {"stiffness": math.inf, "damping": 1.0}, "damping"),
+        (Unilateral, RUBBING, "damping"),
+        (Unilateral, RUBBING | {"cohesion": 1.0}, "damping"),
+        (Unilateral, RUBBING | {"rules": "lagged"}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "band": (1e-6, 0.0), "damping": 1.0}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "damping": -1.0}, "damping"),
+        (Unilateral, {"stiffness": 1e9, "damping": math.nan}, "damping"),
+        (UnilateralOptions, {"rule": "impact"}, "restitution"),
+        (UnilateralOptions, {"rule": "newmark", "restitution": 0.5}, "restitution"),
+        (UnilateralOptions, {"rule": "impact", "restitution": 1.1}, "restitution"),
+        (UnilateralOptions, {"rule": "impact", "restitution": math.nan}, "restitution"),
+        (UnilateralOptions, {"rule": "augmented", "penetration": 0.0}, "penetration"),
+        (UnilateralOptions, {"rule": "augmented", "pass_limit": 0}, "pass_limit"),
+        (UnilateralOptions, {"rule": "uzawa"}, "rule"),
     ],
 )
-def test_options_out_of_range(options, field):
+def test_laws_and_options_out_of_range(kind, given, field):
     with pytest.raises(ValueError, match=f"^{field}: "):
-        UnilateralOptions(**options)
+        kind(**given)
 
 
 @pytest.mark.parametrize(
@@ -398,95 +366,3 @@ def test_sub_blocks_and_blocks_that_turn_refuse_dashpots_and_these_rules():
 
 
 # ---- slips -----------------------------------------------------------------------------------------------------------
-
-
-def dashpot_map():
-    scheme, table = SCHEMES["average"]
-    check_rebounds(scheme, spring_steps(table, 1.3, zeta=0.3), 1.3, zeta=0.3)
-
-
-def unclipped(monkeypatch):
-    """Contact pulls until the gap is zero."""
-    monkeypatch.setattr(dashpot, "would_pull", lambda after, i: False)
-
-
-def old_velocity(monkeypatch):
-    """The dashpot's force is that of the velocity before the step."""
-
-    def set_retarded(block, stage, length):
-        length.numbers[3] = 0.0
-        step.copy_matrix(length.C, length.retarded.C)
-
-    def retard(block, stage, length, before, base_moves):
-        room = block.room
-        n, c = len(block.K), len(room.slide)
-        for i in range(c):
-            rate = step.dot(block.inverse_mass[n - c + i], room.P, n) / length.numbers[2]
-            room.retarded.slide[i] = block.law.damping * block.law.compliance * rate
-            room.retarded.gap[i] = room.free.gap[i] + room.retarded.slide[i]
-
-    monkeypatch.setattr(step, "set_retarded", set_retarded)
-    monkeypatch.setattr(step, "retard", retard)
-
-
-def six_passes(monkeypatch):
-    real = step.augmented
-
-    def faulty(law, penetration, limit, *given):
-        _, solves, passes = real(law, penetration, 6, *given)
-        return FOUND, solves, passes
-
-    monkeypatch.setattr(step, "augmented", faulty)
-
-
-def no_forecast(monkeypatch):
-    """A contact is closed by its gap before the step."""
-    monkeypatch.setattr(impact, "is_near", lambda gap, rate, length: gap <= 0)
-
-
-def predicted_rate(monkeypatch):
-    """The restitution counts from the rate at the end of the step without impulses."""
-    real = impact_step.impulses
-
-    def faulty(law, e, length, before, rate, free, *given):
-        for i in range(len(rate)):
-            free.gap[i] *= 1 + e
-        return real(law, 0.0, length, before, rate, free, *given)
-
-    monkeypatch.setattr(impact_step, "impulses", faulty)
-
-
-def half_a_force(monkeypatch):
-    """Half of Kane's contact force enters the velocity."""
-    real = step.velocity_corrector
-    monkeypatch.setattr(step, "accept", half_accept(step.accept, real))
-
-
-def half_accept(real, _):
-    def accept(block, shear_law, stage, length, before, after):
-        real(block, shear_law, stage, length, before, after)
-        if block.rule != 0:
-            h2 = length.numbers[2] ** 2
-            for i in range(len(block.K)):
-                pressed = sum(row[i] * N for row, N in zip(block.B, block.room.forces, strict=True))
-                after.P[i] -= h2 * block.multiplicity * pressed / 2 / length.numbers[0]
-
-    return accept
-
-
-@pytest.mark.parametrize(
-    ("slip", "check"),
-    [
-        (unclipped, dashpot_map),
-        (old_velocity, dashpot_map),
-        (six_passes, check_passes),
-        (no_forecast, check_penetration),
-        (predicted_rate, check_restitution_under_load),
-        (half_a_force, test_kanes_force_enters_the_velocity_whole),
-    ],
-)
-def test_each_slip_is_noticed(monkeypatch, slip, check):
-    check()
-    slip(monkeypatch)
-    with pytest.raises(AssertionError):
-        check()

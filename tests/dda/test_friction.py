@@ -1,20 +1,14 @@
 """One block with friction: histories known by their events, invariants at random data, sliding as an identity."""
 
-from copy import deepcopy
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from conftest import thinned
-from faults.steps import stepping_by
-from oracles import frictional_mp
 from oracles.frictional import KNOWN, cases, coulomb, held, rubbing_model, shaken, sliding, square
-from oracles.unilateral_checks import DT, apart, mirrored, size, sums
-from oracles.unilateral_mp import lost
+from oracles.unilateral_checks import DT, apart, size, sums
 
-import dda.one_block.unilateral as unilateral
-import dda.one_block.unilateral_step as step
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact import kernel
 from dda.contact.kernel import FOUND, NONE
@@ -23,8 +17,6 @@ from dda.stepping.driver import OUTCOMES
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 ENERGIES = UnilateralOptions(energies=True)
-SINGLY = UnilateralOptions(energies=True, full=True)
-FIELDS = ("normal", "shear", "gap", "slide", "slip", "velocity", "horizontal_velocity")
 AVERAGE, CONSTANT = (0.25, 0.5, "consistent"), (0.5, 1.0, "zero")
 
 
@@ -36,29 +28,8 @@ def error(name, steps, time, scheme=AVERAGE):
     return np.linalg.norm([result.columns[name][-1] for name in PLACE] - np.array(known.at[time]))
 
 
-def order(name, steps, time, scheme=AVERAGE):
-    """Return the order that is fitted to five numbers of steps, each twice the one before."""
-    errors = [error(name, steps * 2**k, time, scheme) for k in range(5)]
-    return -np.polyfit(range(5), np.log2(errors), 1)[0]
-
-
 # Where a switch falls within its step changes an error by a few times; over 2^4 the fitted order moves by a third.
 SECOND, FIRST = (1.7, 2.3), (0.7, 1.3)
-ORDERS = [
-    pytest.param("rubbing", 250, 0.01, AVERAGE, SECOND, marks=pytest.mark.long),
-    pytest.param("rubbing", 750, 0.03, AVERAGE, SECOND, marks=pytest.mark.long),
-    pytest.param("pulled", 750, 0.03, AVERAGE, SECOND, marks=pytest.mark.long),
-    pytest.param("incline", 750, 0.05, AVERAGE, SECOND, marks=pytest.mark.long),
-    pytest.param("glued", 3000, 0.03, AVERAGE, FIRST, marks=pytest.mark.long),
-    pytest.param("rubbing", 750, 0.03, CONSTANT, FIRST, marks=pytest.mark.long),
-    pytest.param("incline", 1500, 0.05, CONSTANT, FIRST, marks=pytest.mark.long),
-    pytest.param("rubbing", 750, 0.03, (0.25, 0.5, "zero"), FIRST, marks=pytest.mark.long),
-]
-
-
-@pytest.mark.parametrize(("name", "steps", "time", "scheme", "band"), ORDERS)
-def test_a_history_tends_to_that_of_its_events(name, steps, time, scheme, band):
-    assert band[0] < order(name, steps, time, scheme) < band[1]
 
 
 @pytest.mark.parametrize(("name", "time"), thinned([("rubbing", 0.01), ("pulled", 0.03), ("incline", 0.05)], 2))
@@ -71,12 +42,6 @@ def test_a_history_is_near_that_of_its_events(name, time):
 @pytest.mark.parametrize(("seed", "scheme"), thinned(cases(250), 50))
 def test_law_momentum_and_energy_hold_to_rounding(seed, scheme):
     held(seed, scheme, 150)
-
-
-def test_the_random_scenes_stick_slip_and_open():
-    states = [np.unique(held(seed, scheme, 100).states) for seed, scheme in cases(6)]
-    assert np.mean([{0, 1} < set(found) for found in states]) > 0.5
-    assert {-2, 2} <= set(np.concatenate(states))
 
 
 @pytest.mark.parametrize("seeds", thinned([range(4), range(4, 80)], 2))
@@ -101,26 +66,6 @@ def test_implicit_contact_rubs_by_the_law_and_gains_nothing(seed):
     assert np.ptp(total + lost_energy) < 1e-12 * size(result)
 
 
-@pytest.mark.parametrize("seed", thinned(range(30), 15))
-def test_a_mirrored_block_moves_as_its_image(seed):
-    model, scheme = rubbing_model(seed), Scheme(0.5, 1.0, 0.99, DT)
-    one, other = solve_unilateral(model, scheme, 150, PLACE), solve_unilateral(mirrored(model), scheme, 150, PLACE)
-    for name, sign in (("normal", 1), ("shear", -1), ("gap", 1), ("slide", -1)):
-        assert apart(getattr(one, name), sign * getattr(other, name)[::-1]) < 1e-9, name
-    assert np.array_equal(one.closed, other.closed[::-1])
-
-
-@pytest.mark.parametrize("seed", thinned(range(30), 15))
-def test_twice_the_loads_move_it_twice_as_far(seed):
-    model, scheme = rubbing_model(seed), Scheme(0.25, 0.5, 0.99, DT, "consistent")
-    law = replace(model.contact, gap=2 * model.contact.gap, cohesion=2 * model.contact.cohesion)
-    given = {name: 2 * getattr(model, name) for name in ("pressure", "traction", "gravity", "velocity")}
-    twice = solve_unilateral(replace(model, contact=law, **given), scheme, 150)
-    once = solve_unilateral(model, scheme, 150)
-    assert np.array_equal(twice.states, once.states)  # a factor of two is exact
-    assert all(np.array_equal(getattr(twice, name), 2 * getattr(once, name)) for name in FIELDS)
-
-
 SLIDING = [(0.5, 1.0, 1.0, "zero"), (0.25, 0.5, 0.98, "consistent"), (0.7, 0.8, 0.9, "zero")]
 
 
@@ -133,19 +78,6 @@ def test_sliding_is_the_free_recursion_to_rounding(p, scheme):
         model = UnilateralModel(square(0.2), replace(law, gap=gap), gravity=9.81, slope=35.0, motion=motion)
         own, must, parts = sliding(model, Scheme(alpha, delta, gg, dt, start), 120)
         assert len(own) > 12 and np.max(np.abs(own - must)) < 1e-12 * np.max(parts)
-
-
-def test_a_rising_base_is_a_falling_block():
-    for seed in (0, 2):
-        model, scheme = rubbing_model(seed), Scheme(0.5, 1.0, 1.0, DT)
-        model = replace(model, velocity=0.0, contact=replace(model.contact, gap=1e-4))
-        rising = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.0, 0.7]])
-        moved = solve_unilateral(replace(model, motion=rising), scheme, 120, PLACE)
-        thrown = solve_unilateral(replace(model, velocity=-0.7), scheme, 120, PLACE)
-        for name in ("normal", "shear", "gap", "slide"):
-            assert apart(getattr(moved, name), getattr(thrown, name)) < 1e-9, name
-        way = moved.columns["displacement"] - 0.7 * moved.time
-        assert np.max(np.abs(way - thrown.columns["displacement"])) < 1e-12
 
 
 @pytest.mark.parametrize("seed", thinned(range(4), 2))
@@ -194,24 +126,6 @@ def test_a_polygon_on_any_edge_slides_as_it_does_on_a_level_one(turned):
         assert apart(getattr(other, name), getattr(one, name)) < 1e-8, name
 
 
-DIGITS = [(1e9, 1e-2, 1.0), (1e17, 1e-4, 0.99), (1e24, 1e-2, 0.99), (1e24, 1e-4, 1.0)]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("p", "dt", "gg"), DIGITS)
-def test_digits_are_kept_from_soft_to_rigid(p, dt, gg):
-    model = KNOWN["incline"].model
-    law = replace(model.contact, stiffness=p, shear=0.4 * p, friction=0.3, cohesion=100.0)
-    model = replace(model, contact=law, pressure=1e5, traction=3e4, eccentricity=0.1)
-    scheme = Scheme(0.5, 1.0, gg, dt)
-    result, exact = solve_unilateral(model, scheme, 20, PLACE), frictional_mp.history(model, scheme, 20)
-    for i, name in enumerate(PLACE):
-        assert lost(result.columns[name], [row[0][i] for row in exact]) < 1e-13
-    for i in (0, 1):  # a corner that closes, or takes up shear, meets rounding as an error of a small difference
-        assert lost(result.normal[i], [row[1][i] for row in exact]) < 1e-11
-        assert lost(result.shear[i], [row[2][i] for row in exact]) < 1e-11
-
-
 def test_without_limit_friction_is_glue_and_without_angle_it_is_none():
     model = KNOWN["glued"].model
     scheme = Scheme(0.5, 1.0, 1.0, 2e-4)
@@ -233,31 +147,6 @@ def test_cohesion_holds_what_friction_does_not():
         law = replace(model.contact, friction=0.1, cohesion=share * driving)
         ways.append(solve_unilateral(replace(model, contact=law), Scheme(0.5, 1.0, 1.0, 1e-3), 500).slip[-1])
     assert ways[0] > 0.2 and ways[1] == 0
-
-
-def test_a_cut_step_begins_from_what_was_saved_and_ends_the_same():
-    saved, ratios = [], []
-
-    def stubborn(block, shear_law, state, after, base, part):
-        ratios.append(part.ratio)
-        outcome, solves = step.advance(block, shear_law, state, after, base, part)
-        if len(ratios) in (40, 41, 42):
-            saved.append(deepcopy(state))
-        if len(ratios) == 42:
-            first = deepcopy(after)
-            step.advance(block, shear_law, state, after, base, part)
-            assert first == after
-        return (NONE if len(ratios) in (40, 41) else outcome), solves
-
-    model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 0.98, 2e-4)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unilateral, "make_steps", stepping_by(stubborn))
-        cut = solve_unilateral(model, scheme, 60, options=SINGLY)
-    assert ratios[39:42] == [1.0, 0.3, 0.09] and cut.step_cuts[39] == 2 and saved[0] == saved[1] == saved[2]
-    total, lost = sums(cut)
-    assert np.max(np.abs(total + lost)) < 1e-12 * size(cut)
-    whole = solve_unilateral(model, scheme, 60, options=SINGLY)
-    assert np.array_equal(cut.normal[:, :39], whole.normal[:, :39])
 
 
 def test_a_step_without_one_state_is_named(monkeypatch):

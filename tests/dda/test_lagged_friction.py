@@ -41,13 +41,6 @@ def test_a_history_of_a_program_is_met_step_by_step():
     )
 
 
-@pytest.mark.parametrize(
-    ("dt", "program"), [(1e-2, 1.0e-3), (2e-3, 2.2e-3), pytest.param(1e-3, 5.2e-3, marks=pytest.mark.long)]
-)
-def test_a_stable_block_creeps_the_more_the_smaller_the_step(dt, program):
-    assert creep(stable(30), dt)[-1] == pytest.approx(program, rel=0.02)  # given to two digits
-
-
 def test_the_lag_takes_one_solve_where_nothing_opens_and_leaves_the_law():
     model = stable(22)
     result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 2e-3), 100, options=UnilateralOptions(energies=True))

@@ -5,7 +5,7 @@ import pytest
 from mpmath import mp
 from oracles import mp_reference
 
-from dda import Block, Contact, Material, TwoBlockModel, contact_stiffness, spring_vectors
+from dda import Block, Contact, Material, TwoBlockModel
 
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
 MATERIALS = [Material(2100.0, 3e9, mu, h) for mu in (-0.6, 0.0, 0.37) for h in ("plane stress", "plane strain")]
@@ -15,21 +15,6 @@ def rotated(width, height, angle, origin):
     """Return the corners of a rectangle turned about its first corner."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[0, 0], [width, 0], [width, height], [0, height]]) @ [[c, s], [-s, c]] + origin
-
-
-@pytest.mark.parametrize(("a", "p"), [(1.7, 2e9), (0.3, 5e3)])
-def test_springs_of_a_square_are_eq_24_to_27(a, p):
-    block = Block.rectangle(a, a, MATERIALS[0])
-    normal, shear = spring_vectors(block, 0)
-    h, q = a / 2, a / 4
-    np.testing.assert_allclose(normal, [[0, 1, -h, 0, -h, -q], [0, 1, h, 0, -h, q]], rtol=1e-15)
-    np.testing.assert_allclose(shear, [[1, 0, h, -h, 0, -q], [1, 0, h, h, 0, -q]], rtol=1e-15)
-    K = contact_stiffness(block, Contact(p), 0)
-    expected = np.diag([2, 2, a**2, a**2 / 2, a**2 / 2, a**2 / 4])
-    for i, j, value in ((0, 2, a), (0, 5, -h), (1, 4, -a)):
-        expected[i, j] = expected[j, i] = value
-    # (3,6) of the sum cancels exactly: p a^2/4 from the normal springs, -p a^2/4 from the shear ones
-    np.testing.assert_allclose(K, p * expected, rtol=1e-14, atol=1e-15 * p)
 
 
 @pytest.mark.parametrize("material", MATERIALS)

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from faults import seams
 
 from dda import COLUMNS, Block, Contact, Material, Scheme, TwoBlockModel, solve
 
@@ -32,25 +31,6 @@ def test_steps_are_the_printed_ones(alpha, delta, start):
         assert result.columns["strain_x"][n] == pytest.approx(D[3], rel=1e-11)
         assert result.columns["strain_y"][n] == pytest.approx(D[4], rel=1e-11)
     assert result.time == pytest.approx(dt * np.arange(1, 13))
-
-
-@pytest.mark.parametrize(
-    ("piece", "fault"),
-    [
-        (seams.DDA_PREDICTOR, lambda s, P, f: P + (1 - 2 * s.alpha) / 2 * f),
-        (seams.DDA_VELOCITY, lambda s, P, f, f1: P + (1 - s.delta) * f + s.delta * f1),
-        (seams.DDA_ACCELERATION, lambda F, k, D: F - k * D * 999 / 1000),
-        (seams.DDA_START, lambda s, F: F),
-        (seams.DDA_EFFECTIVE, lambda s, M, k: M + s.alpha * k * 1001 / 1000),
-    ],
-    ids=lambda value: getattr(value, "name", ""),
-)
-def test_every_named_piece_of_the_step_is_used(monkeypatch, piece, fault):
-    scheme = Scheme(0.3025, 0.6, 0.95, 1e-3)
-    right = solve(model(), scheme, 50).columns["displacement"]
-    piece.put(monkeypatch, fault)
-    wrong = solve(model(), scheme, 50).columns["displacement"]
-    assert np.max(np.abs(right - wrong)) > 1e-5 * np.max(np.abs(right))
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.3])

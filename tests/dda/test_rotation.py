@@ -202,21 +202,6 @@ def test_the_parts_of_a_cut_step_are_a_whole_step():
     assert np.max(np.abs(cut.gap - whole.gap)) < 1e-5
 
 
-@pytest.mark.long
-def test_a_polygon_rolls_over_its_corners():
-    n = 12
-    angles = 2 * np.pi * (np.arange(n) - (n // 4) - 0.5) / n
-    block = Block(np.column_stack([np.cos(angles), np.sin(angles)]), Material(2700.0, 1e11, 0.0))
-    model = RollingModel(block, Unilateral(1e10, 1e10), Load(gravity=9.81, slope=30.0), base=0, top=6)
-    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 2e-3), 650, COLUMNS)
-    r, x = result.columns["rotation"][-1], result.columns["horizontal_displacement"][-1]
-    assert r < -1.5
-    side = 2 * math.sin(math.pi / n)
-    assert x == pytest.approx(-r * n * side / (2 * math.pi), abs=side)  # a side of the way for each corner
-    touched = np.flatnonzero(np.any(result.closed, axis=1))
-    assert len(touched) >= 4
-
-
 def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
     scheme, rocking = Scheme(*CONSTANT, 1.0, 5e-3), replace(HEAVY, tilt=0.1)
     sound = solve_rolling(rocking, scheme, 80)
@@ -280,17 +265,6 @@ def test_while_all_corners_slip_the_centroid_moves_freely_along_the_slope(alpha,
     assert found.slip[-1] == pytest.approx(np.max(found.slide[list(found.base_contacts)]), rel=0.05)
     lost = np.diff(found.energies["friction"])
     assert np.min(lost) >= 0 and np.max(lost) > 0
-
-
-def test_friction_of_small_motion_is_the_limit_of_small_turns():
-    law, scheme = Unilateral(1e9, 4e8, friction=0.3), Scheme(*CONSTANT, 1.0, 1e-3)
-    block = Block.rectangle(2.0, 2.0, MATERIAL)
-    small = solve_small(UnilateralModel(block, law, gravity=9.81, slope=15.0), scheme, 80, COLUMNS)
-    turned = solve_rolling(RollingModel(block, law, Load(gravity=9.81, slope=15.0)), scheme, 80, COLUMNS)
-    for name in COLUMNS:
-        assert np.max(np.abs(turned.columns[name] - small.columns[name])) < 2e-3 * np.ptp(small.columns[name]), name
-    assert np.max(np.abs(small.columns["rotation"])) < 1e-3
-    assert np.max(np.abs(turned.normal[0] - small.normal_force_m)) < 2e-3 * np.max(turned.normal)
 
 
 def test_a_rigid_stop_takes_a_block_that_turns():

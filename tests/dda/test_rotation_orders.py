@@ -62,14 +62,6 @@ def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(glued, alpha, 
     assert abs(math.log2(found[0] / found[1]) - order) < 0.1  # the next order at these steps
 
 
-@pytest.mark.long
-def test_average_acceleration_needs_the_directions_of_the_end_of_a_step(glued):
-    """With those of the chord, which delta = 1 needs, its error falls with the first power of the step in the end."""
-    with patch.object(step, step.late_share.__name__, lambda delta: 0.0):
-        found = errors("glued", 0.25, 0.5, glued, (240, 480))
-    assert math.log2(found[0] / found[1]) < 1.4
-
-
 def test_delta_one_needs_the_directions_of_the_chord():
     """With those of the end of the step a block gains energy as it falls over its corner."""
     scheme = Scheme(0.5, 1.0, 1.0, 4e-3)

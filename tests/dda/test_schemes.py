@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from faults.steps import notices
 from oracles.scheme_cases import CASES, every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
 
@@ -29,8 +28,7 @@ from dda import (
     textbook_applicable,
 )
 from dda.one_block.modes import _operator
-from dda.scheme import named, newmark, roots
-from dda.scheme.stages import Stage, Table
+from dda.scheme import roots
 
 # name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1
 TABLE = (
@@ -261,55 +259,3 @@ def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along
 
 
 # ---- seeded faults ---------------------------------------------------------------------------------------------------
-
-
-def with_table(monkeypatch, name, change):
-    """Put other numbers in the place of a scheme's own."""
-    sound = named.TABLES[name]
-    monkeypatch.setitem(named.TABLES, name, lambda rho_inf=0.0, split=None: change(sound, rho_inf, split))
-
-
-def exchanged(sound, rho_inf, split):
-    stage = sound(rho_inf).stages[0]
-    return Table((stage._replace(am=stage.af, af=stage.am),))
-
-
-def q_of_another_split(sound, rho_inf, split):
-    """Gamma = 1/2 with the q of 2 - sqrt 2."""
-    other = sound(rho_inf)
-    q0, q1, q2 = other.stages[1].g_0, other.stages[1].g_g, other.stages[1].delta
-    first = sound(rho_inf, 0.5).stages[0]
-    e_0, e_g = q2 * q0 - 0.0625, q2 * q1 - 0.0625
-    return Table((first, Stage(q2 * q2, q2, e_0, q0, q0 + q2 - 0.5, q1, e_g, q1)))
-
-
-def test_seeded_faults_of_the_numbers_are_noticed(monkeypatch):
-    name, values, first, contact = TABLE[0]
-    with monkeypatch.context() as patch:  # 1: am and af exchanged
-        with_table(patch, "chung-hulbert", exchanged)
-        assert notices(lambda: test_damping_ratios_of_the_two_block_model(name, values, first, contact))
-        assert roots.damping_ratio(scheme_of(name, values, 1.0), 0.5) == pytest.approx(0.0533, abs=1e-4)
-    assert roots.damping_ratio(scheme_of(name, values, 1.0), 0.5) == pytest.approx(8.1505e-5, rel=1e-4)
-    with monkeypatch.context() as patch:  # 4: gamma of another q
-        with_table(patch, "composite", q_of_another_split)
-        assert roots.damping_ratio(scheme_of("composite", {}, 1.0), 0.5) < 0
-        assert notices(lambda: test_stability_limit("composite", {}))
-
-
-def test_gg_in_both_stages_is_noticed(monkeypatch):
-    scheme = scheme_of("composite", {}, 1.0, 0.98)
-    assert roots.damping_ratio(scheme, 0.5) == pytest.approx(0.020850, abs=1e-6)
-    assert roots.damping_ratio(replace(scheme, gg=0.98**2), 0.5) == pytest.approx(0.041252, abs=2e-4)
-    check_history("composite", {"split": 0.5})
-    sound = newmark.predictor
-
-    def twice(stage, P, f):
-        return sound(stage._replace(gg=stage.gg**2) if stage.end == 1 else stage, P, f)
-
-    monkeypatch.setattr(newmark, "predictor", twice)
-    assert notices(lambda: check_history("composite", {"split": 0.5}))
-
-
-def test_a_leapfrog_without_its_first_half_step_is_noticed(monkeypatch):
-    monkeypatch.setattr(newmark, "late_momentum", lambda scheme, P, f: P)
-    assert notices(lambda: check_history("leapfrog", {}))

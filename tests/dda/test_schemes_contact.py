@@ -7,9 +7,9 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from faults.steps import notices, stepping_by
 from oracles.scheme_cases import every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
+from oracles.unilateral_checks import stepping_by
 
 from dda import (
     COLUMNS,
@@ -17,7 +17,6 @@ from dda import (
     Block,
     Load,
     Material,
-    Scheme,
     Unilateral,
     UnilateralModel,
     UnilateralOptions,
@@ -88,40 +87,6 @@ def test_a_load_that_rises_and_a_base_that_moves_close_the_balance(name, values)
         assert np.max(np.abs(balance)) < 1e-11 * np.max(np.abs(result.energies["load"]))
         assert np.min(np.diff(result.energies["friction"])) >= -1e-9
     assert result.slip[-1] > 0 and result.energies["friction"][-1] > 0
-
-
-def force_at_end(monkeypatch):
-    """Take the contact force at the end of a generalised-alpha step in place of the average."""
-    lengths = unilateral_step.set_length
-    forces = unilateral_step.contact_forces
-    begin = unilateral_step.begin_step
-
-    def set_length(block, shear_law, stage, ratio, length):
-        lengths(block, shear_law, stage, ratio, length)
-        length.C[:] /= 1 - stage.numbers.af
-
-    def contact_forces(block, shear_law, normal, shear):
-        forces(block, shear_law, normal, shear)
-        for i in range(len(block.room.forces)):
-            block.room.forces[i] /= 1 - block.last.numbers.af
-
-    def begin_step(block, state, length):
-        begin(block, state, length)
-        h2 = length.numbers[2] ** 2 * block.multiplicity / (1 - block.last.numbers.af)
-        for j in range(len(state.contacts.normal)):
-            for i in range(len(block.K)):
-                block.room.force_0[i] -= h2 * block.B[j][i] * state.contacts.normal[j]
-
-    monkeypatch.setattr(unilateral_step, "set_length", set_length)
-    monkeypatch.setattr(unilateral_step, "contact_forces", contact_forces)
-    monkeypatch.setattr(unilateral_step, "begin_step", begin_step)
-
-
-def test_contact_forces_at_the_end_in_place_of_the_average_are_noticed(monkeypatch):
-    case = ("chung-hulbert", {"rho_inf": 0.5})
-    with monkeypatch.context() as context:
-        force_at_end(context)
-        assert notices(lambda: test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(*case, 1.0))
 
 
 @every_scheme
@@ -233,24 +198,6 @@ def test_a_column_that_slips_closes_the_balance(name, values):
     assert np.ptp(total(energies)) < 1e-12 * np.max(np.abs(energies["load"]))
 
 
-def test_a_welded_foot_and_a_half_space_take_every_implicit_scheme():
-    """Locked by tiny motion, a column on contacts is the bonded one."""
-    steps = 150
-    for name, values in (("chung-hulbert", {"rho_inf": 0.2}), ("composite", {"rho_inf": 0.3})):
-        scheme = scheme_of(name, values, 2e-4, 0.99)
-        t = scheme.instants(steps)
-        drive = Drive(1e-4 * (1 - np.cos(90 * t)), 9e-3 * np.sin(90 * t), 0.81 * np.cos(90 * t), 0 * t)
-        layers = [Layer(1.0, 2000.0, 5e7, 0.0, 2), Layer(0.7, 2500.0, 8e7)]
-        for impedance in (None, 2e5):
-            bonded = Column(layers, "shear", joints=[Spring(1.0, 2e8)], impedance=impedance)
-            sticking = replace(bonded, joints=[Spring(1.0, 2e8, strength=1e12)], law="frictional")
-            expected = solve_column(bonded, scheme, drive, ("displacement", "displacement_1"), [1.0])
-            result = solve_contact_column(sticking, scheme, drive, ("displacement", "displacement_1"), [1.0])
-            for column, truth in expected.columns.items():
-                difference = np.max(np.abs(result.columns[column] - truth))
-                assert difference < 1e-10 * np.max(np.abs(truth)), (name, impedance, column)
-
-
 @pytest.mark.parametrize("impedance", [None, 3e5])
 @few_schemes
 def test_a_bonded_column_steps_to_its_response(name, values, impedance):
@@ -307,23 +254,3 @@ def test_a_block_that_hardly_turns_is_the_one_of_small_motion(name, values):
     for part in ("kinetic", "strain", "kinetic damping", "switching"):
         difference = np.max(np.abs(small.energies[part] - turning.energies[part]))
         assert difference < 1e-6 * np.max(small.energies["kinetic"]), part
-
-
-def velocity_of_rocking(scheme, steps):
-    """Return the velocity at the end of a block that rocks."""
-    model = RollingModel(block(0.2, 3.0), Unilateral(2e8, 1e8), Load(2e5, 0.0, 6e4, 9.81))
-    return solve_rolling(model, scheme, steps).motion.V[-1, :3]
-
-
-@functools.cache
-def true_velocity_of_rocking():
-    """Return the velocity to which all schemes converge."""
-    return velocity_of_rocking(Scheme(0.25, 0.5, 1.0, 0.02 / 1600, "consistent"), 1600)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("name", "values"), [("hht", {"rho_inf": 0.65}), ("composite", {"rho_inf": 0.45})])
-def test_a_block_that_rocks_converges_at_second_order(name, values):
-    truth = true_velocity_of_rocking()
-    errors = [np.linalg.norm(velocity_of_rocking(scheme_of(name, values, 0.02 / n), n) - truth) for n in (80, 160)]
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)

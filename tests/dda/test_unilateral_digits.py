@@ -112,38 +112,3 @@ def test_the_order_in_dt_through_switches(problem, scheme, order, scatter):
     fitted, errors = orders(problem, scheme, COUNTS, 0.03)
     assert abs(fitted - order) < scatter, errors
     assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)
-
-
-def late_errors(problem, phase, counts):
-    """Return the error of ex some time after the first opening, which lies at a given phase of its step."""
-    opening, errors = [s.time for s in exact_motion(problem, 0.02).switches if s.corner == "M"][1], []
-    motion = exact_motion(problem, 1.2 * opening)
-    for n in counts:
-        scheme = Scheme(0.25, 0.5, 1.0, opening / (n + phase), "consistent")
-        result = solve_unilateral(model_of(problem), scheme, round(1.19 * n), ["strain_x"])
-        error = result.columns["strain_x"] - motion.at(result.time).displacement[3]
-        errors.append(np.interp(1.15 * opening, result.time, error))
-    return np.array(errors)
-
-
-@pytest.mark.long
-def test_glued_shear_lowers_average_acceleration_to_first_order():
-    """Opening takes a finite shear force away, at the end of its step instead of within: an error of first order.
-
-    It is odd about the middle of the step: opening early and late differ by it, and in the middle it vanishes.
-    """
-    glued, counts = replace(PAPER, poisson=0.3, shear_stiffness=1e9), [400, 800, 1600, 3200]
-    early, middle, late = (late_errors(glued, phase, counts) for phase in (0.25, 0.5, 0.75))
-    assert -np.polyfit(np.log(counts), np.log(np.abs(late - early)), 1)[0] == pytest.approx(1.0, abs=0.1)
-    assert -np.polyfit(np.log(counts), np.log(np.abs(middle)), 1)[0] == pytest.approx(2.0, abs=0.1)
-    assert abs(late - early)[-1] > abs(middle[-1])
-
-
-@pytest.mark.parametrize(("p", "expected"), [(1e9, 21), (1e10, 83)])
-@pytest.mark.long
-def test_switches_in_two_tenths_of_a_second_are_those_of_the_exact_block_as_dt_shrinks(p, expected):
-    """At 10 microseconds (1/2, 1) sees all 21 switches at p = 1E and loses a part of the 108 at p = 10E."""
-    result = solve_unilateral(model_of(replace(PAPER, stiffness=p)), Scheme(0.5, 1.0, 1.0, 1e-5), 20000)
-    closed = np.concatenate([[False], result.closed_m])
-    assert np.count_nonzero(np.diff(closed)) == expected
-    assert np.count_nonzero(result.step_solves == 2) in (expected, expected + 1)  # the start counts as closed

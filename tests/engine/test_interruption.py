@@ -136,7 +136,7 @@ def test_a_directory_that_cannot_be_written_is_one_line(scene_file, tmp_path):
     (tmp_path / "file").write_text("not a directory")
     refused("run", scene_file, "--results", tmp_path / "file" / "r")
     (tmp_path / "r" / "rows.jsonl").mkdir(parents=True)
-    assert "cannot be read" in refused("run", scene_file, "--results", tmp_path / "r")
+    assert "must be a regular file" in refused("run", scene_file, "--results", tmp_path / "r")
 
 
 def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp_path, monkeypatch):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -18,7 +17,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import half_sine, recorded, ricker, sine, triangle
+from fem_reference.events.column_drive import half_sine, ricker, triangle
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -143,48 +142,6 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
-
-
-RANDOM = range(6)
-
-
-def random_problem(seed: int) -> tuple[BarsProblem, float]:
-    """Three bars whose travel times are multiples of a sixteenth, under all that may act; and the end."""
-    random = np.random.default_rng(seed)
-    bars = []
-    for _ in range(3):
-        impedance, travel = random.uniform(0.5, 2.0), random.integers(4, 24) / 16
-        speed = random.uniform(0.5, 2.0)
-        bars.append(Bar(travel * speed, impedance / speed, impedance * speed, float(random.normal())))
-    if seed % 2:
-        joints = tuple(slips(random.uniform(2, 20), random.uniform(0.1, 0.6)) for _ in range(3))
-        return BarsProblem(tuple(bars), joints, base_impedance=1.5, base=sine(1.0, 0.7), top=half_sine(0.5, 0.8)), 5.0
-    joints = tuple(opens(random.uniform(2, 20), random.choice([0.0, 0.05])) for _ in range(3))
-    return BarsProblem(
-        tuple(bars), joints, 0.3, base=sine(0.4, 0.5, quarters=1), top=recorded([0.25, 1.0, 3.0], [0, 1, 0.5])
-    ), 5.0
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seed", thinned(RANDOM[:4], 4))
-def test_momentum_changes_by_the_impulses_of_the_forces(seed: int) -> None:
-    problem, end = random_problem(seed)
-    motion = solve(problem, end)
-    arrivals = {float(piece.start) for joint in motion.joints if joint for piece in joint.pieces}
-    edges = np.unique([*arrivals, end])
-    points, weights = np.polynomial.legendre.leggauss(12)
-    impulses = np.zeros(4)
-    for low, high in itertools.pairwise(edges):
-        inside = low + (high - low) * (1 + points) / 2
-        state = motion.at(inside.clip(0, end))
-        for number in range(3):
-            impulses[number] += (high - low) / 2 * weights @ state.force[number]
-    assert [motion.impulse(i, [end])[0] for i in range(3)] == pytest.approx(impulses[:3], abs=1e-10)
-    impulses[3] = 2 * 0.5 * 0.8 / math.pi if seed % 2 else 0.75 * 0.5 + 2.0 * 0.75
-    velocity = motion.at([end]).mean_velocity[:, 0]
-    for i, one in enumerate(problem.bars):
-        change = one.mass * (velocity[i] - one.velocity + problem.gravity * end)
-        assert change == pytest.approx(impulses[i] - impulses[i + 1], abs=1e-10)
 
 
 def test_a_wave_from_a_half_space_like_the_bar_doubles_at_its_end() -> None:

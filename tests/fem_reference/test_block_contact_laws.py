@@ -4,13 +4,12 @@ import itertools
 import math
 from dataclasses import replace
 
-import mpmath as mp
 import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb
 from oracles.block_oracle import random_problem
-from oracles.contact_laws import IntegratedDashpots, PhasedBlock
+from oracles.contact_laws import IntegratedDashpots
 
 from fem_reference.events import block_march
 from fem_reference.events.block_events import BlockHistory, BlockMotion, solve
@@ -29,17 +28,6 @@ def dashpot(problem: BlockProblem, zeta: float, mass_share: float = 1.0) -> Bloc
     """With the dashpot of each corner for c = 2 zeta sqrt(k m) of both, k = 2p and m a share of the mass."""
     m = mass_share * problem.density * problem.width * problem.height
     return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
-
-
-def centred(seed: int) -> BlockProblem:
-    """A random block whose corners do the same."""
-    return replace(random_problem(seed), eccentricity=0.0, traction=0.0, shear_stiffness=0.0)
-
-
-def falling(seed: int, e: float) -> BlockProblem:
-    """A random block that falls on rigid contact."""
-    problem = centred(seed)
-    return replace(problem, stiffness=math.inf, restitution=e, velocity=-1.0, gap=1e-3 * problem.height)
 
 
 def transit(problem: BlockProblem) -> float:
@@ -95,56 +83,6 @@ def test_a_rigid_block_rebounds_with_the_closed_form(zeta: float) -> None:
 # -- an independent program
 
 
-@pytest.mark.parametrize(("seed", "zeta"), thinned([(30, 0.3), (31, 0.03), (34, 2.5)], 3))
-def test_dashpots_agree_with_phases_in_mpmath(seed: int, zeta: float) -> None:
-    problem = dashpot(centred(seed), zeta)
-    end = 12 * transit(problem)
-    motion = solve(problem, end)
-    with mp.workdps(25):
-        answer = PhasedBlock(problem).run(end)
-    assert [kind for _, kind in at_events(motion)] == [kind for _, kind in answer.events]
-    assert [time for time, _ in at_events(motion)] == pytest.approx([time for time, _ in answer.events], rel=1e-12)
-    history = motion.at([end])
-    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-11)
-    assert history.velocity[1, 0] == pytest.approx(answer.velocity, rel=1e-10)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("seed", "e"), thinned([(30, 0.0), (33, 1.0), (32, 0.0), (31, 1.0)], 4))
-def test_impacts_agree_with_phases_in_mpmath(seed: int, e: float) -> None:
-    problem = falling(seed, e)
-    end = 8 * transit(problem)
-    motion = solve(problem, end)
-    with mp.workdps(25):
-        answer = PhasedBlock(problem).run(end)
-    impacts = [time for time, kind in answer.events if kind == "impact"]
-    assert impacts
-    assert [impact.time for impact in motion.impacts] == pytest.approx(impacts, rel=1e-11)
-    impulses = [impact.impulse for impact in motion.impacts]
-    assert impulses == pytest.approx(answer.impulses, rel=1e-9)
-    history = motion.at([end])
-    assert history.displacement[1, 0] == pytest.approx(answer.displacement, rel=1e-9)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("seed", "e"), thinned([(42, 0.15), (40, 0.4), (43, 0.8)], 3))
-def test_cascades_accumulate_where_those_of_mpmath_do(seed: int, e: float) -> None:
-    """The independent program follows ten impacts more; their series goes on as e^k up to the square of a flight."""
-    problem = falling(seed, e)
-    motion = solve(problem, 8 * transit(problem))
-    first = motion.cascades[0]
-    listed = [impact.time for impact in motion.impacts if impact.time <= first.start]
-    with mp.workdps(25):
-        answer = PhasedBlock(problem, grid=40).run(first.time, most=len(listed) + 10)
-    times = [time for time, _ in answer.events]
-    assert times[: len(listed)] == pytest.approx(listed, rel=1e-12)
-    assert len(times) == len(listed) + 10
-    flight = times[-1] - times[-2]
-    rest = flight * e / (1 - e)
-    assert first.time > times[-1]
-    assert first.time == pytest.approx(times[-1] + rest, abs=3 * rest**2 / transit(problem) + 1e-13 * first.time)
-
-
 @pytest.mark.parametrize(("seed", "zeta"), thinned([(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)], 2))
 def test_rocking_on_dashpots_agrees_with_an_integration(seed: int, zeta: float) -> None:
     problem = dashpot(replace(random_problem(seed), shear_stiffness=0.0), zeta)
@@ -191,26 +129,6 @@ def test_impacts_balance_momentum_and_energy(e: float, shear: float) -> None:
         begin = motion.at([motion.cascades[0].time])
         assert np.abs(begin.shear_force).max() < 1e-12 * np.abs(history.shear_force).max()
         assert history.released[-1] > 0
-
-
-@pytest.mark.long
-def test_more_digits_lie_within_the_balls() -> None:
-    cases = [dashpot(replace(PAPER, stiffness=1e10), 0.02), *(replace(RIGID, restitution=e) for e in (0.0, 0.4, 1.0))]
-    for problem in cases:
-        motion = solve(problem, 0.03)
-        finer = solve(problem, 0.03, digits=90)
-        with precision(bits_of(110)):
-            for kind in ("switches", "impacts", "cascades"):
-                events = getattr(motion, kind)
-                assert len(events) == len(getattr(finer, kind))
-                for one, other in zip(events, getattr(finer, kind), strict=True):
-                    apart = abs(arb(one.midpoint) - arb(other.midpoint))
-                    assert apart <= arb(one.radius + other.radius) + abs(arb(one.midpoint)) * arb("1e-39")
-        t = np.linspace(0, 0.03, 200)
-        one, more = motion.at(t), finer.at(t)
-        radius = one.displacement_radius + more.displacement_radius
-        assert np.all(np.abs(one.displacement - more.displacement) <= radius)
-        assert one.displacement_radius.max() < 1e-12 * np.abs(one.displacement).max()
 
 
 @pytest.mark.parametrize("velocity", [-5.46, -5.6, -5.76])

@@ -25,7 +25,6 @@ from fem_reference.column.contacts import (
 )
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
-from fem_reference.events import bars_events, bars_model, column_drive
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -45,10 +44,6 @@ def still(steps: int, **parts: np.ndarray) -> Excitation:
     return Excitation(**(rest | parts))
 
 
-def half_sine(size: float, duration: float, t: np.ndarray) -> np.ndarray:
-    return np.where(t < duration, size * np.sin(np.pi * t / duration), 0.0)
-
-
 DROPPED = ContactColumn(
     ground((1.0, 2500.0, 1e9), (1.0, 2500.0, 1e9)),
     "unilateral",
@@ -58,72 +53,6 @@ DROPPED = ContactColumn(
 )
 SIX = ground(*[(1.0, 2500.0, 1e9)] * 6)
 SPALL = ContactColumn(SIX, "unilateral", tuple(ColumnContact(float(j), 1e10) for j in range(6)), (0.0,) * 6)
-CRADLE = ContactColumn(
-    ground(*[(1.0, 1.0, 1.0)] * 4),
-    "unilateral",
-    tuple(ColumnContact(float(j), 5.0) for j in (1, 2, 3)),
-    (1.0, 0.0, 0.0, 0.0),
-    unsupported=True,
-)
-TWO_BARS = ContactColumn(
-    ground((1.0, 1.0, 1.0), (1.0, 1.0, 1.0)),
-    "unilateral",
-    (ColumnContact(0.0, 10.0), ColumnContact(1.0, 10.0, 0.05)),
-    (-1.0, -1.0),
-    gravity=0.05,
-)
-
-
-def run_means(stepper: ContactStepper, state: ColumnState) -> np.ndarray:
-    """Mean velocity of each run of elements."""
-    momentum = stepper.M @ state.V
-    mass = stepper.M @ np.ones_like(state.V)
-    runs = [slice(run.first, run.first + run.size) for run in stepper.mesh.parts]
-    return np.array([momentum[run].sum() / mass[run].sum() for run in runs])
-
-
-def error_of_bars(column: ContactColumn, numbers: tuple[float, float], count: int) -> float:
-    """Error of the bars' velocities on a mesh of so many elements a bar and half their travel time as the step."""
-    strata = column.ground.strata
-    z = math.sqrt(strata[0].density * strata[0].young)
-    travel = strata[0].density / z
-    end = {CRADLE: 6.0, TWO_BARS: 8.0, SPALL: 0.04}[column]
-    dt = travel / count / 2
-    steps = round(end / dt)
-    drive, top = still(steps), column_drive.still
-    if column is SPALL:
-        drive = still(steps, pressure=half_sine(2e6, 0.004, dt * np.arange(steps + 1)))
-        top = column_drive.half_sine(2e6, 0.004)
-    bars = tuple(
-        bars_model.Bar(one.thickness, one.density, one.young, velocity)
-        for one, velocity in zip(strata, column.velocities, strict=True)
-    )
-    joints = [bars_model.BarJoint("unilateral", one.stiffness, one.gap) for one in column.contacts]
-    foot = [None] if column.unsupported else []
-    problem = bars_model.BarsProblem(bars, (*foot, *joints), column.gravity, top=top)
-    exact = bars_events.solve(problem, steps * dt).at([steps * dt]).mean_velocity[:, 0]
-    stepper = ContactStepper(column, [count] * len(strata), 1, scheme(numbers, dt))
-    *_, state = stepper.march(drive)
-    return float(np.abs(run_means(stepper, state) - exact).max() / np.abs(exact).max())
-
-
-@pytest.mark.parametrize(
-    ("column", "numbers", "counts", "order", "band"),
-    thinned(
-        [
-            (CRADLE, AVERAGE, (8, 32), 1.4, 2e-3),
-            (TWO_BARS, CONSTANT, (16, 64), 0.7, 4e-2),
-            (SPALL, AVERAGE, (4, 16), 1.2, 4e-3),
-        ],
-        4,
-    ),
-    ids=lambda value: "",
-)
-def test_finer_elements_tend_to_the_exact_bars(
-    column: ContactColumn, numbers: tuple[float, float], counts: tuple[int, int], order: float, band: float
-) -> None:
-    coarse, fine = (error_of_bars(column, numbers, count) for count in counts)
-    assert fine < band and math.log(coarse / fine, counts[1] / counts[0]) > order
 
 
 def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
@@ -239,6 +168,24 @@ def test_a_welded_foot_is_held_by_the_base_motion() -> None:
     assert resting.columns["contact_pressure"] == pytest.approx(np.full(50, weight), rel=1e-9)
     assert resting.columns["force_1"] == pytest.approx(np.full(50, 9.81 * 4800), rel=1e-9)
     assert resting.mean_velocity == pytest.approx(np.zeros(50), abs=1e-12) and not resting.columns["gap_1"].any()
+
+
+def test_a_column_at_rest_has_closed_its_gaps() -> None:
+    """Its lower block by gap, weight over spring, and its own shortening."""
+    resting = replace(DROPPED, velocities=(0.0, 0.0), settled=True)
+    found = solve_contacts(resting, [3, 3], 2, scheme(AVERAGE, 1e-4), still(9), ["displacement_1", "force_1"], [1.0])
+    weight = 9.81 * 2500
+    moved = -(0.01 + 2 * weight / 2e9 + 1.5 * weight / 1e9)
+    assert found.columns["displacement_1"] == pytest.approx(np.full(9, moved), rel=1e-9)
+    assert found.columns["force_1"] == pytest.approx(np.full(9, weight), rel=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1.0, -1.0])
+def test_a_thrown_column_slips_at_its_strength(speed: float) -> None:
+    contact = (ColumnContact(0.0, 1e9, strength=1e4),)
+    column = ContactColumn(ground((1.0, 2500.0, 1e9), motion="shear"), "frictional", contact, (speed,))
+    found = solve_contacts(column, [2], 1, scheme(CONSTANT, 1e-4), still(5), ["force_1"], [0.0])
+    assert np.abs(found.columns["force_1"]) == pytest.approx(np.full(5, 1e4), rel=1e-12)
 
 
 @pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])

@@ -1,7 +1,6 @@
 """The exact motion of columns whose contacts open or slip: known histories, an independent integration, identities."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from decimal import Decimal
 
@@ -13,9 +12,9 @@ from oracles.column_motions import COLUMNS, RIGID, KnownColumn, blocks, half_uni
 from oracles.column_oracle import integrated, random_column
 
 from fem_reference.events import column_drive as drives
-from fem_reference.events import column_events, column_flow, column_march
+from fem_reference.events import column_events, column_flow
 from fem_reference.events.column_events import ColumnMotion, solve
-from fem_reference.events.column_model import BASE, ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
+from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import precision
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
@@ -271,93 +270,3 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
 
 
 # ---- seeded faults ---------------------------------------------------------------------------------------------------
-
-Fault = Callable[[ColumnModel], None]
-
-
-def weight_on_the_foot_only(model: ColumnModel) -> None:
-    for i, (foot, top) in enumerate(model.faces):
-        block = model.problem.blocks[i]
-        half = block.density * block.height * model.problem.gravity / 2
-        model.weights[foot] -= half
-        model.weights[top] += half
-
-
-def mass_coupling_with_the_wrong_sign(model: ColumnModel) -> None:
-    model.factors = [factor if factor is None else -factor for factor in model.factors]
-
-
-def a_joint_that_forgets_its_lower_neighbour(model: ColumnModel) -> None:
-    model.contacts[-1] = replace(model.contacts[-1], below=BASE)
-
-
-def a_soft_joint_taken_for_a_stiffer_one(model: ColumnModel) -> None:
-    model.contacts[-1] = replace(model.contacts[-1], stiffness=model.contacts[-1].stiffness * 1.001)
-
-
-def a_half_space_that_gives_its_wave_once(model: ColumnModel) -> None:
-    assert model.impedance is not None
-    model.impedance = model.impedance / 2
-
-
-def a_strength_of_half_a_block_more(model: ColumnModel) -> None:
-    contact = model.contacts[0]
-    assert contact.strength is not None
-    more = contact.strength * 1.1
-    model.contacts[0] = replace(contact, strength=more, reach=more / contact.stiffness)
-
-
-MODEL_FAULTS: list[tuple[str, Fault]] = [
-    ("A1", weight_on_the_foot_only),
-    ("A1", mass_coupling_with_the_wrong_sign),
-    ("A2", a_joint_that_forgets_its_lower_neighbour),
-    ("A8", a_soft_joint_taken_for_a_stiffer_one),
-    ("S1", a_half_space_that_gives_its_wave_once),
-    ("S1", a_strength_of_half_a_block_more),
-]
-
-
-def is_bitten(name: str) -> bool:
-    known = COLUMNS[name]
-    try:
-        motion = solve(known.problem, known.end, limit=500)
-    except ArithmeticError:
-        return True
-    return misprinted(known, motion) != []
-
-
-@pytest.mark.parametrize(("name", "fault"), thinned(MODEL_FAULTS, 3), ids=lambda part: getattr(part, "__name__", part))
-def test_a_seeded_fault_of_the_model_is_bitten(name: str, fault: Fault, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(problem: ColumnProblem) -> ColumnModel:
-        model = ColumnModel(problem)
-        fault(model)
-        return model
-
-    monkeypatch.setattr(column_events, "ColumnModel", broken)
-    assert is_bitten(name)
-
-
-def test_the_sign_of_slip_turned_round_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(column_march, "SLIPS", -column_flow.SLIPS)
-    assert is_bitten("S3")
-
-
-def test_a_base_that_moves_a_step_late_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    sound = drives.Sine.series
-
-    def late(self: drives.Sine, start: arb, length: float, count: int) -> list[arb]:
-        return sound(self, start - arb(1e-6), length, count)
-
-    monkeypatch.setattr(drives.Sine, "series", late)
-    assert is_bitten("S3")
-
-
-def test_a_start_at_zero_that_is_not_deflated_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    sound = column_march.Watch
-
-    def undeflated(contact: int, rate: bool, sign: int, offset: arb | None, lead: int | None) -> column_flow.Watch:
-        return sound(contact, rate, sign, offset, 0)
-
-    monkeypatch.setattr(column_march, "Watch", undeflated)
-    monkeypatch.setattr(column_events, "MOST_DIGITS", 60)
-    assert is_bitten("A5")

@@ -1,16 +1,12 @@
 """How many digits `fem` and `bar` keep with stiff springs and extreme steps, against sixty-digit arithmetic."""
 
-from collections.abc import Callable
 from itertools import product
 from typing import Any
 
 import pytest
 from conftest import thinned
-from faults import seams
-from faults.fault import times
 from oracles.matrices_in_balls import lost
 
-from fem_reference.scheme.newmark import State, Stepper, predictor, velocity
 from validation import load_scene
 from validation.scenes.scene import Scene
 
@@ -49,41 +45,3 @@ def test_nine_digits_are_kept(solver: str, values: dict[str, Any], step: float, 
 def test_a_block_whose_modes_are_all_infinitely_fast_for_the_step_is_stepped() -> None:
     """Its stiffness is 1 to rounding, or a little more, in the reduced elements' own measure."""
     assert lost(extreme({"block.density": 1e-6}, 1e3), "fem") <= LIMIT
-
-
-class AccelerationFirst(Stepper):
-    """S A1 = F - K D*, then D1 = D* + alpha dt^2 A1: loses everything from a consistent start at stiff p."""
-
-    def advance(self, state: State, loads: Any = None) -> State:
-        s = self.scheme
-        ahead = predictor(state, s)
-        A = self.solve((self.F if loads is None else loads[-1]) - self.K @ ahead)
-        return State(ahead + s.alpha * s.step**2 * A, velocity(state, A, s), A)
-
-
-def begun(sound: Callable[..., Any]) -> Callable[..., Any]:
-    """Let the bar be displaced and pressed by 4e-9 of the static values from the beginning."""
-
-    def faulty(*arguments: Any) -> Any:
-        history, estimate = sound(*arguments)
-        return history + 4e-9, estimate
-
-    return faulty
-
-
-@pytest.mark.parametrize(
-    ("solver", "seam", "fault"),
-    [
-        ("fem", seams.FEM_STEPPER, lambda sound: AccelerationFirst),
-        ("fem", seams.FEM_BOUNDED, times(1 + 2e-9)),
-        ("bar", seams.BAR_SHARES, times(1 + 2e-9)),
-        ("bar", seams.BAR_SUM, begun),
-    ],
-)
-def test_a_fault_of_two_in_a_thousand_millions_is_seen(
-    solver: str, seam: seams.Seam, fault: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stiff = extreme({"contact.stiffness": 1e21}, scheme=SCHEMES[1])
-    assert lost(stiff, solver) <= LIMIT
-    seam.wrap(monkeypatch, fault)
-    assert lost(stiff, solver) > LIMIT

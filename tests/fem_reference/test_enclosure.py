@@ -249,45 +249,6 @@ def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: b
     assert np.all(one.displacement_radius >= np.finfo(float).eps / 2 * np.abs(one.displacement))  # floats round it
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(80, 88)], 5))
-def test_motions_that_start_within_a_ball_stay_within_the_balls(seed: int, moved: bool) -> None:
-    """The velocity at the start in a ball of 1e-30: both of its ends switch within the balls, which are not wide."""
-    problem = slipping_problem(seed, moved)
-    end = 6 * problem.height * (problem.density / problem.young) ** 0.5
-    with precision(bits_of(60)):
-        marches = []
-        for offset, radius in (("0", "1e-30"), ("1e-30", "0"), ("-1e-30", "0")):
-            march = block_march.March(BlockModel(problem), Course(problem.base), problem.gap, end, 10_000)
-            march.run(arb(problem.velocity) + arb(offset) + ball(arb(radius)))
-            marches.append(march)
-        whole, *ends = marches
-        assert whole.switches
-        for march in ends:
-            for switch, other in zip(whole.switches, march.switches, strict=True):
-                assert (switch.corner, switch.kind) == (other.corner, other.kind)
-                apart = abs(arb(switch.midpoint) - arb(other.midpoint))
-                assert apart < arb(switch.radius) * (1 + arb("1e-6"))
-            away = np.array([float(abs(x)) for x in (march.z - whole.z).entries()])
-            assert np.all(away <= whole.spread.hull() * (1 + 1e-6))
-            assert away.max() > 1e-3 * whole.spread.hull().max()
-
-
-@pytest.mark.parametrize("seed", [80, 82])
-def test_the_radius_of_a_displacement_holds_what_the_start_may_be_off(seed: int) -> None:
-    problem = slipping_problem(seed)
-    end = 4 * problem.height * (problem.density / problem.young) ** 0.5
-    histories = []
-    for offset, radius in (("0", "1e-12"), ("1e-12", "0")):
-        with precision(bits_of(20)):
-            march = block_march.March(BlockModel(problem), Course(None), problem.gap, end, 100)
-            march.run(arb(problem.velocity) + arb(offset) + ball(arb(radius)))
-        motion = block_events.BlockMotion(problem, end, 20, (False, False), (), (), tuple(march.nodes), march.flows)
-        histories.append(motion.at(np.linspace(0.1, 1.0, 40) * end))
-    away = np.abs(histories[1].displacement - histories[0].displacement)
-    assert np.all(away <= histories[0].displacement_radius)
-    assert away.max() > 100 * np.finfo(float).eps * np.abs(histories[0].displacement).max()
-
-
 def test_corners_that_switch_in_one_ball_are_named() -> None:
     centred = solve(PAPER, 0.05)
     assert len(centred.simultaneous) == len(centred.switches) / 2 > 3

@@ -105,26 +105,18 @@ def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, f
         assert (speed[-1] == 0) == (expected == 0)
 
 
-@pytest.mark.parametrize("rule", ["newmark", "implicit"])
-def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one(rule):
+def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one():
     still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))
     problem = replace(incline(10.0, 98.1, foundation="nodes", p=1e8, shear=3e7), motion=still)
-    contact = replace(RUBBING, friction=Friction(60.0, 1e6), rule=rule)
+    contact = replace(RUBBING, friction=Friction(60.0, 1e6))
     names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-    scheme = replace(AVERAGE if rule == "implicit" else CONSTANT, step=1e-3)
+    scheme = replace(CONSTANT, step=1e-3)
     steps = 20
     run, locked = (
         solve_unilateral(problem, scheme, steps, contact).columns,
         solve(problem, scheme, steps, names).columns,
     )
     assert run["open_share"].max() == run["largest_slide"].max() == 0.0
-    if rule == "implicit":  # another scheme: the same motion in the limit only
-        run = {name: run[name] for name in names}
-        fine = solve_unilateral(problem, replace(scheme, step=1e-4), 10 * steps, contact).columns
-        both = run["displacement"], fine["displacement"][9::10]
-        far = [np.abs(values - locked["displacement"]).max() for values in both]
-        assert far[1] < far[0] < 0.2 * np.abs(locked["displacement"]).max()
-        return
     for name in names:
         scale = np.abs(locked["contact_pressure" if name == "contact_pressure" else "displacement"]).max()
         # twenty solutions, each with the rounding of a matrix of condition 1e4

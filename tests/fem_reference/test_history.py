@@ -48,14 +48,6 @@ def test_no_saving_where_none_is_exact(change):
     assert solve(make(**change, poisson=0.3), CONSTANT, 1).notes == ("stepped: few steps",)
 
 
-@pytest.mark.parametrize(("p", "dt"), [(1e9, 1e-3), (1e10, 2e-3), (1e11, 2e-3), (1e9, 1e-2)])
-@pytest.mark.parametrize(("gg", "start"), [(1.0, "zero"), (0.93, "consistent")])
-def test_fine_mesh_is_the_bar(p, dt, gg, start):
-    scheme = Scheme(0.5, 1.0, gg, dt, start)
-    problem = make(((0, 0), (1.7, 0), (1.7, 2), (0, 2)), p=p, elements=32)
-    assert errors(solve(problem, scheme, 200), Bar.of(problem).solve(scheme, 200)) <= 1e-6
-
-
 @pytest.mark.parametrize(("degree", "order"), thinned([(1, 2.0), (2, 4.0)], 2))
 @pytest.mark.parametrize("full", [False, True])
 def test_order_in_the_element_size(degree, order, full):

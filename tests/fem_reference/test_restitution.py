@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from fem_reference.events.restitution import ContactScheme, branches, statistics
 from fem_reference.events.restitution import restitution as of_one_phase
 
 DDA = ContactScheme(0.5, 1.0)
 AVERAGE = ContactScheme(0.25, 0.5)
-THETA = np.linspace(0.0, 1.0, 101)
 
 
 def restitution(scheme: ContactScheme, omega: float, theta: np.ndarray) -> np.ndarray:
@@ -35,31 +33,6 @@ def test_the_table_of_rigid_contact(
     assert [found.mean, found.low, found.high, found.mean_square] == pytest.approx(
         [mean, low, high, square], abs=digits
     )
-
-
-def damped_rebound(scheme: ContactScheme, omega: float) -> float:
-    """Restitution of many steps in contact, e = exp(-pi xi / sqrt(1 - xi^2)), Omega << 1.
-
-    xi = (1 - gg) / (2 Omega) + (delta - 1/2) Omega / 2 is the damping ratio of the scheme in contact; 0 beyond xi = 1.
-    """
-    xi = (1 - scheme.gg) / (2 * omega) + (scheme.delta - 0.5) * omega / 2
-    return math.exp(-math.pi * xi / math.sqrt(1 - xi * xi)) if xi < 1 else 0.0
-
-
-def test_the_closed_forms_of_rigid_contact() -> None:
-    assert restitution(DDA, math.inf, THETA) == pytest.approx(np.abs(2 * THETA - 1), abs=1e-15)
-    assert restitution(AVERAGE, math.inf, THETA) == pytest.approx(
-        np.where(THETA < 1 / 3, 3 - 8 * THETA, 4 * THETA - 1), abs=1e-14
-    )
-
-
-@pytest.mark.parametrize("omega", thinned([0.03, 0.003, 0.1, 0.3], 2))
-def test_soft_contact_is_a_damped_half_wave(omega: float) -> None:
-    # within 1 % to 5 % of the speed of impact; the averages are far nearer
-    for gg, band in ((1.0, 0.01), (0.95, 0.05)):
-        for scheme in (ContactScheme(0.5, 1.0, gg), ContactScheme(0.25, 0.5, gg)):
-            assert statistics(scheme, omega).mean == pytest.approx(damped_rebound(scheme, omega), abs=band)
-    assert np.abs(restitution(AVERAGE, omega, THETA) - 1).max() <= omega**2 / 8
 
 
 @pytest.mark.parametrize("omega", [0.4, 1.7, 5.0])

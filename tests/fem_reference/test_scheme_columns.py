@@ -1,6 +1,5 @@
 """Columns under schemes of stages: steps against the frequency response, the block on points and finer steps."""
 
-import functools
 import math
 
 import numpy as np
@@ -8,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import Scheme, Unilateral, named_scheme, solve_unilateral
+from fem_reference import Unilateral, named_scheme, solve_unilateral
 from fem_reference.column.contacts import ColumnContact, ContactColumn, solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
@@ -84,48 +83,6 @@ def test_a_column_on_a_contact_is_the_block_on_its_point(name, options):
     np.testing.assert_allclose(result.mean_velocity, block["velocity"], atol=1e-10)
     assert result.step_solves == pytest.approx(block["solves"], abs=0) or name == "composite"
     assert result.step_solves.min() == len(scheme.stages)
-
-
-END = 0.04  # s
-FINEST = 2560
-
-
-def switching_history(law, scheme, steps):
-    """Top of two elements on contacts that open under a pressure that turns, or slip under a shear."""
-    opens = law == "unilateral"
-    ground = Ground((Stratum(1.0, 2000.0, 1e8, 0.0), Stratum(1.0, 2000.0, 1e8, 0.0)), "pressure" if opens else "shear")
-    strengths = (math.inf, math.inf) if opens else (3e3, 2e3)
-    contacts = tuple(ColumnContact(float(j), 2e8, strength=strength) for j, strength in enumerate(strengths))
-    w = 120.0
-
-    def pressure(t):
-        return 1e4 * np.sin(w * t) ** 2 * np.sign(np.sin(w * t)) if opens else 8e3 * np.sin(w * t) ** 2
-
-    column = ContactColumn(ground, law, contacts, (0.0, 0.0))
-    drive = rest(scheme, steps, pressure=pressure)
-    return solve_contacts(column, [1, 1], 1, scheme, drive, ("displacement",))
-
-
-@functools.cache
-def finest_history(law):
-    scheme = Scheme(0.25, 0.5, 1.0, END / FINEST, "consistent")
-    return switching_history(law, scheme, FINEST).columns["displacement"]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 9))
-@pytest.mark.parametrize("law", ["unilateral", "frictional"])
-def test_orders_with_contacts_that_open_or_slip(law, name, options):
-    """Second order through the switches, against average acceleration in steps 8 times shorter."""
-    reference = finest_history(law)
-    errors = []
-    for steps in (160, 320):
-        ratio = FINEST // steps
-        result = switching_history(law, named_scheme(name, step=END / steps, **options), steps)
-        assert len(np.unique(result.states)) > 1
-        errors.append(np.linalg.norm(result.columns["displacement"] - reference[ratio - 1 :: ratio]) / math.sqrt(steps))
-    assert errors[0] < 0.02 * np.abs(reference).max()
-    assert math.log2(errors[0] / errors[1]) > 1.6
 
 
 def test_what_has_no_velocity_at_the_ends_of_steps_has_no_dashpot():

@@ -1,7 +1,6 @@
 """Schemes of stages on a base that opens: against exact motion, printed rebounds and each other."""
 
 import functools
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -79,17 +78,6 @@ def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, erro
     assert np.abs(stored + sum(columns[column] for column in LOST)).max() < 1e-10 * START_ENERGY
     solves = columns["solves"]
     assert solves.min() == (2 if name == "composite" else 1)
-
-
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 5))
-def test_orders_through_switching(name, options):
-    """Second order from lift-off to after landing."""
-    v = exact().at(np.linspace(0.001, 0.03, 30)).displacement[1]
-    errors = []
-    for steps in (480, 960):
-        history = unlocked(name, options, 0.03 / steps, steps, columns=("displacement",))["displacement"]
-        errors.append(np.linalg.norm(history[steps // 30 - 1 :: steps // 30] - v))
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.25)
 
 
 def rebounds(scheme, contact_omega, phases):

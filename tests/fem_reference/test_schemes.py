@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.elements import error, make, stepped
-from scipy.linalg import eigh
 from scipy.sparse import csr_array
 
 import fem_reference
@@ -16,7 +15,6 @@ from fem_reference import SCHEMES, Bar, Motion, Scheme, named_scheme, solve
 from fem_reference.exact.vibration import response as bar_response
 from fem_reference.history.response import response
 from fem_reference.mesh.model import build
-from fem_reference.problem.schemes import catalogue
 from fem_reference.scheme import modal
 from fem_reference.scheme.diagnostics import diagnostics
 from fem_reference.scheme.eigen import eigenvalues
@@ -143,24 +141,6 @@ def test_hidden_damping_of_the_block_of_one_strain(name, options, p, step, first
     modes = fem_reference.modes(make(p=p, elements=1, degree=1), named_scheme(name, step=step, **options))
     ratios = [damping_ratio(mode.eigenvalues[0]) for mode in sorted(modes, key=lambda mode: mode.frequency)]
     assert ratios == pytest.approx([first, contact], rel=1e-8)
-
-
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
-def test_orders_on_a_locked_base(name, options):
-    """Second order from rest, on a mesh whose exact motion is the sum of its modes."""
-    problem = make(elements=1, degree=1)
-    model = build(problem)
-    squares, shapes = eigh(model.K.toarray(), model.M.toarray())
-    row = model.observers["displacement"] @ shapes
-    end = 0.03
-    errors = []
-    for steps in (480, 960):
-        times = end * np.arange(1, steps + 1) / steps
-        exact = (row * (shapes.T @ model.F) / squares) @ (1 - np.cos(np.sqrt(squares)[:, None] * times))
-        scheme = named_scheme(name, step=end / steps, **options)
-        history = solve(problem, scheme, steps, ("displacement",)).columns["displacement"]
-        errors.append(np.linalg.norm(history - problem.load_size * exact) / np.sqrt(steps))
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
 
 
 @pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
@@ -316,34 +296,6 @@ def test_what_goes_with_newmark_only():
 
 
 # Seeded faults in the numbers of a table, and what one of them changes.
-
-
-def test_exchanged_shares_are_seen(monkeypatch):
-    """Am and af exchanged (CH .8, W = .5): a damping ratio of 0.053 in place of 8.15e-5."""
-
-    def ratio():
-        return damping_ratio(modal.roots(0.5, named_scheme("chung-hulbert", step=1.0, rho_inf=0.8))[0])
-
-    assert ratio() == pytest.approx(8.1505e-5, rel=1e-4)
-    sound = catalogue.TABLES["chung-hulbert"]
-
-    def exchanged(rho_inf, split):
-        table = sound(rho_inf, split)
-        stage = table.stages[0]
-        return replace(table, stages=(replace(stage, am=stage.af, af=stage.am),))
-
-    monkeypatch.setitem(catalogue.TABLES, "chung-hulbert", exchanged)
-    assert ratio() == pytest.approx(0.0533, rel=1e-2)
-
-
-def test_weights_of_another_split_are_seen(monkeypatch):
-    """The second stage of 2 - sqrt 2 after a first one of 1/2 grows."""
-    halves, default = (named_scheme("composite", step=1.0, split=split) for split in (0.5, None))
-    table = replace(halves.table, stages=(halves.stages[0], default.stages[1]))
-    monkeypatch.setitem(catalogue.TABLES, "composite", lambda rho_inf, split: table)
-    mixed = named_scheme("composite", step=1.0, split=0.5)
-    assert damping_ratio(modal.roots(0.5, mixed)[0]) == pytest.approx(-0.0144, rel=1e-2)
-    assert modal.radii(np.array([0.99]), mixed)[0] > 1
 
 
 def test_the_discount_acts_once_a_step():

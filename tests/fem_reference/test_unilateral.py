@@ -36,38 +36,6 @@ def distances(problem, scheme, steps, contact=None):
 
 
 @pytest.mark.parametrize(
-    ("scheme", "orders"),
-    # A front is smeared over h^(2/3) by a scheme of second order and over h^(1/2) by one of first. It is a kink of the
-    # displacement, and of the pressure behind the base spring: over the width d it leaves d^(3/2) in the L2 norm.
-    [(AVERAGE, (1.0, 1.0)), (CONSTANT, (0.75, 0.75))],
-)
-@pytest.mark.long
-def test_refining_mesh_and_step_leads_to_the_exact_bar(scheme, orders):
-    found = []
-    for level in (64, 128, 256):
-        step = 6.4e-3 / level
-        error, run = distances(make(elements=level, degree=1), replace(scheme, step=step), round(0.03 / step))
-        assert np.any(run.columns["largest_gap"] > 1e-3)
-        found.append(error)
-    measured = -np.polyfit(np.log([64, 128, 256]), np.log(found), 1)[0]
-    # Not yet asymptotic: the ramp behind the base spring, 1/kappa long, is met by few widths of the smeared front.
-    assert measured == pytest.approx(orders, abs=0.15)
-    assert found[-1][0] < 0.03
-
-
-@pytest.mark.long
-def test_implicit_contact_leads_to_the_exact_bar_too():
-    problem, found = make(elements=128, degree=2), []
-    truth = exact(bar_of(problem), 0.0301).at(0.03 / 125 * np.arange(1, 126)).displacement
-    for steps in (250, 500, 1000):
-        scheme = replace(AVERAGE, step=0.03 / steps)
-        run = solve_unilateral(problem, scheme, steps, Unilateral(rule="implicit"), columns=("displacement",))
-        found.append(float(np.linalg.norm(run.columns["displacement"][steps // 125 - 1 :: steps // 125] - truth)))
-    # one force a step is of first order, and so is what fronts of width dt^(2/3) leave
-    assert np.polyfit(np.log([1 / 250, 1 / 500, 1 / 1000]), np.log(found), 1)[0] == pytest.approx(1.0, abs=0.15)
-
-
-@pytest.mark.parametrize(
     ("change", "contact"),
     [
         pytest.param({"pressure": 0.0}, Unilateral(velocity=-0.7), marks=pytest.mark.long),
@@ -132,16 +100,6 @@ def test_the_block_is_factorised_once_and_solved_once_a_step():
     assert (run.factorisations, run.points, run.solves) == (1, 9, 9 + 200)
     again = solve_unilateral(problem, CONSTANT, 5, GLUED)
     assert (again.factorisations, again.solves) == (2, 2 * 9 + 1 + 5)
-
-
-@pytest.mark.parametrize("scheme", [CONSTANT, pytest.param(AVERAGE, marks=pytest.mark.long)])
-def test_a_base_in_one_piece_takes_two_solutions_at_most(scheme):
-    for p in (1e9, 1e11):
-        problem, scheme = make(p=p, elements=32, degree=1), replace(scheme, step=3e-5)
-        run = solve_unilateral(problem, scheme, 800, columns=("open_share", "solves"))
-        switches = np.count_nonzero(np.diff(run.columns["open_share"]))
-        assert np.count_nonzero(run.columns["solves"] == 2) >= switches > 0
-        assert run.columns["solves"].max() == 2
 
 
 @pytest.mark.parametrize(("degree", "n"), thinned(product([1, 2], [4, 8, 12, 16]), 5))

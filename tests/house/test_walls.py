@@ -1,14 +1,22 @@
 """The walls of the house: who may import whom, and what an import costs."""
 
 import ast
+import json
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import pytest
+from oracles.submissions import submitted
+
+from validation.problems.bands import standard
+from validation.problems.pack import table_of
+from validation.problems.problem import problem
+from validation.runs.extras import EXTRA_OF, PROJECTS
 
 ROOT = Path(__file__).parents[2]
 SCENE_OF_DDA_ONLY = """
@@ -125,7 +133,8 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
     columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
-    assert elements == {"exact.py", "solvers/fem.py", "solvers/bar.py", "solvers/events.py", *rigid, *columns}
+    others = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane/mesh")}
+    assert elements == {"exact.py", *others, *rigid, *columns}
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
@@ -134,6 +143,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
         "solvers/blocks/opening.py",
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
+        "solvers/plane/blocks.py",
     }
     for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
         lines = text(ROOT / "validation" / path)  # apart from the adapter, the closed forms of the scheme alone
@@ -141,9 +151,107 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
         assert all(f"{module}.{name}".startswith("dda.scheme") for module, name in named), path
 
 
-def test_only_figures_import_matplotlib_and_only_one_module_the_pdf_writer() -> None:
-    assert {path for path in importers("validation", "matplotlib") if not path.startswith("report/figures/")} == set()
-    assert importers("validation", "typst") == {"report/render/pdf.py"}
+# Runs commands in one process in which the libraries of the extras cannot be imported; each with its status and errors.
+WITHOUT_EXTRAS = """
+import contextlib, io, json, sys
+from validation.runs.extras import EXTRA_OF
+
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {*EXTRA_OF, "pytest"}:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Blocker())
+from validation.cli import main
+ended = []
+for arguments in json.loads(sys.argv[1]):
+    sys.argv = ["dda-validate", *arguments]
+    output, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+        try:
+            main()
+        except SystemExit as end:
+            status = end.code
+    ended.append((status, output.getvalue(), errors.getvalue()))
+print(json.dumps(ended))
+"""
+CASE = ["figures-3-4", "--set", "time.step=0.01"]
+LIGHT = [  # what a plain install does, in this order
+    (["--help"], 0),
+    (["list"], 0),
+    (["list", "solvers"], 0),
+    (["show", "figures-3-4"], 0),
+    (["solve", *CASE, "--csv", "history.csv"], 0),
+    (["solve", *CASE, "--solver", "fem"], 0),
+    (["compare", "figures-3-4", "history.csv", "--set", "time.step=0.01"], 0),
+    (["solve", "pentagon", "--csv", "pentagon.csv"], 0),
+    (["compare", "pentagon", "pentagon.csv"], 0),
+    (["run", *CASE, "--results", "results"], 0),
+    (["rows", "figures-3-4", "--results", "results"], 0),
+    (["diff", "results", "results"], 0),
+    (["judge", "standing", "--solver", "dda"], 0),
+    (["judge", "answer"], 0),
+    (["damping", *CASE], 0),
+    (["response", *CASE], 0),
+    (["contact", *CASE, "--set", "contact.law=unilateral"], 0),
+    (["rayleigh", *CASE], 0),
+    (["advise", *CASE, "--set", "time.steps=5", "--damping", "0.05"], 0),
+]
+HEAVY = [  # what it does not, and the extra that does
+    (["report", "--results", "results"], "report"),
+    (["report", "--results", "results", "--site", "site"], "report"),
+    (["report", "--results", "results", "--figures", "figures"], "report"),
+    (["compare", "figures-3-4", "history.csv", "--out", "page.pdf"], "report"),
+    (["response", *CASE, "--figure", "response.svg"], "report"),
+    (["judge", "answer", "--out", "page"], "report"),
+    (["judge", "answer", "--site", "site"], "report"),
+    (["solve", *CASE, "--solver", "block-events"], "exact"),
+    (["solve", *CASE, "--solver", "dda-60"], "exact"),
+    (["judge", "opening", "--solver", "dda"], "exact"),
+    (["export-pack", "pack"], "exact"),
+    (["solve", "pentagon", "--solver", "fem"], "mesh"),
+    (["solve", *CASE, "--solver", "fem", "--fields", "fields.vtu"], "mesh"),
+]
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[int, str, str]]:
+    """Status, output and errors of the commands of both tables without the libraries of the extras."""
+    place = tmp_path_factory.mktemp("light")
+    rocking = standard(problem("rocking")).exact
+    submitted(place / "answer", table_of(rocking, list(rocking.columns)), problem="rocking")
+    commands = [arguments for arguments, _ in (*LIGHT, *HEAVY)]
+    command = [sys.executable, "-c", WITHOUT_EXTRAS, json.dumps(commands)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=place)
+    assert {path.name for path in place.iterdir()} == {"answer", "history.csv", "pentagon.csv", "results", "rows.csv"}
+    return dict(zip(map(" ".join, commands), json.loads(done.stdout.splitlines()[-1]), strict=True))
+
+
+@pytest.mark.parametrize(("arguments", "status"), LIGHT, ids=[" ".join(row[0]) for row in LIGHT])
+def test_a_plain_install_judges_and_compares(arguments: list[str], status: int, ended) -> None:
+    reached, output, errors = ended[" ".join(arguments)]
+    assert reached == status, errors
+    assert "Traceback" not in output + errors
+    assert ("fem is no candidate: it needs meshio" in output) == (arguments[:2] == ["compare", "pentagon"])
+
+
+@pytest.mark.parametrize(("arguments", "extra"), HEAVY, ids=[" ".join(row[0]) for row in HEAVY])
+def test_what_needs_an_extra_names_it_in_one_line(arguments: list[str], extra: str, ended) -> None:
+    status, _, errors = ended[" ".join(arguments)]
+    assert status == 2, errors
+    (line,) = (line for line in errors.splitlines() if "warning" not in line)
+    assert line.startswith("error: ")
+    assert line.endswith(f"pip install 'dda-validation[{extra}]'")
+
+
+def test_extras_bring_what_they_say_and_a_plain_install_brings_none_of_it() -> None:
+    project = tomllib.loads(text(ROOT / "pyproject.toml"))["project"]
+    extras = project["optional-dependencies"]
+    projects = {library: PROJECTS.get(library, library) for library in EXTRA_OF}
+    for library, extra in EXTRA_OF.items():
+        assert [row for row in extras[extra] if row.startswith(f"{projects[library]}>=")], library
+    assert not [row for row in project["dependencies"] if row.partition(">=")[0] in {*projects.values(), "pytest"}]
+    assert sorted(re.split(r"[\[\],]", *extras["all"])[1:-1]) == sorted({*EXTRA_OF.values(), "gates"})
 
 
 def test_rooms_say_what_they_are_for() -> None:

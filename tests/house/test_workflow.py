@@ -122,8 +122,9 @@ def test_the_tables_of_readme_are_those_of_the_code() -> None:
     assert first_cells("solver") == list(BUILT_IN)
     assert set(first_cells("study")) <= set(study_names())
     shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
-    listed = set(re.findall(r"dda-validate ([a-z-]+)", shell[2]))
-    assert set(commands()) - {"report"} <= listed and "dda-validate report" in README
+    shown = re.findall(r"^dda-validate ([a-z-]+)", shell[2], re.M)
+    others = README.partition("The others, each on its page: ")[2].partition("\n\n")[0]
+    assert len(shown) == 8 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
 
 
 # ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------
@@ -175,3 +176,11 @@ def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> Non
             assert any(fnmatch(file.as_posix(), pattern) for pattern in patterns), file
             count += 1
     assert count > 100
+
+
+def test_actions_of_others_are_pinned_by_commit_and_write_nothing_by_default() -> None:
+    for path in (ROOT / ".github/workflows").glob("*.yml"):
+        text = path.read_text(encoding="utf-8")
+        pinned = re.findall(r"uses: \S+@(\S+)", text)
+        assert all(re.fullmatch(r"[0-9a-f]{40}", commit) for commit in pinned), path.name
+        assert yaml.safe_load(text)["permissions"] == {"contents": "read"}, path.name

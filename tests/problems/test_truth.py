@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.joints import slipping_spring_joint
 
 from validation.errors import InputError
 from validation.problems import boxes
@@ -69,38 +68,6 @@ def test_columns_of_rigid_blocks_move_as_is_known(
     one = problem(name)
     row = round(instant / one.scene.time.step) - 1
     assert standard(one).exact.columns[column][row] == pytest.approx(known, rel=digits)
-
-
-def test_the_bars_of_the_cradle_go_on_as_is_known() -> None:
-    """Velocities over 2 L/c, after which the waves of a free bar repeat, once all contacts have opened."""
-    known = (-0.0088908684872307, -0.006232130608299, 0.022724961596268, 0.99239803749926)
-    one = problem("cradle")
-    period = 2 / math.sqrt(1e9 / 2500)
-    names = [f"displacement_{number}" for number in range(1, 5)]
-    scene = one.scene.with_values({"time.step": period / 4, "time.steps": 16, "run.columns": names})
-    motion = exact(scene, one.truth)
-    for name, velocity in zip(names, known, strict=True):
-        x = motion.columns[name]
-        assert (x[-1] - x[-5]) / period == pytest.approx(velocity, abs=1e-10)
-
-
-def test_the_joint_passes_the_share_that_is_known() -> None:
-    """Root of the mean square over a period of the velocity above the joint, over the incident wave's."""
-    one = problem("joint")
-    scene = one.scene
-    assert scene.column is not None
-    contact = scene.column.contacts[0]
-    impedance = 2000.0 * 1000.0
-    frequency, velocity = 10.0, 0.1
-    strength_ratio = contact.strength / (impedance * velocity)
-    stiffness_ratio = 2 * contact.stiffness / (impedance * 2 * math.pi * frequency)
-    motion = standard(one).exact
-    period = 1 / frequency
-    last_period = motion.time > motion.time[-1] - period * (1 - 1e-9)
-    above = motion.columns["velocity_2"][last_period]
-    transmitted = math.sqrt(2 * float(np.mean(above**2))) / velocity
-    known = slipping_spring_joint(strength_ratio, stiffness_ratio)
-    assert transmitted == pytest.approx(known.transmitted, rel=1e-4)
 
 
 @pytest.mark.parametrize(

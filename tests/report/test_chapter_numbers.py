@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import kept_study, lines_of, made_case, made_group, made_history, made_row, names_at, rules_of
+from oracles.made_cases import lines_of, made_case, made_group, made_history, names_at, rules_of
 
 from validation.report.blocks import Heading, Table
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
-from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.studies.paper import chapter as chapters_paper
 from validation.studies.paper.chapter import PaperFigure
-from validation.studies.stability import chapter as chapters_stability
-from validation.studies.stability.chapter import ExtremeRun
-from validation.studies.stiff_contact import chapter as chapters_contact
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
 GREY = "#6b6b6b"
@@ -125,127 +120,4 @@ def test_the_register_counts_and_words_each_verdict() -> None:
 # ---- stiff contacts -----------------------------------------------------------------------------------------------
 
 
-def contact_case(ratio: float, alpha: float, displacement: Any, pressure: Any, radius: float) -> Any:
-    scene = BASE.with_values({"contact.stiffness": 2e9 * ratio, "block.young": 2e9, "time.alpha": alpha}, label=True)
-    metrics = {
-        "displacement.fine_settling_step": displacement,
-        "pressure.fine_settling_step": pressure,
-        "displacement.settling_step": 1.0,
-        "pressure.settling_step": 2.0,
-        "contact.spectral_radius": radius,
-    }
-    return made_case(scene, {"dda": metrics})
-
-
-CONTACT = made_group(
-    contact_case(100.0, 0.5, 60.0, "undefined", 0.98),
-    contact_case(100.0, 0.5625, 61.0, 62.0, 0.34),
-    contact_case(1.0, 0.5, 50.0, 530.0, 0.5),
-    contact_case(1.0, 0.5625, 51.0, 55.0, 0.4),
-)
-
-
-def test_steps_to_settle_stand_under_their_scheme_and_beside_their_stiffness() -> None:
-    table = chapters_contact.settling_table(chapters_contact.by_ratio(CONTACT))
-    heads = [(c.group, c.title) for c in table.columns]
-    constant, complex_ = ("α, δ = (1/2, 1)", "α, δ = (9/16, 1)")
-    assert heads[0] == ("", "p / E") and [g for g, _ in heads[1:]] == [constant] * 3 + [complex_] * 3
-    assert [t for _, t in heads[1:]] == ["displ.", "press.", "|λ| of the contact"] * 2
-    assert table.rows == (
-        ("1", "50", "530", "0.50000000", "51", "55", "0.40000000"),
-        ("100", "60", "–", "0.98000000", "61", "62", "0.34000000"),
-    )
-
-
-def test_the_lines_and_the_sentence_of_stiff_contacts_are_those_of_their_scheme() -> None:
-    table = chapters_contact.by_ratio(CONTACT)
-    drawn = chapters_contact.curves(table, 1000.0)
-    lines = {line.name: (list(line.x), list(line.y)) for line in drawn if line.name}
-    assert [(list(line.x), list(line.y)) for line in drawn if line.hollow and line.x.size] == [([100.0], [1000.0])]
-    assert lines == {
-        "displacement (1/2, 1)": ([1.0, 100.0], [50.0, 60.0]),
-        "pressure (1/2, 1)": ([1.0, 100.0], [530.0, 1000.0]),  # the last has not settled within the run
-        "displacement (9/16, 1)": ([1.0, 100.0], [51.0, 61.0]),
-        "pressure (9/16, 1)": ([1.0, 100.0], [55.0, 62.0]),
-    }
-    said = chapters_contact.conclusion(table)
-    assert "under (1/2, 1) up to 530 steps (at p = 1E) and under (9/16, 1) up to 62 steps (at p = 100E)" in said
-
-
 # ---- extremes -----------------------------------------------------------------------------------------------------
-
-
-def extreme(solver: str, ratio: float, step: float, error: float | None, **more: Any) -> ExtremeRun:
-    outcome = more.get("outcome", Outcome.COMPLETED)
-    metrics = {"stability.kind": more.get("kind", "stable")} | more.get("metrics", {})
-    errors = {} if error is None else {"displacement": error, "pressure": 10 * error}
-    row = made_row(solver, metrics, outcome=outcome)
-    return ExtremeRun(more.get("scene", "extremes-a"), solver, ratio, step, row, errors)
-
-
-def test_digits_kept_at_least_are_those_of_the_worst_run_of_either_quantity() -> None:
-    found = [
-        extreme("dda", 1.0, 1e-3, 1e-14),
-        extreme("dda", 1e6, 1e-3, 4e-13),  # the pressure keeps 4e-12: eleven digits
-        extreme("dda", 1e6, 1.0, None, outcome=Outcome.UNSTABLE, kind="unstable as predicted"),
-        extreme("dda", 1e6, 2.0, None, outcome=Outcome.OVERFLOW, kind="overflow"),
-        extreme("dda-textbook", 1e14, 1e-3, 1e-3),
-    ]
-    assert chapters_stability.conclusion(found) == (
-        "Fewest correct digits, in both quantities: dda 11, dda-textbook 2; 2 runs of dda left their "
-        "bounds, all as predicted."
-    )
-    odd = [*found, extreme("dda", 1.0, 1.0, None, outcome=Outcome.MISPREDICTED)]
-    assert chapters_stability.conclusion(odd).endswith("2 runs of dda left their bounds, all but 1 more as predicted.")
-
-
-def test_a_cell_of_extremes_has_its_stiffness_over_young_and_its_own_measure(tmp_path: Path) -> None:
-    results, scene = Results(tmp_path), BASE.with_values({"contact.stiffness": 4e9})
-    rows = [made_row(solver, {}, scene.name) for solver in ("dda", "dda-textbook", "continuum")]
-    apart = {"displacement.max": 0.1, "displacement.scaled": 0.2, "displacement.l2": 0.3}
-    pairs = [
-        {"scene": scene.name, "solver": name, "reference": "x", "metrics": apart} for name in ("dda", "dda-textbook")
-    ]
-    manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
-    found = chapters_stability.extreme_runs(results, manifest)
-    assert [(cell.solver, cell.ratio, cell.step, cell.errors["displacement"]) for cell in found] == [
-        ("dda", 4.0, 0.002, 0.1), ("dda-textbook", 4.0, 0.002, 0.1)]  # fmt: skip
-
-
-def test_outcomes_are_counted_under_their_names() -> None:
-    found = [
-        extreme("dda", 1.0, 1e-3, 1e-14),
-        extreme("dda", 1.0, 1e-3, 1e-14, kind="marginal"),
-        extreme("dda", 1.0, 1e-3, 1e-14, kind="marginal"),
-        extreme("dda", 1.0, 1e-3, None, outcome=Outcome.OVERFLOW, kind="overflow"),
-        extreme("dda", 1.0, 1e-3, None, outcome=Outcome.NOT_APPLICABLE),
-    ]
-    table = chapters_stability.outcome_table(found)
-    shown = dict(zip([c.title for c in table.columns], table.rows[0], strict=True))
-    assert shown == {
-        "Solver": "dda",
-        "stable": "1",
-        "marginal": "2",
-        "unstable as predicted": "0",
-        "overflow": "1",
-        "otherwise": "not applicable 1",
-    }
-
-
-def test_a_map_of_digits_shows_the_worst_of_a_place_at_its_stiffness_and_step(
-    drawn: dict[str, Figure], tmp_path: Path
-) -> None:
-    own = [
-        extreme("dda", 1.0, 1e-3, 0.9e-14),
-        extreme("dda", 1.0, 1e-3, 0.9e-9),  # the worse of two discounts
-        extreme("dda", 1.0, 1e-1, 0.9e-12),
-        extreme("dda", 1e3, 1e-1, 0.9e-7),
-    ]
-    (block,) = chapters_stability._maps("s", own, tmp_path)
-    assert block.file == "s-digits-dda.svg" and block.caption.startswith("dda: correct digits, the worst of all")
-    left, right = drawn[block.file].axes
-    assert {text.get_position(): text.get_text() for text in left.texts} == {(0, 0): "9", (1, 0): "12", (1, 1): "7"}
-    assert {text.get_position(): text.get_text() for text in right.texts} == {(0, 0): "8", (1, 0): "11", (1, 1): "6"}
-    assert [label.get_text() for label in left.get_yticklabels()] == ["$10^{0}$", "$10^{3}$"]
-    assert [label.get_text() for label in left.get_xticklabels()] == ["$10^{-3}$", "$10^{-1}$"]
-    assert (left.get_title(loc="left"), right.get_title(loc="left")) == ("Displacement", "Contact pressure")

@@ -23,9 +23,6 @@ from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.studies.core import chapter as core
-from validation.studies.limits import chapter as locking
-from validation.studies.two_codes import chapter as two_codes
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 
@@ -187,55 +184,6 @@ def test_a_count_that_is_none_is_no_small_number() -> None:
 
 
 # ---- chapters -----------------------------------------------------------------------------------------------------
-
-
-def test_mesh_and_lateral_strain_have_their_numbers() -> None:
-    meshes = [PAPER.with_values({"fem.elements": n}, label=True) for n in (16, 4, 8)]
-    pairs = tuple(between(m.name, "fem", "bar", displacement_l2=16.0 * m.fem.per_side**-4.0) for m in meshes)
-    group = made_group(*(made_case(m, {}) for m in meshes), comparisons=pairs)
-    n, error = core.mesh_errors({"mesh-convergence": group})  # type: ignore[misc]
-    assert list(n) == [4, 8, 16] and error == pytest.approx([16 / 4**4, 16 / 8**4, 16 / 16**4])
-    assert core.mesh_errors({}) is None
-    lateral = PAPER.with_values({"block.poisson": 0.3})
-    moved = {"dda": {"displacement.static": -9.85e-3}, "fem": {"displacement.static": -10e-3}}
-    table = core.lateral_table({"poisson-statics": made_group(made_case(lateral, moved, label="p = 1E"))})
-    assert table.rows == (("p = 1E", "0.3", "−9.850", "−10.000", "1.5\u00a0%"),)
-
-
-def test_locking_is_told_by_the_share_that_linear_elements_keep() -> None:
-    cases = []
-    for poisson, linear, quadratic in ((0.3, -4.2e-3, -4.25e-3), (0.499, -0.5e-3, -4e-3)):
-        for degree, value in ((1, linear), (2, quadratic)):
-            scene = PAPER.with_values(
-                {"block.poisson": poisson, "block.hypothesis": "plane strain", "fem.degree": degree}, label=True
-            )
-            cases.append(made_case(scene, {"fem": {"displacement.static": value}}))
-    group = made_group(*cases)
-    assert locking.locking_table(group).rows == (
-        ("0.3", "−4.2000", "−4.2500", "98.8\u00a0%"), ("0.499", "−0.5000", "−4.0000", "12.5\u00a0%"),
-    )  # fmt: skip
-    said = locking.locked_sentence(group)
-    assert "at μ = 0.499 they keep 12.5\u00a0% of the displacement. Quadratic ones do not lock." in said
-    finer = cases[-1].scene.with_values({"fem.elements": 64}, label=True)
-    more = made_group(*cases, made_case(finer, {"fem": {"displacement.static": -5e-3}}))
-    assert locking.locking_table(more).rows == locking.locking_table(group).rows
-    per_side = cases[0].scene.fem.per_side
-    stiff = f"at μ = 0.499 {per_side} of them a side are still 20\u00a0% stiffer than 64 a side."
-    assert locking.locked_sentence(more).endswith(f"Quadratic ones do not lock, but {stiff}")
-    long = PAPER.with_values({"time.steps": 1_000_000})
-    drift = made_group(*(made_case(long, {"dda": {"energy.drift": value}}) for value in (3e-11, 1e-13)))
-    assert locking.drift_sentence(drift) == "The energy drifts by 3.0×10⁻¹¹ at most over 1\u00a0000\u00a0000 steps."
-
-
-def test_two_codes_are_told_apart_by_their_largest_difference() -> None:
-    scenes = [PAPER.with_values({"time.step": step}, label=True) for step in (0.002, 0.001)]
-    pairs = tuple(
-        between(scene.name, "fem:full", "fenicsx", displacement_l2=1e-9 * (i + 1), pressure_l2=1e-15)
-        for i, scene in enumerate(scenes)
-    )
-    group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=pairs)
-    assert two_codes.apart([group]).rows == (("A scene", "2", "2.0×10⁻⁹", "–", "<10⁻¹²", "–"),)
-    assert two_codes.apart([made_group(made_case(PAPER, {}))]).rows == ()
 
 
 def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:

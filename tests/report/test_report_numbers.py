@@ -14,7 +14,6 @@ from oracles.made_cases import (
     between,
     kept_study,
     line_in,
-    lines_of,
     made_case,
     made_group,
     made_history,
@@ -29,7 +28,6 @@ from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
-from validation.report.figures.charts import chart_figure
 from validation.report.figures.curves import style_of
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
@@ -145,22 +143,6 @@ def test_pictures_take_differences_under_the_same_scheme_where_they_can() -> Non
     history, names = made_history(0.1, [1.0]), ("dda", "continuum", "fem", "bar")
     found = [made_case(BASE, {}, dict.fromkeys(names[:count], history)).reference for count in (4, 3, 2, 1)]
     assert found == ["bar", "fem", "continuum", None]
-
-
-def test_the_drift_of_corner_springs_is_drawn_in_millimetres() -> None:
-    cases = []
-    for n, v in ((4, -0.02), (8, -0.025), (16, -0.03)):
-        scene = BASE.with_values({"fem.foundation": "corner", "fem.elements": n}, label=True)
-        cases.append(made_case(scene, {"dda": {"displacement.static": -0.01}, "fem": {"displacement.static": v}}))
-    group = made_group(*cases)
-    panel, sentence = chapters.drift_panel(group, chapters.drift_values(group))
-    assert "changes by −5.00 mm with every halving" in sentence
-    (axes,) = chart_figure([panel]).axes
-    fitted = [(list(x), list(y)) for own, x, y in lines_of(axes) if own == to_hex(style_of("fem").color)]
-    assert fitted == [([4, 8, 16], pytest.approx([-20, -25, -30]))]
-    ends = {name: value for name, (value, _) in names_at(axes).items()}
-    assert ends == {"fem": pytest.approx(-30), "dda": pytest.approx(-10)}
-    assert axes.get_title(loc="left").endswith("[mm]")
 
 
 # ---- the ledger and the front page --------------------------------------------------------------------------------

@@ -81,6 +81,7 @@ TAKES: dict[str, set[str]] = {
     features.RIGID_BLOCKS: {"dda", "column-events"},
     features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
     features.RIGID_BOXES: {"dda", "rigid-exact"},
+    features.PLANE: {"dda", "fem", "fenicsx"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
@@ -138,6 +139,8 @@ def scene_of(feature: str, directory: Path) -> Scene:
     if feature == features.RIGID_BOXES:
         box = {"width": 1.0, "height": 1.0, "density": 2e3}
         return parse_scene({"rigid": {"box": [box]}, "time": {"step": 1e-2, "steps": 5}}, feature)
+    if feature == features.PLANE:
+        return load_scene("patch-strip").expand()[0]
     if feature in OF_CONTACTS:
         layer = {"thickness": 2.0, "density": 2e3, "young": 1e9, "blocks": 2, "velocity": -1.0}
         column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [layer]} | OF_CONTACTS[feature]

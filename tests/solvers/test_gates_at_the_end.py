@@ -28,7 +28,8 @@ def ended(
     reporter = SimpleNamespace(stats={"passed": [report], "": [object()]}, write_line=lines.append,
                                write_sep=lambda sign, text: lines.append(text))  # fmt: skip
     options = {"--dda-solver": user, "verbose": verbose}
-    config = SimpleNamespace(getoption=lambda name, default=None: options.get(name, default))
+    plugins = SimpleNamespace(get_plugin=lambda name: reporter)
+    config = SimpleNamespace(getoption=lambda name, default=None: options.get(name, default), pluginmanager=plugins)
 
     def written(said: Any, every: bool) -> list[str]:
         asked.append((said, every))

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.made_cases import between, kept_study, made_case, made_group, made_history, made_row
-from validation.studies.work import study as work_precision
-from validation.studies.work.points import COSTS, METHODS, Point, cheapest, floor, front, points, table
+from oracles.made_cases import between, kept_study, made_history, made_row
 
-from validation.report.chapters import subblocks as chapters_subblocks
-from validation.report.chapters import work as chapters_work
+from validation.engine.table import tidy
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
+from validation.studies.work_precision import chapter as chapters_work
+from validation.studies.work_precision import formulas as work_precision
+from validation.studies.work_precision.points import COSTS, METHODS, Point, cheapest, floor, front, points
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40, "fem.elements": 12})
 V, P = "displacement", "contact pressure"
@@ -41,20 +41,21 @@ def kept(results: Results) -> dict[str, Any]:
     return kept_study(results, [(BASE, row, None) for row in rows.values()], pairs)
 
 
-def test_every_row_of_a_study_holds_its_own_work_seconds_metrics_and_differences(tmp_path: Path) -> None:
+def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    dda, bar, continuum = table(results, kept(results))
-    assert dda == {
-        "scene": BASE.name, "solver": "dda", "outcome": "completed",
-        "work.unknowns": 6, "work.factorisations": 1, "work.solves": 41, "work.steps": 40,
-        "seconds.setup": 0.25, "seconds.stepping": 0.5, "seconds.total": 0.75, "estimate": 2e-15,
-        "mode1.numerical_frequency": 330.0, "mode1.damping": 0.17,
-        "bar:displacement.l2": 0.031, "bar:pressure.l2": 0.032,
-        "continuum:displacement.l2": 0.51, "continuum:pressure.l2": 0.52,
-        "notes": "a note; another",
-    }  # fmt: skip
-    assert (bar["continuum:pressure.l2"], "bar:pressure.l2" in bar) == (0.42, False)
-    assert not [name for name in continuum if ":" in name]
+    manifest = kept(results) | {"derived": [{"scene": "owner", "name": "order", "metrics": {"power": 2.0}}]}
+    rows = list(tidy(results, manifest))  # type: ignore[arg-type]
+    numbers = {(row.solver, row.reference, row.metric): row.value for row in rows}
+    assert len(numbers) == len(rows)
+    assert numbers["dda", "", "outcome"] == "completed" and numbers["dda", "", "estimate"] == 2e-15
+    assert numbers["dda", "", "work.solves"] == 41 and numbers["dda", "", "seconds.stepping"] == 0.5
+    assert numbers["dda", "", "mode1.damping"] == 0.17 and numbers["bar", "", "mode1.damping"] == 0.15
+    assert numbers["dda", "bar", "displacement.l2"] == 0.031 and numbers["bar", "continuum", "pressure.l2"] == 0.42
+    assert ("bar", "bar", "pressure.l2") not in numbers and ("continuum", "", "estimate") not in numbers
+    units = {(row.metric, row.window, row.unit) for row in rows if row.metric in ("displacement.l2", "seconds.setup")}
+    assert units == {("displacement.l2", 1.0, "1"), ("seconds.setup", None, "s")}
+    derived = rows[-1]
+    assert (derived.scene, derived.case, derived.solver, derived.metric) == ("owner", "", "order", "power")
 
 
 def test_a_point_has_relative_errors_of_frequency_and_absolute_ones_of_damping(tmp_path: Path) -> None:
@@ -160,47 +161,3 @@ def test_the_grid_convergence_index_is_that_of_the_last_change() -> None:
 
 
 # ---- the chapter of sub-blocks ------------------------------------------------------------------------------------
-
-
-def cut(across: int, upwards: int, own: dict[str, float], fem: dict[str, float], **changes: Any) -> Any:
-    values = {"block.subdivide": [across, upwards], "block.pattern": "squares"}
-    scene = BASE.with_values(values | {key.replace("__", "."): value for key, value in changes.items()}, label=True)
-    spent = {"setup": 0.001, "stepping": 0.004}
-    row = made_row("dda", own, scene.name, work={"unknowns": 6 * across * upwards}, seconds=spent)
-    return made_case(scene, {"dda": row, "fem": fem})
-
-
-def test_sub_blocks_are_told_by_rows_with_signed_errors_and_milliseconds() -> None:
-    case = cut(2, 3, {"mode1.frequency": 291.0}, {"mode1.frequency": 300.0})
-    pair = between(case.name, "dda", "fem", displacement_l2=0.0123, horizontal_l2=0.9)
-    shown = chapters_subblocks.patterns(made_group(case, comparisons=(pair,)))
-    assert [c.title for c in shown.columns] == ["Pattern", "n", "Error of ω₁", "L2 error", "Unknowns", "ms"]
-    assert shown.rows == (("squares", "3", "−3\u00a0%", "1.23\u00a0%", "36", "5"),)
-    (line,) = chapters_subblocks._line(
-        "squares", made_group(case, comparisons=(pair,)), [case], "fem", "displacement.l2"
-    )
-    assert (list(line.x), list(line.y), line.notes) == ([0.005], [0.0123], ("3",))
-
-
-def test_glue_is_told_for_the_axial_and_for_the_rocking_motion() -> None:
-    axial = cut(2, 2, {"mode1.frequency": 306.0}, {"mode1.frequency": 300.0}, block__glue_ratio=3.0)
-    turned = cut(2, 2, {"mode1.frequency": 110.0}, {"mode1.frequency": 100.0}, block__glue_ratio=3.0,
-                 load__pressure=0.0, load__traction=1e6)  # fmt: skip
-    shown = chapters_subblocks.glue(made_group(axial, turned))
-    assert [c.title for c in shown.columns] == ["glue_ratio", "Axial ω₁", "Rocking ω₁"]
-    assert shown.rows == (("3", "2\u00a0%", "10\u00a0%"),)
-
-
-def test_rocking_is_told_for_the_block_and_for_the_elements() -> None:
-    own, fem = ({"mode1.frequency": w, "mode1.damping": xi} for w, xi in ((220.0, 0.11), (200.0, 0.1)))
-    scene = BASE.with_values({"fem.foundation": "patch", "fem.patch_width": 0.5})
-    shown = chapters_subblocks.rocking(made_group(made_case(scene, {"dda": own, "fem": fem})))
-    heads = [(c.group, c.title) for c in shown.columns]
-    assert dict(zip(heads, shown.rows[0], strict=True)) == {
-        ("", "Patch width [m]"): "0.5",
-        ("ω₁ [rad/s]", "dda"): "220",
-        ("ω₁ [rad/s]", "fem"): "200",
-        ("ξ₁ [1]", "dda"): "0.11",
-        ("ξ₁ [1]", "fem"): "0.1",
-        ("", "Block above elements"): "10\u00a0%",
-    }

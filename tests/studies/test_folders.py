@@ -143,6 +143,22 @@ def test_scenes_of_the_library_are_no_studys_alone() -> None:
     assert load_scene("mesh-convergence").title
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("order = 55", "", "study.toml: study.order: is required"),
+        ("order = 55", "order = ", "must be TOML"),
+        ('band = "settled"', 'band = "setled"', "names 'setled', which formulas.py has not"),
+        ('derived = "twice"', 'derived = "thrice"', "names 'thrice', which formulas.py has not"),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_named(old: str, new: str, words: str, added: Path) -> None:
+    (added / "study.toml").write_text(STUDY.replace(old, new))
+    with pytest.raises(InputError, match=words):
+        study = get_study("added-study")
+        [study.gates(), study.derived()]
+
+
 @pytest.mark.parametrize(("file", "old", "new"), [("study.toml", "added-study", "core"), ("scenes", "", "figures-3-4")])
 def test_two_of_one_name_are_refused(file: str, old: str, new: str, added: Path) -> None:
     if old:

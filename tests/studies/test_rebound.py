@@ -44,7 +44,7 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    gates = [gate for gate in rebound.gates() if gate.scene != rebound.MAP]
+    gates = [gate for gate in get_study("rebound").gates() if gate.scene != rebound.MAP]
     faults = [fault for fault in FAULTS if fault.solvers != ("map",)]
     check_kill_matrix(
         get_study("rebound"), cases_of(get_study("rebound"), gates), gates, faults, tmp_path, finished_cases
@@ -52,7 +52,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
 
 
 def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
-    gates = [gate for gate in rebound.gates() if gate.scene == rebound.MAP]
+    gates = [gate for gate in get_study("rebound").gates() if gate.scene == rebound.MAP]
     rows = {row.name: row for row in rebound.derived() if row.scene == rebound.MAP}
 
     def failing() -> set[str]:
@@ -86,5 +86,5 @@ def test_the_closed_forms_of_a_rigid_contact() -> None:
 
 
 def test_a_users_solver_is_not_asked_for_contact_that_opens() -> None:
-    opening = [gate for gate in rebound.gates() if gate.pair == DDA]
+    opening = [gate for gate in get_study("rebound").gates() if gate.pair == DDA]
     assert opening and not any(applies("rebound", gate) for gate in opening)

@@ -216,7 +216,7 @@ def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
 def test_the_record_of_the_base_is_the_pulse_of_the_study() -> None:
     from validation.scenes.record import base_record
 
-    for case in cases(rocking.PULSE):
+    for case in cases(rocking.PULSED):
         record = base_record(case)
         inside = record.time <= rocking.DURATION + 1e-12
         assert np.allclose(record.x[inside], rocking.PUSH * record.time[inside] ** 2 / 2, atol=1e-12)
@@ -226,6 +226,6 @@ def test_the_record_of_the_base_is_the_pulse_of_the_study() -> None:
             and last >= case.time.duration
         )
     sizes = [
-        rocking.PUSH / 9.81 / Rectangle(c.block.width, 4.0, 9.81).pulse_threshold(0.36) for c in cases(rocking.PULSE)
+        rocking.PUSH / 9.81 / Rectangle(c.block.width, 4.0, 9.81).pulse_threshold(0.36) for c in cases(rocking.PULSED)
     ]
     assert sizes == pytest.approx([0.9, 0.99, 1.01], abs=1e-9)

@@ -106,12 +106,6 @@ def test_the_greatest_force_lies_between_that_of_the_two_masses() -> None:
     assert landing.rigid_stop() == pytest.approx((1.0, 1.475549201, 1.307094874, 0.89132203751993), abs=1e-9)
 
 
-def test_the_own_restitution_falls_to_four_fifths_and_never_exceeds_one() -> None:
-    kept = [landing.own_landing(2 * ratio).restitution for ratio in np.geomspace(1e-2, 1e4, 25)]
-    assert 0.8 < min(kept) < 0.83 and 0.999 < max(kept) < 1
-    assert landing.own_landing(2e9).restitution == pytest.approx(landing.rigid_stop()[-1], abs=1e-4)
-
-
 @pytest.mark.parametrize("scheme", thinned(SCHEMES, 2))
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 30.0])
 def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) -> None:
@@ -120,18 +114,6 @@ def test_a_stepped_landing_is_that_of_dda(ratio: float, scheme: dict[str, Any]) 
         step = omega / landing.contact_frequency(on_springs(ratio))
         expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
-
-
-def test_a_rigid_block_lands_as_the_map_of_the_rigid_mass() -> None:
-    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
-        scheme = Stepping(1.0, alpha, delta, 1.0)
-        for omega in (0.3, 2.0, 7.0):
-            step = omega / math.sqrt(1e-8)
-            phases = np.array([0.1, 0.45, 0.9])
-            found = landing.restitutions(scheme, 1e-8, step, 1.0, phases)
-            expected = [impact_restitution(alpha, delta, 1.0, omega, float(phase)) for phase in phases]
-            assert found == pytest.approx(expected, abs=1e-6)
 
 
 def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
@@ -143,9 +125,10 @@ def test_the_mean_over_the_phase_is_that_of_the_map() -> None:
             assert (landed.mean, landed.energy) == pytest.approx((mean, square), rel=6e-3)
 
 
-@pytest.mark.parametrize("gg", [0.95, 0.99])
-def test_a_rigid_block_under_a_discount_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5)):
+@pytest.mark.parametrize("gg", [0.95, 0.99, 1.0])
+def test_a_rigid_block_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> None:
+    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
+    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
         scheme = Stepping(1.0, alpha, delta, gg)
         for omega in (0.3, 2.0, 7.0):
             phases = np.array([0.1, 0.45, 0.9, 0.99])
@@ -236,15 +219,6 @@ def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
     assert none.longest is None and none.best > 0.15
     rate = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, rate=1.0), 2.0, TRANSIT, 0.05)
     assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
-
-
-@pytest.mark.long
-def test_a_small_error_is_reached_by_the_order_of_the_scheme() -> None:
-    for alpha, delta, order in ((0.5, 1.0, 1), (0.25, 0.5, 2)):
-        stepping = Stepping(1.0, alpha, delta, 1.0)
-        coarse, fine = (landing.allowed_steps(stepping, 2.0, TRANSIT, error).longest for error in (2e-3, 2e-6))
-        assert coarse is not None and fine is not None
-        assert math.log(coarse / fine, 1000) == pytest.approx(1 / order, rel=0.1)
 
 
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:

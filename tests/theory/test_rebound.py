@@ -8,6 +8,7 @@ import pytest
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.theory import stages
 from validation.theory.rebound import (
+    Motion,
     conserving_steps,
     impact_steps,
     midpoints,
@@ -84,13 +85,6 @@ def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_sq
     assert np.allclose(stiff, statistics, atol=2e-5)
 
 
-def test_the_rigid_stop_rebounds_by_two_straight_lines():
-    theta = midpoints(40)
-    average = np.where(theta < 1 / 3, 3 - 8 * theta, 4 * theta - 1)
-    assert rebounds(spring_steps(SCHEMES["constant"], math.inf), theta) == pytest.approx(np.abs(2 * theta - 1))
-    assert rebounds(spring_steps(SCHEMES["average"], math.inf), theta) == pytest.approx(average)
-
-
 @pytest.mark.parametrize(
     ("alpha", "delta", "gg", "omega"),
     [(0.25, 0.5, 0.95, 1000.0), (0.3025, 0.6, 0.9, 3.0), (0.5, 1.0, 0.97, 0.4), (0.25, 0.5, 0.95, math.inf)],
@@ -114,6 +108,14 @@ def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
     assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)
     for e in (0.0, 0.37, 1.0):
         assert rebounds(impact_steps(e, 0.75), midpoints(20)) == pytest.approx(np.full(20, e), abs=1e-12)
+
+
+def test_a_step_of_impulses_moves_by_both_of_its_velocities():
+    """Three quarters of the end's, a quarter of the start's; what lies far away falls on."""
+    none = np.zeros(2)
+    after = impact_steps(0.5, 0.75)(Motion(np.array([0.4, 9.0]), np.array([-1.0, -1.0]), none, none, none))
+    assert after.x == pytest.approx([0.4 + 0.75 * 0.5 - 0.25, 8.0], rel=1e-15)
+    assert after.v == pytest.approx([0.5, -1.0], rel=1e-15)
 
 
 def test_a_dashpots_rebound_depends_on_scheme_and_step():

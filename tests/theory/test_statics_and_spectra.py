@@ -41,14 +41,6 @@ def test_static_displacement_balances_the_three_equations(values: dict[str, obje
     )
 
 
-@pytest.mark.parametrize("p", [1e9, 1e10, 1e11])
-def test_static_displacement_is_the_printed_formula_corrected(p: float) -> None:
-    s = BASE.with_values({"contact.stiffness": p})
-    a, E, mu, q = 2.0, 1e9, 0.3, 5e6
-    printed = -(a * q / 2 / p) * (2 * E * E + 3 * E * p + (1 - mu * mu) * p * p) / (E * (2 * E + p))
-    assert statics.static_displacement(s) == pytest.approx(printed, rel=1e-14)
-
-
 def test_numbers_of_the_independent_computation() -> None:
     cases = load_scene("figures-5-6").expand()
     assert [round(spectra.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
@@ -71,12 +63,3 @@ def test_plane_strain_is_plane_stress_of_other_moduli() -> None:
     """E / (1 - mu^2) and mu / (1 - mu): at mu = 1/4 16/15 E and 1/3."""
     strain = BASE.with_values({"block.hypothesis": "plane strain", "block.poisson": 0.25})
     assert statics.moduli(strain) == pytest.approx((strain.block.young * 16 / 15, 1 / 3))
-
-
-@pytest.mark.parametrize(("start", "share"), [("zero", 0.25), ("consistent", 0.5)])
-def test_the_first_step_of_a_mode_is_by_its_start(start: str, share: float) -> None:
-    """x1 = Omega^2 share / (1 + alpha Omega^2): alpha from A0 = 0, alpha + (1/2 - alpha) from A0 = w^2."""
-    values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": start, "time.steps": 4}
-    omega = np.array([0.3, 2.0])
-    found = spectra.bar_response(BASE.with_values(values), omega)
-    assert found[0] == pytest.approx(share * omega**2 / (1 + 0.25 * omega**2), rel=1e-14)

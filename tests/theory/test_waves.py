@@ -49,16 +49,6 @@ def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float
     assert np.allclose(z - 1, gg * dt * V + dt**2 * ((0.5 - alpha) + alpha * z) * A, rtol=1e-10)
 
 
-def test_damping_of_constant_acceleration_is_the_sine_of_a_quarter_step() -> None:
-    """Up to half the sampling frequency, w dt = pi; beyond, the steps see the alias at 2 pi - w dt, with its ratio."""
-    assert steady_ratio(3.1, CONSTANT) == pytest.approx(np.sin(3.1 / 4), rel=1e-12)
-    assert abs(steady_ratio(4.0, CONSTANT)) == pytest.approx(np.sin((2 * np.pi - 4.0) / 4), rel=1e-12)
-    w = 2 * np.pi * np.array([5.0, 10.0, 20.0])
-    W = np.sqrt(Stepping(0.01).squared_frequency(w))
-    assert np.allclose(-W.imag / np.abs(W), np.sin(w * 0.01 / 4), rtol=1e-12)
-    assert np.allclose(100 * np.sin(w * 0.01 / 4), [7.846, 15.643, 30.902], atol=5e-4)
-
-
 @pytest.mark.parametrize(("blocks", "courant", "constant", "average"), WAVES)
 def test_waves_in_welded_blocks(
     blocks: float, courant: float, constant: tuple[float, float], average: tuple[float, float]
@@ -114,20 +104,3 @@ def test_joint_in_a_column(blocks: float, courant: float, scheme: tuple[float, f
 def test_joint_in_a_continuum() -> None:
     found = waves.joint_transmission([0.25, 0.5, 1.0, 2.0])
     assert np.allclose(found, [0.4472136, 0.7071068, 0.8944272, 0.9701425], atol=5e-8)
-
-
-def steady_ratio(w_dt: float, scheme: tuple[float, float], gg: float = 1.0) -> float:
-    """Return -Im W / |W| at dt = 1 s."""
-    W = np.sqrt(Stepping(1.0, *scheme, gg).squared_frequency(w_dt))
-    return float(-W.imag / abs(W))
-
-
-@pytest.mark.parametrize(("scheme", "order"), [(AVERAGE, 2.0), (CONSTANT, 1.0)])
-def test_a_joint_tends_to_the_continuum_with_the_order_of_the_scheme(scheme: tuple[float, float], order: float) -> None:
-    """At c dt/h = 1/2; the blocks alone have order 2, but the step is refined with them."""
-    errors = []
-    for blocks in (20, 40, 80, 160):
-        stepping, omega = wave(blocks, 0.5, scheme)
-        transmitted, _ = waves.joint_in_column(COLUMN, stepping.squared_frequency(omega), 2000.0 * SPEED * omega)
-        errors.append(abs(abs(transmitted) - waves.joint_transmission(1.0)))
-    assert np.polyfit(np.log([20, 40, 80, 160]), np.log(errors), 1)[0] == pytest.approx(-order, abs=0.06)

@@ -26,7 +26,7 @@ from validation.runs.modes import Mode
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.events import rectangle
-from validation.theory import landing, spectra
+from validation.theory import landing
 from validation.theory.rebound import ReboundStatistics, rebound_statistics, spring_steps
 from validation.theory.stages import Stages
 from validation.theory.stepping import Stepping
@@ -123,19 +123,14 @@ def advise_across(
         raise InputError(rule, field="damping", value=f"{damping:g}", advice=advice)
     Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
-    frequencies = _block_frequencies(scene)
-    hertz = frequencies.first / (2 * math.pi) if frequency is None else float(frequency)
+    block = _closed_block(scene)
+    modes = dda_modes(block)
+    highest = highest_frequency(block)
+    impact = highest if rectangle(scene) is None else landing.contact_frequency(scene)
+    hertz = modes[0].frequency / (2 * math.pi) if frequency is None else float(frequency)
     wish = scene.contact.law == "unilateral" if no_gain is None else no_gain
-    describe = functools.partial(_offer, scene, 2 * math.pi * hertz, frequencies)
-    offers = []
-    unreachable: dict[str, float] = {}
-    for name, settings, stepping, largest in _candidates(scene, float(damping), 2 * math.pi * hertz):
-        if stepping is None:
-            unreachable[name] = largest
-        else:
-            back = {"time.scheme": "newmark"} if stepping.scheme == "newmark" != scene.time.scheme else {}
-            offers.append(describe(name, back | settings, stepping))
-
+    steppings, unreachable = _candidates(scene, float(damping), 2 * math.pi * hertz)
+    offers = [_offer(scene, 2 * math.pi * hertz, modes, highest, impact, stepping) for stepping in steppings]
     starts = scene.time.start == "consistent" and scene.load.ramp == 0
 
     def rank(offer: Offer) -> tuple[bool, bool, bool, bool, float]:
@@ -148,107 +143,71 @@ def advise_across(
     return replace(answer, sentence=_sentence(answer))
 
 
-@dataclass(frozen=True)
-class BlockFrequencies:
-    """What a block on its springs vibrates at [rad/s]."""
-
-    first: float  # its first axial mode, contact closed
-    highest: float  # its highest mode, the contact's where p is large
-    impact: float  # pi over the duration of a landing
-    modes: tuple[Mode, ...]  # contact closed
-
-
-def _block_frequencies(scene: Scene) -> BlockFrequencies:
-    """Return the frequencies of a block; of one that opens as of a rectangle with mu = 0 whose contact is closed."""
+def _closed_block(scene: Scene) -> Scene:
+    """Return a block whose contact stays closed, which has modes; one that opens must be a rectangle on springs."""
     features.refuse_column(scene, "advise")
-    if scene.contact.law == "unilateral":
-        if rectangle(scene) is None or not math.isfinite(scene.contact.stiffness):
-            rule = "must be a rectangle on springs of finite stiffness where contact opens"
-            raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
-        impact = landing.contact_frequency(scene)
-        modes = dda_modes(closed(scene))
-        return BlockFrequencies(spectra.dda_frequency(scene), spectra.contact_frequency(scene), impact, modes)
-    highest = highest_frequency(scene)
-    impact = highest if rectangle(scene) is None else landing.contact_frequency(scene)
-    modes = dda_modes(scene)
-    return BlockFrequencies(modes[0].frequency, highest, impact, modes)
+    is_known = rectangle(scene) is not None and math.isfinite(scene.contact.stiffness)
+    if scene.contact.law == "unilateral" and not is_known:
+        rule = "must be a rectangle on springs of finite stiffness where contact opens"
+        raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
+    return closed(scene)
 
 
 # ---- candidates -----------------------------------------------------------------------------------------------------
 
-Candidate = tuple[str, dict[str, Any], Stepping | None, float]
 
-
-def _candidates(scene: Scene, target: float, omega: float) -> Iterator[Candidate]:
-    """Yield name, settings and stepping of what has the target; None with the largest xi of what has it nowhere."""
+def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], dict[str, float]]:
+    """Return the steps that have the target, and by name the largest xi of the schemes that have it nowhere."""
     present = Stepping.of(scene)
-    weights = [(present.alpha, present.delta)] if present.scheme == "newmark" else []
-    for alpha, delta in dict.fromkeys([CONSTANT, *weights]):
-        if delta > 0.5:
-            newmark = Stepping(1.0, alpha, delta)
-            yield _at_its_step(newmark, {"time.alpha": alpha, "time.delta": delta}, target, omega)
+    weights = [CONSTANT, (present.alpha, present.delta)] if present.scheme == "newmark" else [CONSTANT]
+    units = [Stepping(1.0, alpha, delta) for alpha, delta in dict.fromkeys(weights) if delta > 0.5]
     for scheme, radii in LADDER.items():
-        for radius in radii:
-            stepping = Stepping.named(scheme, rho_inf=radius)
-            yield _at_its_step(stepping, {"time.scheme": scheme, "time.rho_inf": radius}, target, omega)
-    yield "leapfrog", {}, None, 0.0  # which damps nothing
-    yield from _at_the_present_step(present.step, target, omega)
+        units += [Stepping.named(scheme, rho_inf=radius) for radius in radii]
+    steppings: list[Stepping | None] = []
+    unreachable: dict[str, float] = {}
+    for unit in units:
+        ratios = _ratios(unit)
+        if not np.any(ratios >= target):
+            unreachable[_named(unit)] = float(np.nanmax(ratios))
+            continue
+        i = int(np.argmax(ratios >= target))
+        W = _root(unit.damping_ratio, target, OMEGAS[max(i - 1, 0)], OMEGAS[i])
+        steppings.append(unit.at(float(OMEGAS[i] if W is None else W) / omega))
+    unreachable["leapfrog"] = 0.0  # which damps nothing
+
+    # the families of one parameter at the present step
+    def boundary(delta: float) -> Stepping:
+        return Stepping(present.step, (0.5 + delta) ** 2 / 4, delta)
+
+    steppings.append(_member(boundary, target, omega, (0.5, 1.5)))
+    for scheme, radii in LADDER.items():
+        family = functools.partial(_of_radius, scheme, present.step)
+        member = _member(family, target, omega, (0.5 if scheme == "hht" else 0.0, 1.0))
+        if member is not None and all(abs((member.rho_inf or 0.0) - radius) > 1e-6 for radius in radii):
+            steppings.append(member)
     # average acceleration damps nothing of its own, so that a rate of gg is all there is: xi = c / (2 w)
     step = min(present.step, RESOLVED / omega)
-    least = math.exp(-4 * target * omega * step)
-    gg = _root(lambda value: Stepping(step, *AVERAGE, gg=value).damping_ratio(omega * step), target, least, 1.0)
-    if gg is not None:
-        settings = {"time.alpha": 0.25, "time.delta": 0.5, "time.step": step, "time.gg": gg}
-        yield _named(Stepping(step, *AVERAGE, gg=gg)), settings, Stepping(step, *AVERAGE, gg=gg), target
+    discounted = functools.partial(Stepping, step, *AVERAGE)
+    steppings.append(_member(discounted, target, omega, (math.exp(-4 * target * omega * step), 1.0)))
+    return [stepping for stepping in steppings if stepping is not None], unreachable
 
 
-def _at_its_step(unit: Stepping, settings: dict[str, Any], target: float, omega: float) -> Candidate:
-    """Return a scheme at the smallest step at which it has the target."""
-    ratios = _ratios(unit)
-    reached = np.flatnonzero(ratios >= target)
-    if not reached.size:
-        return _named(unit), settings, None, float(np.nanmax(ratios))
-    i = int(reached[0])
-    W = _root(unit.damping_ratio, target, float(OMEGAS[max(i - 1, 0)]), float(OMEGAS[i]))
-    step = (float(OMEGAS[i]) if W is None else W) / omega
-    stepping = unit.at(step)
-    return _named(unit), settings | {"time.step": step, "time.gg": 1.0}, stepping, target
+def _of_radius(scheme: str, step: float, radius: float) -> Stepping:
+    return Stepping.named(scheme, step, rho_inf=radius)
+
+
+def _member(
+    family: Callable[[float], Stepping], target: float, omega: float, ends: tuple[float, float]
+) -> Stepping | None:
+    """Return the scheme of a family that has the target at a frequency; None where the ends do not bracket it."""
+    number = _root(lambda value: family(value).damping_ratio(omega * family(value).step), target, *ends)
+    return None if number is None else family(number)
 
 
 @functools.lru_cache(maxsize=64)
 def _ratios(unit: Stepping) -> Any:
     """Return xi over `OMEGAS`, of which not a number is never reached."""
     return np.array([unit.damping_ratio(float(W)) for W in OMEGAS])
-
-
-def _at_the_present_step(step: float, target: float, omega: float) -> Iterator[Candidate]:
-    """Yield the schemes of one parameter with the value of it that has the target at a step."""
-    W = omega * step
-
-    def family(delta: float) -> Stepping:
-        return Stepping(step, (0.5 + delta) ** 2 / 4, delta)
-
-    delta = _root(lambda value: family(value).damping_ratio(W), target, 0.5, 1.5)
-    if delta is not None:
-        stepping = family(delta)
-        settings: dict[str, Any] = {
-            "time.alpha": stepping.alpha,
-            "time.delta": delta,
-            "time.step": step,
-            "time.gg": 1.0,
-        }
-        yield _named(stepping), settings, stepping, target
-    for scheme, radii in LADDER.items():
-        least = 0.5 if scheme == "hht" else 0.0
-
-        def ratio(radius: float, scheme: str = scheme) -> float:
-            return Stepping.named(scheme, step, rho_inf=radius).damping_ratio(W)
-
-        radius = _root(ratio, target, least, 1.0)
-        if radius is not None and all(abs(radius - value) > 1e-6 for value in radii):
-            stepping = Stepping.named(scheme, step, rho_inf=radius)
-            settings = {"time.scheme": scheme, "time.rho_inf": radius, "time.step": step, "time.gg": 1.0}
-            yield _named(stepping), settings, stepping, target
 
 
 def _root(ratio: Callable[[float], float], target: float, low: float, high: float) -> float | None:
@@ -274,39 +233,35 @@ def _named(stepping: Stepping) -> str:
 
 
 def _offer(
-    scene: Scene,
-    omega: float,
-    frequencies: BlockFrequencies,
-    name: str,
-    settings: dict[str, Any],
-    stepping: Stepping,
+    scene: Scene, omega: float, modes: tuple[Mode, ...], highest: float, impact: float, stepping: Stepping
 ) -> Offer:
     """Return a scheme at its step with all that follows from it."""
     dt = stepping.step
-    contact = frequencies.highest * dt
-    impact = frequencies.impact * dt
-    statistics = _rebound(stepping.stages, min(max(impact, LEAST_IMPACT), IMPACTS[-1]))
-    greatest = max(_rebound(stepping.stages, W).most for W in IMPACTS)
     present = Stepping.of(scene)
-    cost = stepping.solves / dt / (present.solves / present.step) if present.solves else None
-    radius = stepping.spectral_radius(contact)
+    settings: dict[str, Any] = {"time.step": dt, "time.gg": stepping.gg}
+    if stepping.scheme != "newmark":
+        settings |= {"time.scheme": stepping.scheme, "time.rho_inf": stepping.rho_inf}
+    else:
+        settings |= {"time.alpha": stepping.alpha, "time.delta": stepping.delta}
+        settings |= {} if present.scheme == "newmark" else {"time.scheme": "newmark"}
+    rebound = _rebound(stepping.stages, min(max(impact * dt, LEAST_IMPACT), IMPACTS[-1]))
     offer = Offer(
-        name=name,
-        settings=settings,
-        step=dt,
-        gg=stepping.gg,
-        damping=stepping.damping_ratio(omega * dt),
-        period_error=stepping.period_error(omega * dt),
-        hidden={f"{share * omega / (2 * math.pi):.6g}": _number(stepping, share * omega * dt) for share in OTHERS},
-        first_mode=_number(stepping, frequencies.first * dt),
-        contact_mode=_number(stepping, contact),
-        contact_radius=radius,
-        cost=cost,
-        rebound={"mean": statistics.mean, "least": statistics.least, "most": statistics.most},
-        greatest_rebound=greatest,
-        gains=statistics.most > 1 + GAIN,
-        start_rise=overshoot.rise_of(stepping, frequencies.modes),
-        fears=(),
+        _named(stepping),
+        settings,
+        dt,
+        stepping.gg,
+        stepping.damping_ratio(omega * dt),
+        stepping.period_error(omega * dt),
+        {f"{share * omega / (2 * math.pi):.6g}": _number(stepping, share * omega * dt) for share in OTHERS},
+        _number(stepping, modes[0].frequency * dt),
+        _number(stepping, highest * dt),
+        stepping.spectral_radius(highest * dt),
+        stepping.solves / dt / (present.solves / present.step) if present.solves else None,
+        {"mean": rebound.mean, "least": rebound.least, "most": rebound.most},
+        max(_rebound(stepping.stages, W).most for W in IMPACTS),
+        rebound.most > 1 + GAIN,
+        overshoot.rise_of(stepping, modes),
+        (),
     )
     return replace(offer, fears=tuple(_fears(offer, omega)))
 

@@ -184,14 +184,17 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only
     search = SEARCHES[solve_for](scene, modes[0].frequency, highest)
     values = search.solutions(damping)
-    if not values and _everywhere(search, damping):
-        values = [_present_coordinate(scene, solve_for, modes[0].frequency)]
-    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
+    coordinates, ratios = search.samples
     reach: Reach = (None, None, None, None)
-    if ends := search.ends():
-        least = min(ends, key=search.at)
-        greatest = max(ends, key=search.at)
-        reach = (search.at(least), search.value(least), search.at(greatest), search.value(greatest))
+    if np.isfinite(ratios).any():
+        least, greatest = float(np.nanmin(ratios)), float(np.nanmax(ratios))
+        # average acceleration without discount has xi = 0 at any dt: the present one will do
+        if not values and max(abs(least - damping), abs(greatest - damping)) < 1e-15:
+            present = {"dt": math.log(modes[0].frequency * scene.time.step), "gg": -scene.time.discount}
+            values = [present.get(solve_for, scene.time.delta)]
+        at_least, at_greatest = coordinates[[np.nanargmin(ratios), np.nanargmax(ratios)]]
+        reach = (least, search.value(float(at_least)), greatest, search.value(float(at_greatest)))
+    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
     text = _sentence(scene, solve_for, damping, solutions, reach)
     answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
     if solutions:
@@ -201,18 +204,6 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     }
     instead, words = alternative(scene, solve_for, damping, makes, modes[0].frequency)
     return replace(answer, sentence=f"{answer.sentence} {words}", instead=instead)
-
-
-def _everywhere(search: Search, target: float) -> bool:
-    """Whether every value gives the target (average acceleration without discount has xi = 0 at any dt)."""
-    ends = search.ends()
-    return bool(ends) and all(abs(search.at(s) - target) < 1e-15 for s in ends)
-
-
-def _present_coordinate(scene: Scene, solve_for: str, frequency: float) -> float:
-    """Return the coordinate of a search at which the scene is as it stands."""
-    t = scene.time
-    return {"dt": math.log(frequency * t.step), "gg": -t.discount, "scheme": t.delta}[solve_for]
 
 
 def _solution(scene: Scene, search: Search, s: float) -> Solution:

@@ -88,7 +88,7 @@ def agreement(scene: Scene, finished: Cases) -> str:
     difference = pair_metric("displacement.l2", history, reference)
     if not isinstance(difference, float) or difference >= AGREES:
         return ""
-    return f"{judged} and {name} are {100 * difference:.2g} % apart"
+    return f"{judged} and {name} are {100 * difference:.2g} % apart only"
 
 
 def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, History | None]:

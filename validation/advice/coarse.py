@@ -146,7 +146,9 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
 def motions(scene: Scene, frequency: float | None = None) -> Iterator[Motion]:
     """Yield what the motion of a scene is made of: the first mode, and the wave that drives a column."""
-    if scene.kind == "rigid" or (scene.kind == "block" and (_moves_as_a_whole(scene) or _is_driven_slowly(scene))):
+    if scene.kind == "block" and (_moves_as_a_whole(scene) or _is_driven_slowly(scene)):
+        return
+    if scene.kind in ("rigid", "plane"):  # no mode; and glued blocks, which are read at rest and not over time
         return
     first = first_frequency(scene) if frequency is None else frequency
     if first is not None and math.isfinite(first) and first > 0 and not _is_ramped(scene, first):

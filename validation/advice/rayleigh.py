@@ -16,8 +16,9 @@ are given xi_min = sqrt(a0 a1) at f_min = sqrt(a0 / a1) / (2 pi).
 from __future__ import annotations
 
 import contextlib
+import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,7 +29,9 @@ from validation.errors import InputError
 from validation.runs.history import Array
 from validation.theory.stepping import Stepping
 
-STARTS = 30  # of the search for a scheme, where the leading order does not lead to one
+STARTS = 20  # steps, or delta, from which a scheme is looked for
+TOLERANCES = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
+LARGE = 1e3  # times a ratio: in place of one that no step has
 ROUNDING = 1e-9  # of a discount that is 0 or 1, or of a ratio
 WRITTEN = 0.005  # of a ratio: what the digits in which it is written leave open
 
@@ -224,8 +227,8 @@ def settings(target: Rayleigh, scheme: Stepping, keep_step: bool = False) -> Ste
 def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: bool = False) -> Stepping:
     """Return the scheme whose steady ratios at two frequencies in Hz are the target ones.
 
-    The search begins at `settings`, and where that leads nowhere on a grid of all steps (or all delta) and discounts:
-    at w dt of order one a scheme may have ratios that none has to leading order. Of several the one with the smallest
+    The search begins at `settings` and on a grid of all steps (or all delta) and discounts: at w dt of order one a
+    scheme may have ratios that none has to leading order. Of several the one with the smallest
     step (or delta) is taken. A scheme without discount is an edge of what can be had: where it alone has both ratios to
     the few digits in which ratios are written, it is returned.
 
@@ -234,109 +237,51 @@ def exact_settings(first: Point, second: Point, scheme: Stepping, keep_step: boo
     InputError
         No scheme with its step below half a period of the higher frequency has them.
     """
-    frequencies = np.array([first[0], second[0]])
-    target_ratios = np.array([first[1], second[1]])
-    shortest_period = 1 / float(frequencies.max())
-    target = Rayleigh.through(first, second)
+    from scipy.optimize import least_squares
 
-    def candidate(size: float, gg: float) -> Stepping:
+    shortest_period = 1 / max(first[0], second[0])
+
+    def candidate(x: Array) -> Stepping:
+        size, gg = map(float, x)
         if keep_step:
             delta = 0.5 + size
             return replace(scheme, delta=delta, alpha=max(scheme.alpha, delta / 2), gg=gg)
         return replace(scheme, step=size, gg=gg)
 
-    def fits(stepping: Stepping) -> bool:
-        has_ratios = np.allclose(ratio(stepping, frequencies), target_ratios, rtol=1e-9, atol=1e-15)
-        return has_ratios and stepping.step <= shortest_period / 2 * (1 + 1e-9)
+    def residuals(x: Array) -> Array:
+        with np.errstate(all="ignore"):  # a trial may lie where no step exists
+            errors = [float(ratio(candidate(x), f)) / max(xi, ROUNDING) - 1 for f, xi in (first, second)]
+        return np.nan_to_num(errors, nan=LARGE, posinf=LARGE, neginf=-LARGE)
 
     starts = []
     with contextlib.suppress(InputError):
-        leading = settings(target, scheme, keep_step)
-        if fits(leading):
-            return leading
+        leading = settings(Rayleigh.through(first, second), scheme, keep_step)
         starts.append((leading.delta - 0.5 if keep_step else leading.step, leading.gg))
-    solutions = _solutions(candidate, fits, frequencies, target_ratios, starts)
-    if not solutions:
-        sizes = np.geomspace(1e-4, 10, 60) if keep_step else shortest_period / 2 * np.geomspace(1e-6, 1, 60)
-        starts = _grid_starts(candidate, frequencies, target_ratios, sizes)
-        solutions = _solutions(candidate, fits, frequencies, target_ratios, starts)
-    if not solutions:
-        edge = _without_discount(candidate, frequencies, target_ratios, sizes)
-        if misfit(edge, first, second) <= WRITTEN:
-            return edge
-        fixed = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
-        raise InputError(
-            f"no scheme with {fixed} has these two ratios", field="damping", advice="ask for smaller or closer ones"
-        )
-    return min(solutions, key=lambda solution: (solution.delta, solution.step))
+    # of delta - 1/2, or of the step [s]
+    low, high = (1e-4, 10.0) if keep_step else (shortest_period * 5e-7, shortest_period / 2)
+    starts += itertools.product(np.geomspace(low, high, STARTS), (1.0, 0.9))
+    bounds = ([0.0 if keep_step else low, 0.0], [high, 1.0])
+    edge = None
+    for start in starts:
+        inside = np.clip(start, *bounds)
+        x = least_squares(residuals, inside, bounds=bounds, method="dogbox", x_scale="jac", **TOLERANCES).x
+        stepping = candidate(x)
+        missed = misfit(stepping, first, second)
+        if missed <= ROUNDING:
+            return stepping
+        if stepping.gg == 1 and missed <= WRITTEN:
+            edge = stepping
+    if edge is not None:
+        return edge
+    fixed = f"dt = {scheme.step:g} s" if keep_step else f"alpha = {scheme.alpha:g}, delta = {scheme.delta:g}"
+    raise InputError(
+        f"no scheme with {fixed} has these two ratios", field="damping", advice="ask for smaller or closer ones"
+    )
 
 
 def misfit(scheme: Stepping, *points: Point) -> float:
     """Return by how much the steady ratios of a scheme miss target ones, the largest as a share of its target."""
     return max(abs(float(ratio(scheme, f)) - xi) / max(xi, ROUNDING) for f, xi in points)
-
-
-Candidate = Callable[[float, float], Stepping]  # of a step [s] or of delta - 1/2, and of gg
-
-
-def _grid_starts(candidate: Candidate, frequencies: Array, target: Array, sizes: Array) -> list[tuple[float, float]]:
-    """Return the points of a grid at which the ratios come nearest to the target ones, the nearest first."""
-    discounts = 1 - np.concatenate([[0.0], np.geomspace(1e-6, 0.99, 30)])
-    points = []
-    for size in sizes.tolist():
-        for gg in discounts.tolist():
-            with np.errstate(all="ignore"):  # a root at infinity
-                distance = float(np.abs(ratio(candidate(size, gg), frequencies) - target).max())
-            if math.isfinite(distance):
-                points.append((distance, size, gg))
-    return [(size, gg) for _, size, gg in sorted(points)[:STARTS]]
-
-
-def _without_discount(candidate: Candidate, frequencies: Array, target: Array, sizes: Array) -> Stepping:
-    """Return the scheme at gg = 1 whose ratios come nearest to the target ones."""
-    from scipy.optimize import minimize_scalar
-
-    def distance(log_size: float) -> float:
-        with np.errstate(all="ignore"):
-            ratios = ratio(candidate(math.exp(log_size), 1.0), frequencies)
-        return float(np.nan_to_num(np.abs(ratios / np.maximum(target, ROUNDING) - 1).max(), nan=math.inf))
-
-    logs = np.log(sizes)
-    near = int(np.argmin([distance(x) for x in logs.tolist()]))
-    bounds = (float(logs[max(near - 1, 0)]), float(logs[min(near + 1, len(logs) - 1)]))
-    best = minimize_scalar(distance, bounds=bounds, method="bounded", options={"xatol": 1e-12})
-    return candidate(math.exp(float(best.x)), 1.0)
-
-
-def _solutions(
-    candidate: Candidate,
-    fits: Callable[[Stepping], bool],
-    frequencies: Array,
-    target: Array,
-    starts: Sequence[tuple[float, float]],
-) -> list[Stepping]:
-    """Return the schemes with the target ratios that are reached from some starts (step or delta - 1/2, and gg)."""
-    from scipy.optimize import root
-
-    scale = max(float(target.max()), 1e-15)
-
-    def size_of(log_size: float) -> float:
-        return float(np.exp(min(log_size, 10.0)))
-
-    def residual(x: Array) -> Array:
-        # the formulas hold beyond gg = 1, so that a scheme without discount is no edge of the search
-        return (ratio(candidate(size_of(x[0]), float(x[1])), frequencies) - target) / scale
-
-    solutions = []
-    for size, gg in starts:
-        with np.errstate(all="ignore"):  # a trial may lie where no step exists
-            log_size, discount = root(residual, [math.log(size), gg], tol=1e-13).x
-        if not -ROUNDING <= discount <= 1 + ROUNDING:
-            continue
-        scheme = candidate(size_of(log_size), min(max(float(discount), 0.0), 1.0))
-        if fits(scheme):
-            solutions.append(scheme)
-    return solutions
 
 
 def _check_points(*points: Point) -> None:

@@ -80,51 +80,43 @@ class Response:
         """
         values = self.columns[column]
         size = np.abs(values)
-        local = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
-        brackets = [(int(i) - 1, int(i) + 1) for i in local]
         # without damping amplitudes are real: a change of sign may hide a resonance of which neither end is a maximum
-        signs = np.flatnonzero(_is_real(values[:-1]) & _is_real(values[1:]) & (values.real[:-1] * values.real[1:] < 0))
-        brackets += [(int(i), int(i) + 1) for i in signs]
+        is_pole = _are_real(values[:-1]) & _are_real(values[1:]) & (values.real[:-1] * values.real[1:] < 0)
+        local = 1 + np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:]))
+        brackets = [*zip(local - 1, local + 1, strict=True), *((i, i + 1) for i in np.flatnonzero(is_pole))]
         peaks: list[Peak] = []
         for low, high in brackets:
             peak = self._follow(column, float(self.frequency[low]), float(self.frequency[high]))
-            if peak is not None and not any(_is_same(peak, other) for other in peaks):
+            if peak is not None and not any(math.isclose(peak[0], other[0], rel_tol=SAME) for other in peaks):
                 peaks.append(peak)
         return sorted(peaks, key=lambda peak: (peak.is_bounded, -peak.amplitude if peak.is_bounded else peak.frequency))
 
     def _follow(self, column: str, low: float, high: float) -> Peak | None:
         """Return the peak between two frequencies; None where the amplitude is highest at an end."""
-        first, last = low, high
-        coarse = 0.0
-        undamped = False
+        ends = (low, high)
+        sizes: list[float] = []
         while True:
             frequency = np.linspace(low, high, POINTS_A_ZOOM)
             values = self.answer(frequency)[column]
             size = np.where(np.isfinite(values), np.abs(values), np.inf)
             highest = int(np.argmax(size))
-            if coarse == 0:
-                coarse = float(size[highest])
-                undamped = bool(np.mean(_is_real(values)) > 0.5)  # next to a pole the imaginary rounding grows too
+            sizes.append(float(size[highest]))
+            if len(sizes) == 1:
+                undamped = np.mean(_are_real(values)) > 0.5  # next to a pole the imaginary rounding grows too
             beside = slice(max(highest - 1, 0), highest + 2)
-            low, high = (float(end) for end in frequency[beside][[0, -1]])
+            low, high = frequency[beside][[0, -1]]
             if high - low <= NARROW * high:
                 break
-        middle = float(frequency[highest])
-        if not first < middle < last:
+        if not ends[0] < frequency[highest] < ends[1]:
             return None
         # At a pole, a real amplitude changes its sign and grows as 1 / |f - f0|; a bounded one has converged.
-        around = values[beside].real
-        is_pole = undamped and around[0] * around[-1] < 0 and size[highest] > GROWTH * coarse
-        return Peak(middle, math.inf if is_pole else float(size[highest]))
+        is_pole = undamped and np.ptp(np.sign(values.real[beside])) == 2 and sizes[-1] > GROWTH * sizes[0]
+        return Peak(float(frequency[highest]), math.inf if is_pole else sizes[-1])
 
 
-def _is_real(values: Complex) -> NDArray[np.bool_]:
+def _are_real(values: Complex) -> NDArray[np.bool_]:
     """Whether amplitudes have no imaginary part but rounding."""
     return np.asarray(np.abs(values.imag) <= ROUNDING * np.abs(values))
-
-
-def _is_same(peak: Peak, other: Peak) -> bool:
-    return math.isclose(peak.frequency, other.frequency, rel_tol=SAME)
 
 
 def polar(amplitude: Complex) -> tuple[Array, Array]:

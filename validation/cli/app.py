@@ -57,11 +57,15 @@ def writable(path: Path | None) -> Path | None:
 
 
 def writable_pdf(path: Path | None) -> Path | None:
-    """Refuse a file that is no PDF by its name, or could not be written."""
+    """Refuse a file that is no PDF by its name, could not be written, or needs an extra that is not installed."""
     if path is not None and path.suffix.lower() != ".pdf":
         from validation.errors import InputError
 
         raise InputError("must end in .pdf", source=path)
+    if path is not None:
+        from validation.runs import extras
+
+        extras.require("--out", *extras.PDF)
     return writable(path)
 
 

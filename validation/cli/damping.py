@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -19,11 +20,12 @@ from validation.cli.app import (
 from validation.cli.printing.output import broken, columns, echo_answer
 
 if TYPE_CHECKING:
-    from validation.advice.across import SchemeAdvice
-    from validation.advice.advice import Advice, Solution
+    from validation.advice.advice import Solution
+    from validation.advice.columns import ColumnLimits
     from validation.advice.spectra import Damping
-    from validation.advice.wave_advice import WaveAdvice
     from validation.scenes.scene import Scene
+
+Answer = tuple[Any, Iterable[str]]  # plain data, and the lines that say it
 
 
 @app.command()
@@ -91,10 +93,7 @@ def advise(
 
     Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
     """
-    from dataclasses import asdict
-
-    from validation.advice.columns import advised, column_alarms, limits, rest
-    from validation.advice.plain import plain
+    from validation.advice.columns import limits
     from validation.errors import InputError
     from validation.scenes.features import refuse_nonlinear
 
@@ -108,76 +107,79 @@ def advise(
     if (bounds := limits(case)) is not None:
         if damping is not None or fmax is not None:
             refuse_nonlinear(case, "--damping and --fmax are")
-        with _progress("advise", between_calls=True):
-            resting = rest(case)
-        alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
-        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
-        echo_answer(plain(data), map(broken, (*advised(case, bounds, resting), *alarms)), as_json)
-    elif (damping is None) == (fmax is None):
+        answer = partial(_of_column, case, bounds)
+    elif damping is None and fmax is not None:
+        answer = partial(_of_wave, case, fmax, loss, wavelengths, phase_error)
+    elif damping is None or fmax is not None:
         number = "neither" if damping is None else "both"
         raise InputError("one of them must be given", field="--damping, --fmax", value=number)
     elif is_across:
-        from validation.advice.across import advise_across
-
-        with _progress("advise", between_calls=True):
-            schemes = advise_across(case, float(damping or 0), at, no_gain)
-        echo_answer(schemes.as_dict(), _scheme_lines(schemes), as_json)
-    elif damping is None:
-        from validation.advice.wave_advice import advise_wave
-
-        wave = advise_wave(case, float(fmax or 0), loss, wavelengths, phase_error)
-        echo_answer(wave.as_dict(), _wave_lines(wave), as_json)
+        answer = partial(_of_schemes, case, damping, at, no_gain)
     else:
-        _advise_damping(case, damping, solve_for or "dt", as_json)
+        answer = partial(_of_damping, case, damping, solve_for or "dt")
+    with _progress("advise", between_calls=True):
+        data, lines = answer()
+    echo_answer(data, lines, as_json)
 
 
-def _wave_lines(advice: WaveAdvice) -> Iterator[str]:
-    """Yield what the present blocks and step do to a wave, and which would do."""
-    yield f"{broken(advice.sentence)}\n{broken(advice.advice)}\n"
+def _of_column(case: Scene, bounds: ColumnLimits) -> Answer:
+    """Say which solves a column whose contacts open or slip needs, when it comes to rest, and what to fear."""
+    from dataclasses import asdict
+
+    from validation.advice.columns import advised, column_alarms, rest
+    from validation.advice.plain import plain
+
+    resting = rest(case)
+    alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
+    data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
+    return plain(data), map(broken, (*advised(case, bounds, resting), *alarms))
+
+
+def _of_wave(case: Scene, fmax: float, loss: float, wavelengths: float | None, phase_error: float) -> Answer:
+    """Say what the present blocks and step do to a wave, and which would do."""
+    from validation.advice.wave_advice import advise_wave
+
+    advice = advise_wave(case, fmax, loss, wavelengths, phase_error)
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", advice.present), ("advised", advice.advised)):
         if passage is not None:
             heights = ", ".join(f"{height:.5g}" for height in passage.heights)
             shares = f"{100 * passage.loss:.4g} %", f"{passage.delay:+.4g}", _percent(passage.damping)
             rows.append((name, heights, f"{passage.step:.6g}", *shares))
-    yield columns(rows)
+    return advice.as_dict(), [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
 
 
-def _scheme_lines(advice: SchemeAdvice) -> Iterator[str]:
-    """Yield which schemes have a damping ratio at a frequency, and what else they do."""
-    yield f"{broken(advice.sentence)}\n"
-    frequencies = [f"xi at {float(hertz):.4g} Hz" for hertz in (advice.offers[0].hidden if advice.offers else ())]
-    rows: list[tuple[str, ...]] = [
-        ("", "dt [s]", *frequencies, "first mode", "contact", "solves", "rebound", "at any step")
-    ]
-    for offer in advice.offers:
-        ratios = (*offer.hidden.values(), offer.first_mode, offer.contact_mode)
-        most = f"{offer.rebound['most']:.3g}"
-        cost = _number(offer.cost, ".3g")
-        rows.append(
-            (offer.name, f"{offer.step:.5g}", *map(_percent, ratios), cost, most, f"{offer.greatest_rebound:.3g}")
-        )
-    yield columns(rows)
-    yield "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
-    for offer in advice.offers:
-        if offer.fears:
-            yield broken(f"{offer.name}: {'; '.join(offer.fears)}")
-    for name, largest in advice.unreachable.items():
-        yield broken(f"{name}: has {_percent(largest)} there at most, at any step")
+def _of_schemes(case: Scene, damping: float, at: float | None, no_gain: bool | None) -> Answer:
+    """Say which schemes have a damping ratio at a frequency, and what else they do."""
+    from validation.advice.across import advise_across
+
+    advice = advise_across(case, damping, at, no_gain)
+    offers = advice.offers
+    heads = [f"xi at {float(hertz):.4g} Hz" for hertz in (offers[0].hidden if offers else ())]
+    rows: list[tuple[str, ...]] = [("", "dt [s]", *heads, "first mode", "contact", "solves", "rebound", "at any step")]
+    for offer in offers:
+        ratios = map(_percent, (*offer.hidden.values(), offer.first_mode, offer.contact_mode))
+        numbers = (_number(number, ".3g") for number in (offer.cost, offer.rebound["most"], offer.greatest_rebound))
+        rows.append((offer.name, f"{offer.step:.5g}", *ratios, *numbers))
+    notes = [f"{offer.name}: {'; '.join(offer.fears)}" for offer in offers if offer.fears]
+    notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
+    legend = "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
+    return advice.as_dict(), [f"{broken(advice.sentence)}\n", columns(rows), legend, *map(broken, notes)]
 
 
-def _advise_damping(case: Scene, damping: float, solve_for: str, as_json: bool) -> None:
-    """Find the time step, discount or scheme that gives a target damping ratio."""
+def _of_damping(case: Scene, damping: float, solve_for: str) -> Answer:
+    """Say which time step, discount or scheme gives a damping ratio of the first mode, and what follows from it."""
     from validation.advice.advice import advise as solve_for_damping
     from validation.advice.advice import expected_errors
 
-    with _progress("advise", between_calls=True):
-        advice = solve_for_damping(case, damping, solve_for)
-        errors = [expected_errors(case, solution) for solution in advice.solutions]
+    advice = solve_for_damping(case, damping, solve_for)
     data = advice.as_dict()
-    for solution, error in zip(data["solutions"], errors, strict=True):
-        solution["errors"] = error
-    echo_answer(data, _advice_lines(advice, errors), as_json)
+    lines = [broken(advice.sentence)]
+    for solution, plain_solution in zip(advice.solutions, data["solutions"], strict=True):
+        plain_solution["errors"] = expected_errors(case, solution)
+        lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
+        lines.append(columns([(f"  {key}", value) for key, value in _facts(solution, plain_solution["errors"])]))
+    return data, lines
 
 
 def _damping_lines(analysis: Damping) -> Iterator[str]:
@@ -202,14 +204,6 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
             f"{math.pi / analysis.step:.6g} rad/s; samples every dt show {analysis.alias:.6g} rad/s instead"
         )
         yield f"\n{broken(alias_note)}"
-
-
-def _advice_lines(advice: Advice, errors: list[dict[str, Any]]) -> Iterator[str]:
-    """Yield the answer in a sentence, and every solution with what follows from it."""
-    yield broken(advice.sentence)
-    for solution, error in zip(advice.solutions, errors, strict=True):
-        yield f"\n{', '.join(f'{key} = {value:.9g}' for key, value in solution.settings.items())}"
-        yield columns([(f"  {key}", value) for key, value in _facts(solution, error)])
 
 
 def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:

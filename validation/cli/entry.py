@@ -28,6 +28,7 @@ from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
 from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import end, interruptible
 from validation.errors import InputError
+from validation.runs import extras
 from validation.runs.text import printable
 
 COMMANDS = (
@@ -113,6 +114,10 @@ def _exit_status(command: Callable[[], object]) -> int:
         if not _is_numerical(error):
             raise
         return _print_error(f"error: {OUT_OF_RANGE} ({_last_argument(error)})")
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in extras.EXTRA_OF:
+            raise
+        return _print_error(f"error: {extras.sentence((error.name or '').partition('.')[0])}")
     except BrokenPipeError:  # what decides a status has been said before
         silence()
         return PASSED

@@ -12,6 +12,7 @@ from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOp
 from validation.cli.judging import all_defects, judged_answer, judged_sets, made_directory
 from validation.cli.printing.output import echo, echo_json, print_blocks
 from validation.errors import InputError
+from validation.runs import extras
 
 REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
 
@@ -82,8 +83,11 @@ def judge(
         for option, value in given.items():
             if value:
                 raise InputError("excludes --site", field=option, value=value)
+        extras.require("--site", *extras.SITE)
         _write_submissions(Path(target), site)
         return
+    if out is not None:
+        extras.require("--out", *extras.SITE)
     if solver is None and scene is None and _has_answers(Path(target)):
         _refuse_set(assignments)
         with all_defects():
@@ -96,7 +100,8 @@ def judge(
         judged, program = _judge_target(target, solver, scene, assignments, progress)
         directory = Path(target) if out is None and solver is None else out
         written: list[Path] = []
-        if directory is not None:
+        page_lacks = extras.missing(*extras.SITE)
+        if directory is not None and page_lacks is None:
             from validation.report.site.judged import write_judged
 
             progress(3, 3, "page and badge")
@@ -107,6 +112,8 @@ def judge(
         echo_json(as_data(judged, program))
     else:
         _print(judged, program, written)
+    if directory is not None and page_lacks is not None:
+        echo(f"no page and badge: {page_lacks}", err=True)
     if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
         raise typer.Exit(GATE_FAILED)
 

@@ -32,13 +32,13 @@ def report(
     figures: Annotated[
         Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
     ] = None,
+    appendix: Annotated[
+        bool, typer.Option("--appendix", help="In the PDF, list the gates that passed, by the reason of their band.")
+    ] = False,
     docs: Annotated[
         str,
         typer.Option(help="With --site: folder of the documentation's pages, seen from it.", metavar="ADDRESS"),
     ] = "",
-    appendix: Annotated[
-        bool, typer.Option("--appendix", help="List the gates that passed, by the reason of their band, in the PDF.")
-    ] = False,
     results: ResultsOption = RESULTS,
 ) -> None:
     """Write the results as PDF, as a site with calculators, or as figures; nothing is computed.
@@ -49,7 +49,7 @@ def report(
     figures[/bold]
     """
     from validation.errors import InputError
-    from validation.report.book import build, write_figures
+    from validation.runs import extras
     from validation.runs.results import Results
 
     if docs and site is None:
@@ -58,6 +58,15 @@ def report(
         out = PDF
     if out is not None and out.suffix.lower() != ".pdf":
         raise InputError("must end in .pdf", field="--out", value=repr(str(out)))
+    for option, path, libraries in (
+        ("--out", out, extras.PDF),
+        ("--site", site, extras.SITE),
+        ("--figures", figures, extras.PDF),
+    ):
+        if path is not None:
+            extras.require(option, *libraries)
+    from validation.report.book import build, write_figures
+
     store = Results(results)
     names = studies or None
     if out is not None:

@@ -309,6 +309,7 @@ def solve(
     Example: [bold]dda-validate solve figures-3-4 --set time.step=0.002 --solver dda --csv history.csv[/bold]
     """
     from validation.errors import InputError
+    from validation.runs import extras
     from validation.runs.files import write_csv
     from validation.runs.run import Outcome
     from validation.solvers.contract import Role
@@ -326,6 +327,8 @@ def solve(
     case = one_case(scene, assignments)
     if fields is not None and fields.suffix not in (".xdmf", ".vtu"):
         raise InputError("must end in .xdmf or .vtu", field="--fields", value=repr(str(fields)))
+    if fields is not None:
+        extras.require("--fields", *extras.MESH)
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}", between_calls=True) as show:
         if adapter.role is Role.REFERENCE:  # an exact motion says by itself how long it takes

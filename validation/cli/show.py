@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 from validation.cli.app import JsonOption, SceneArgument, SetOption, app, print_warnings, stated_scene
 from validation.cli.printing.output import echo_json
 
@@ -26,4 +28,4 @@ def show(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOptio
         return
     title = Heading(f"{stated.name}: {stated.title or 'a scene'}")
     description = SceneDescription.of(stated).blocks(terminal_width())
-    print_blocks([title, *description, Paragraph(f"next: dda-validate run {scene}")])
+    print_blocks([title, *description, Paragraph(f"next: dda-validate run {shlex.quote(scene)}")])

@@ -6,7 +6,7 @@ import csv
 import io
 import itertools
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -14,17 +14,6 @@ from validation.cli.app import RESULTS, ResultsOption, app, writable
 from validation.cli.printing.output import echo
 
 StudyArgument = Annotated[str, typer.Argument(help="A study or scene with results in the results directory.")]
-
-
-def _table(study: str, results: Path) -> list[dict[str, Any]]:
-    from validation.errors import InputError
-    from validation.runs.results import Results
-    from validation.runs.table import table
-
-    store = Results(results)
-    if study not in store.studies():
-        raise InputError(f"no results in {results}", source=study, advice=f"run it first: dda-validate run {study}")
-    return table(store, store.whole(study))
 
 
 @app.command()
@@ -35,17 +24,26 @@ def rows(
     ] = Path("rows.csv"),
     results: ResultsOption = RESULTS,
 ) -> None:
-    """Write every row of a study as CSV: what was run, metrics, work, seconds and differences from references.
+    """Write every number of a study as one tidy CSV table: metrics, work, seconds, differences, what is derived.
+
+    A line has study, scene, case, the values that are swept, solver (or the name of a derived row), reference and
+    window of a comparison, metric, value and unit.
 
     Example: [bold]dda-validate run figures-3-4 && dda-validate rows figures-3-4 --csv rows.csv[/bold]
     """
+    from validation.engine.table import lines, tidy
+    from validation.errors import InputError
     from validation.runs.files import write_atomically
+    from validation.runs.results import Results
 
-    lines = _table(study, results)
-    names = list(dict.fromkeys(itertools.chain.from_iterable(lines)))
+    store = Results(results)
+    if study not in store.studies():
+        raise InputError(f"no results in {results}", source=study, advice=f"run it first: dda-validate run {study}")
+    table = lines(list(tidy(store, store.whole(study))))
     text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, names, lineterminator="\n")
+    columns = list(dict.fromkeys(itertools.chain.from_iterable(table)))
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(lines)
+    writer.writerows(table)
     write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
-    echo(f"wrote {out}: {len(lines)} rows, {len(names)} columns")
+    echo(f"wrote {out}: {len(table)} rows, {len(columns)} columns")

@@ -18,7 +18,7 @@ from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
-from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, ranking, rivals, row_of
+from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, not_installed, ranking, rivals, row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
     Reading,
@@ -116,7 +116,12 @@ class Case:
     @property
     def rivals(self) -> tuple[str, ...]:
         """Names of the other solvers of the scene."""
-        return RIVALS if self.scene.block.poisson == 0 else ("fem",)
+        return _rivals_of(self.scene)
+
+
+def _rivals_of(scene: Scene) -> tuple[str, ...]:
+    """Return the names of the solvers that a history of a scene is held against beside DDA."""
+    return RIVALS if scene.block.poisson == 0 and rectangle_of(scene) is not None else ("fem",)
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -133,6 +138,8 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
     _refuse_what_is_not_known(scene)
+    if scene.column is None:
+        foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, _rivals_of(scene))))
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
     answer = _judged(scene, foreign, tolerance)

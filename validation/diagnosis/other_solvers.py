@@ -129,6 +129,13 @@ def rivals(
     return sorted(ranked, key=lambda rival: rival.misfit)
 
 
+def not_installed(scene: Scene, solvers: Iterable[str]) -> tuple[str, ...]:
+    """Return a sentence for each solver that applies to a scene and is no candidate here, for want of an extra."""
+    adapters = (get_solver(name) for name in solvers)
+    absent = {solver.name: solver.missing(scene) for solver in adapters if solver.refusal(scene) is None}
+    return tuple(f"{name} is no candidate: it {reason}" for name, reason in absent.items() if reason is not None)
+
+
 def slipped(scene: Scene, name: str, recorded: Reading) -> list[Rival]:
     """Return a solver's answers with one number of the scene wrong by a factor, each at its best factor."""
     changes = [*of_numbers(scene, STARTS[:: FEW.get(name, 1)], units=False), of_discount(scene, DISCOUNTS)]
@@ -147,7 +154,8 @@ def _springs(scene: Scene) -> CandidateChange[Values]:
 
 def _fitted(scene: Scene, name: str, recorded: Reading, change: CandidateChange[Values]) -> Rival | None:
     """Return a solver with a number at its best, None where it does not apply, or no step of its scheme does."""
-    if get_solver(name).refusal(scene) is not None:
+    solver = get_solver(name)
+    if solver.refusal(scene) is not None or solver.missing(scene) is not None:
         return None
 
     def residual(u: float) -> Array:

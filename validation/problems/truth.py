@@ -100,6 +100,8 @@ def exact(scene: Scene, truth: Truth) -> History:
     if truth.name == ROCKING:
         return _rotation(scene, truth)
     run = get_solver(truth.name).solve(scene)
+    if run.outcome is Outcome.NOT_RUN:
+        raise InputError(f"NOT RUN: {'; '.join(run.notes)}", source=scene.name, field=truth.name)
     if run.outcome is not Outcome.COMPLETED or run.history is None:
         raise InputError(f"{run.outcome.sentence} {'; '.join(run.notes)}", source=scene.name, field=truth.name)
     return run.history

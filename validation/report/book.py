@@ -67,7 +67,7 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
 def build(results: Results, out: Path, chosen: Sequence[str] | None = None, gates: bool = False) -> Path:
     """Write the PDF of all studies in a results directory, or of some of them, and return its path.
 
-    `gates` lists those that passed.
+    Where `gates` is true, those that passed are listed.
 
     Raises
     ------

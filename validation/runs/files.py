@@ -17,6 +17,7 @@ from typing import IO
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs import extras
 from validation.runs.history import Array, History
 from validation.runs.regular import kind_of, regular
 
@@ -102,6 +103,8 @@ def check_output(path: Path) -> Path:
     InputError
         A directory, a socket or a disk stands there, a link leads to itself, or the directory does not exist.
     """
+    if "\0" in str(path):
+        raise InputError("must not hold a NUL", field="path", value=repr(str(path)))
     target = path if _is_stream(path) else Path(os.path.realpath(path))
     if target.is_symlink() and not target.exists():
         raise InputError("cannot be written: a link that leads to itself", source=path, advice="choose another place")
@@ -158,15 +161,18 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
 
 
 def check_ending(path: Path | None, field: str) -> None:
-    """Refuse a figure's file of an unknown kind, before anything is computed.
+    """Refuse a figure's file of an unknown kind, or that cannot be drawn here, before anything is computed.
 
     Raises
     ------
     InputError
-        The path ends in none of `FIGURE_ENDINGS`.
+        The path ends in none of `FIGURE_ENDINGS`, or what draws figures is not installed.
     """
-    if path is not None and path.suffix.lower() not in FIGURE_ENDINGS:
+    if path is None:
+        return
+    if path.suffix.lower() not in FIGURE_ENDINGS:
         raise InputError(f"must end in {', '.join(FIGURE_ENDINGS)}", field=field, value=repr(path.name))
+    extras.require(field, *extras.FIGURES)
 
 
 def _umask() -> int:

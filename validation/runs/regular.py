@@ -33,6 +33,8 @@ def regular(path: Path, largest: float = math.inf) -> None:
     OSError
         It is not there, or is out of reach.
     """
+    if "\0" in str(path):
+        raise InputError("must not hold a NUL", field="path", value=repr(str(path)))
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
         raise InputError("must be a regular file", source=path, value=kind_of(status.st_mode))

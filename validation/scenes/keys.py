@@ -71,7 +71,7 @@ def check_needs(tables: Mapping[str, Section]) -> None:
                 for requirement in key.needs:
                     if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"
-                        raise ValueError(f"{rule}, got {_short(value)} without it")
+                        raise ValueError(f"{rule}, got {value_text(value)} without it")
 
 
 def _entries(table: Section) -> Iterator[tuple[str, Section]]:
@@ -111,12 +111,13 @@ def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
 def described(name: str, value: object, key: Key) -> str:
     """Return a key with its value in words, ``band = 0, 0.001 m``."""
     unit = f" {key.unit}" if key.unit else ""
-    return f"{name.replace('_', ' ')} = {_short(value)}{unit}"
+    return f"{name.replace('_', ' ')} = {value_text(value)}{unit}"
 
 
-def _short(value: object) -> str:
+def value_text(value: object) -> str:
+    """Return a value in words, each number of a list by itself."""
     if isinstance(value, tuple):
-        return ", ".join(map(_short, value)) or "none"
+        return ", ".join(map(value_text, value)) or "none"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -146,4 +147,4 @@ def default_of(field: FieldInfo) -> str:
     """Return the default of a key in words."""
     if field.is_required():
         return "required"
-    return "-" if field.default is None else _short(field.default)
+    return "-" if field.default is None else value_text(field.default)

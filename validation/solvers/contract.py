@@ -12,6 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs import extras
 from validation.runs.contact import ContactRecord
 from validation.runs.history import Array, Complex
 from validation.runs.modes import Mode, Switch
@@ -178,6 +179,7 @@ class Solver:
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
        A solver of one function overrides `solve(scene, full, fields)` instead.
     8. `own_columns`, or `columns()`: the columns that it has; a scene's further columns are not asked of it.
+    9. `libraries`, or `missing(scene)`: what it imports that an extra brings; where one is absent its runs are NOT RUN.
     """
 
     name: str = ""
@@ -194,6 +196,7 @@ class Solver:
     rank: float = -1.0  # users' solvers come first: every other one is a reference for them
     line: LineStyle | None = None  # None: a style that depends on the name alone
     own_columns: tuple[str, ...] | None = None  # None: it takes whatever a scene asks for
+    libraries: tuple[str, ...] = ()  # beyond those of a plain install, see `validation.runs.extras`
 
     def option(self, text: str) -> Solver:
         """Return this solver with the option that ``name:option`` gives, such as a number of ranks.
@@ -218,6 +221,10 @@ class Solver:
         unknown = self.unhandled(scene)
         return f"it does not handle {', '.join(unknown)}" if unknown else features.clash(scene, self.apart)
 
+    def missing(self, scene: Scene) -> str | None:
+        """Return None, or what the scene needs that is not installed, and how to get it."""
+        return extras.missing(*self.libraries)
+
     def unhandled(self, scene: Scene) -> list[str]:
         """Return the features of a scene that the solver does not handle."""
         return [name for name in features.of(scene) if name not in self.handles]
@@ -233,6 +240,8 @@ class Solver:
     def prepare(self, scene: Scene, full: bool = False) -> Prepared:
         """Build the scene's model once; `full` switches the numerical savings off.
 
+        Where a library is absent, what is prepared is `NotInstalled`.
+
         Raises
         ------
         InputError
@@ -240,7 +249,8 @@ class Solver:
         """
         if reason := self.refused_features(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
-        return self.build(scene, full)
+        absent = self.missing(scene)
+        return self.build(scene, full) if absent is None else NotInstalled(scene, absent)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Build the model of a scene whose features the solver handles; what a solver of models overrides."""
@@ -267,6 +277,36 @@ class Solver:
     def response(self, scene: Scene, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
         """Return the frequency response of a scene (a solver that is one function may override it)."""
         return self.prepare(scene).response(frequencies, exact)
+
+
+class NotInstalled(Prepared):
+    """A scene for a solver that lacks a library or a program: it is NOT RUN, by name, and reports nothing."""
+
+    has_fields = True  # what lacks is said, not that there are none
+
+    def __init__(self, scene: Scene, reason: str) -> None:
+        self.scene = scene
+        self.reason = reason
+
+    def history_run(self) -> Run:
+        """Return the run that was not made, with what it lacks."""
+        return Run(Outcome.NOT_RUN, notes=(self.reason,))
+
+    def static(self) -> Mapping[str, float]:
+        """Raise: nothing is reported."""
+        raise NotReported(self.reason)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Raise: nothing is reported."""
+        raise NotReported(self.reason)
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Raise: nothing is reported."""
+        raise NotReported(self.reason)
+
+    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
+        """Raise: nothing is reported."""
+        raise NotReported(self.reason)
 
 
 class PreparedByFunction(Prepared):

@@ -232,7 +232,7 @@ class DDA(Solver):
 
             return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
         if scene.plane is not None:
-            from validation.solvers.plane import PlaneBlocks
+            from validation.solvers.plane.blocks import PlaneBlocks
 
             return PlaneBlocks(scene, scene.plane, scheme_of(scene))
         if features.ROTATION in features.of(scene):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs import extras
 from validation.runs.contact import LOST, LOST_AT_IMPACTS, STORED, ContactRecord, Rebound
 from validation.runs.history import Array, History
 from validation.runs.modes import Switch
@@ -400,6 +401,7 @@ class BlockEvents(Solver):
     rank = 5.5
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
     own_columns: tuple[str, ...] | None = BLOCK_COLUMNS
+    libraries = extras.EXACT
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""

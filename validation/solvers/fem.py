@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from validation.runs import extras
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode, Switch
@@ -64,6 +65,24 @@ def problem_of(scene: Scene) -> fem_reference.Problem:
             motion=motion,
             **scene.load.numbers,
         )
+
+
+def missing_reader(scene: Scene) -> str | None:
+    """Return None, or what the mesh file of a scene needs that is not installed."""
+    return extras.missing(*extras.MESH) if scene.fem.mesh else None
+
+
+def points_and_cells_of_file(path: str) -> Any:
+    """Return the points and cells of a mesh file as meshio has them.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read.
+    """
+    from fem_reference.mesh.files import read_data
+
+    return read_data(path)
 
 
 def scheme_of(scene: Scene) -> fem_reference.Scheme:
@@ -294,6 +313,10 @@ class FiniteElements(Solver):
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
 
+    def missing(self, scene: Scene) -> str | None:
+        """Return None, or what a mesh file needs that is not installed."""
+        return missing_reader(scene)
+
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
         if scene.column is not None:
@@ -302,7 +325,7 @@ class FiniteElements(Solver):
             kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
             return kind(scene, scheme_of(scene))
         if scene.plane is not None:
-            from validation.solvers.plane import PlaneMesh
+            from validation.solvers.plane.mesh import PlaneMesh
 
             return PlaneMesh(scene, scene.plane, scheme_of(scene))
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

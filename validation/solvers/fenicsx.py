@@ -34,10 +34,12 @@ from validation.solvers.fem import (
     OF_CUTS,
     OF_SUB_BLOCKS,
     locked_frequency,
+    missing_reader,
     opening_frequency,
+    points_and_cells_of_file,
     problem_of,
 )
-from validation.solvers.plane import body_of, elastic_model, points_and_cells
+from validation.solvers.plane.mesh import body_of, elastic_model, points_and_cells
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 
@@ -183,8 +185,12 @@ class FEniCSx(Solver):
             return "it takes unilateral contact on the whole base or at the corners, and none on patches"
         return None
 
-    def missing(self) -> str | None:
+    def missing(self, scene: Scene) -> str | None:
         """Return None, or what is not installed and how to get it."""
+        return self.missing_program() or missing_reader(scene)
+
+    def missing_program(self) -> str | None:
+        """Return None, or which program is not installed."""
         python = interpreter()
         if python is None:
             chosen = os.environ.get(VARIABLE)
@@ -230,8 +236,6 @@ class RemoteMesh(Prepared):
         scene = self.scene
         opens = features.UNILATERAL in features.of(scene)
         check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
-        if missing := self.solver.missing():
-            return Run(Outcome.NOT_RUN, notes=(missing,))
         if "refused" in self.answer:
             raise InputError(self.answer["refused"], source=scene.name)
         for word, outcome in (("raised", Outcome.RAISED), ("inapplicable", Outcome.NOT_APPLICABLE)):
@@ -258,7 +262,7 @@ class RemoteMesh(Prepared):
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""
-        if self.solver.missing() is None and "static" in self.answer:
+        if "static" in self.answer:
             return dict(self.answer["static"])
         raise NotReported("fenicsx has no static solution here")
 
@@ -327,14 +331,12 @@ def request_of_plane(scene: Scene, plane: PlaneSection) -> dict[str, Any]:
 
 
 def _mesh_of(scene: Scene) -> dict[str, Any]:
-    """Read points and cells of a mesh file through meshio."""
-    import meshio
-
+    """Read points and cells of a mesh file."""
     path = str(scene.fem.mesh)
     try:
-        data = meshio.read(path)
-    except (OSError, KeyError, meshio.ReadError, SystemExit) as error:
-        raise InputError(f"must be a readable mesh, {path!r}: {error}", source=scene.name, field="fem.mesh") from None
+        data = points_and_cells_of_file(path)
+    except ValueError as error:
+        raise InputError(str(error).removeprefix("mesh: "), source=scene.name, field="fem.mesh") from None
     kinds = [kind for kind in ("triangle", "quad") if kind in data.cells_dict]
     if len(kinds) != 1:
         raise InputError(

@@ -32,6 +32,7 @@ from validation.suite.declaration import Study
 from validation.suite.tables import declare
 
 T = TypeVar("T")
+REQUIRED = ("name", "title", "purpose", "phenomenon", "order")  # of every study
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class StudyFolder:
     def fields(self) -> dict[str, Any]:
         """The fields of the study as its table has them."""
         table = _table(self.path / "study.toml")
-        fields: dict[str, Any] = table["study"] | table.get(self.form, {})
+        fields: dict[str, Any] = table.get("study", {}) | table.get(self.form, {})
         return fields
 
     def module(self, name: str) -> Any:
@@ -65,7 +66,10 @@ class StudyFolder:
 
 @functools.cache
 def _table(path: Path) -> dict[str, Any]:
-    return tomllib.loads(path.read_text(encoding="utf-8"))
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"must be TOML: {error}", source=path) from None
 
 
 def study_folders() -> Mapping[str, StudyFolder]:
@@ -87,6 +91,10 @@ def _study_folders(directories: tuple[Path, ...]) -> Mapping[str, StudyFolder]:
             folders.append(StudyFolder(path.parent))
             if "short" in _table(path):
                 folders.append(StudyFolder(path.parent, "short"))
+    for folder in folders:
+        missing = [key for key in REQUIRED if key not in folder.fields]
+        if missing:
+            raise InputError("is required", source=folder.path / "study.toml", field=f"study.{missing[0]}")
     by_name: dict[str, StudyFolder] = {}
     for folder in sorted(folders, key=lambda folder: (folder.fields["order"], folder.fields["name"])):
         name = folder.fields["name"]

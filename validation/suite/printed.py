@@ -12,9 +12,9 @@ The first lines of such a table::
     constant,  1e9,               0.557273246,    0.507955225
 
 A column that the scene's pattern names fills it in; a key, or a key and its value (a list's between blanks), picks
-the case. What stands under a
-key and its value is a number of the entry's only metric, under any other name one of the metric of that name, as far as
-the entry's ``metrics``, where it has some, name it. An empty place is no number. Lines that begin with # are remarks.
+the case. What stands under a key and its value is a number of the entry's only metric, under any other name one of
+the metric of that name, as far as the entry's ``metrics``, where it has some, name it. An empty place is no number.
+Lines that begin with # are remarks.
 """
 
 from __future__ import annotations

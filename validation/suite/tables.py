@@ -46,6 +46,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.engine.finished import Derived, from_history, from_metrics
+from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
@@ -96,6 +97,18 @@ class StudyTable:
     fields: Mapping[str, Any]
     formulas: Mapping[str, Any]
 
+    def function(self, name: str) -> Any:
+        """Return what ``formulas.py`` calls so.
+
+        Raises
+        ------
+        InputError
+            It has no such name.
+        """
+        if name not in self.formulas:
+            raise InputError(f"names {name!r}, which formulas.py has not", source=self.folder / "study.toml")
+        return self.formulas[name]
+
     @property
     def entries(self) -> dict[str, Any]:
         """The whole table, read anew: its entries are taken apart."""
@@ -106,7 +119,7 @@ class StudyTable:
         declared: dict[str, Any] = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
         for key in FUNCTIONS:
             if isinstance(declared.get(key), str):
-                declared[key] = self.formulas[declared[key]]
+                declared[key] = self.function(declared[key])
         if callable(declared.get("extra")):
             declared["extra"] = declared["extra"]()
         for key in ("pairs", "extra"):
@@ -122,7 +135,7 @@ class StudyTable:
         """Return the scenes, names of built-in ones or generated."""
         names = self.fields.get("scenes")
         if isinstance(names, str):
-            return tuple(self.formulas[names]())
+            return tuple(self.function(names)())
         return tuple(names or sorted(path.stem for path in (self.folder / "scenes").glob("*.toml")))
 
     def gates(self) -> tuple[Gate, ...]:
@@ -139,7 +152,7 @@ class StudyTable:
         """Return the derived rows: those of the table, and those of the function that it names."""
         declared: list[Derived] = []
         for entry in self.entries.get("row", ()):
-            compute = self.formulas[entry["compute"]]
+            compute = self.function(entry["compute"])
             for case in self.declared_cases(entry):
                 if "solver" in entry:
                     declared.append(from_history(case, entry["solver"], entry["name"], compute))
@@ -148,7 +161,7 @@ class StudyTable:
         return (*declared, *self._further("derived"))
 
     def _further(self, field: str) -> Iterable[Any]:
-        function: Callable[[], Iterable[Any]] = self.formulas[self.fields[field]] if field in self.fields else tuple
+        function: Callable[[], Iterable[Any]] = self.function(self.fields[field]) if field in self.fields else tuple
         return function()
 
     def _printed(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -175,7 +188,7 @@ class StudyTable:
         if not isinstance(term, str):
             return term
         (case,) = named_cases([scene])
-        return float(self.formulas[term](case))
+        return float(self.function(term)(case))
 
     def _banded(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the fields of the gates whose band is a formula or given."""
@@ -186,12 +199,12 @@ class StudyTable:
         subjects = [(name, ()) for name in entry.pop("owners", ())]
         subjects += [(case.name, (case,)) for case in self.declared_cases(entry)]
         for scene, case in subjects:
-            edges = self.formulas[band](*case) if isinstance(band, str) else band
+            edges = self.function(band)(*case) if isinstance(band, str) else band
             if edges is None:
                 continue
             by_metric = edges if isinstance(edges, dict) else dict.fromkeys(metrics, edges)
             judged_metrics = metrics or by_metric
-            reason = entry["reason"] if value is None else entry["reason"].format(self.formulas[value](*case))
+            reason = entry["reason"] if value is None else entry["reason"].format(self.function(value)(*case))
             for metric in judged_metrics:
                 low, high = by_metric[metric]
                 yield {"scene": scene, "metric": metric, "low": low, "high": high, "reason": reason}
@@ -199,7 +212,7 @@ class StudyTable:
     def declared_cases(self, entry: dict[str, Any]) -> list[Scene]:
         """Return the cases that an entry names, and take them out of it."""
         if "cases" in entry:
-            return list(self.formulas[entry.pop("cases")]())
+            return list(self.function(entry.pop("cases"))())
         return named_cases(entry.pop("scenes", ()))
 
     def cases_of(self, name: str) -> tuple[Scene, ...]:

@@ -6,6 +6,7 @@ its centre stands above the corner after a rotation alpha = atan(w / h).
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -13,9 +14,6 @@ import numpy as np
 
 from validation.runs.history import Array
 from validation.theory.rocking import Rectangle
-
-BISECTIONS = 200  # more than the digits of a double precision number need
-
 
 # ---- on a slope -----------------------------------------------------------------------------------------------------
 
@@ -168,6 +166,7 @@ class ShakenBox:
 
     def _alike_at(self, piece: SlipPiece) -> float:
         """Return when the box that slips moves as the ground does again [s]."""
+        from scipy.optimize import brentq
 
         def relative(time: float) -> float:
             velocity = piece.velocity - piece.direction * self.grip * (time - piece.start)
@@ -175,19 +174,10 @@ class ShakenBox:
 
         # The relative velocity turns where the ground accelerates as the box does; between, it is monotonic. It grows
         # first, and is not above zero again at the end of the second such stretch at the earliest.
-        low = piece.start
-        for turn in self._turns(piece):
-            if relative(turn) <= 0:
-                break
-            low = turn
-        high = turn
-        for _ in range(BISECTIONS):
-            middle = (low + high) / 2
-            if relative(middle) > 0:
-                low = middle
-            else:
-                high = middle
-        return high
+        low, high = next(
+            ends for ends in itertools.pairwise([piece.start, *self._turns(piece)]) if relative(ends[1]) <= 0
+        )
+        return float(brentq(relative, low, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
 
     def _turns(self, piece: SlipPiece) -> list[float]:
         """Return the instants after a start at which the ground accelerates as the slipping box does [s]."""

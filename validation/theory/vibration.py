@@ -37,28 +37,26 @@ class Vibration:
 
 
 def block(scene: Scene, w2: ArrayLike, base: bool = False) -> Vibration:
-    """Return the answer of the two-block model, by Cramer's rule in its two unknowns (v, ey).
+    """Return the answer of the two-block model in its two unknowns D = (v, ey).
 
-    [2p - W2 m, -p h; -p h, E w h + p h^2/2 - W2 m h^2/12] (v, ey) = -q w (1, h/2): the pressure acts on the upper edge.
-    On a base that moves by 1 m, without a load, p (2, -h) stands there instead; amplitudes are per metre then.
+    ([2p, -p h; -p h, E w h + p h^2/2] - W2 diag(m, m h^2/12)) D = -q w (1, h/2): the pressure acts on the upper edge.
+    On a base that moves by 1 m, without a load, p (2, -h) stands there instead; amplitudes are per metre then. The
+    conditioning is Skeel's, |A^-1| (|K| + |W2| |M|) |D|, over the smallest part.
     """
-    w2 = np.asarray(w2, complex)
+    w2 = np.atleast_1d(np.asarray(w2, complex))[:, None, None]
     E, _ = moduli(scene)
     w, h = size(scene)
-    p, q, m = scene.contact.stiffness, scene.load.pressure, scene.block.density * w * h
-    first, second, across = 2 * p - w2 * m, E * w * h + p * h * h / 2 - w2 * m * h * h / 12, -p * h
-    below: Complex = np.asarray(first * second - across**2)
-    force = (2 * p, -p * h) if base else (-q * w, -q * w * h / 2)
-    v: Complex = (second * force[0] - across * force[1]) / below
-    strain: Complex = (first * force[1] - across * force[0]) / below
-    # |A^-1| (|K| + |W2| |M|) |D| over the smallest part of D: Skeel's condition of the two equations
-    stiff = 2 * p + abs(w2) * m, E * w * h + p * h * h / 2 + abs(w2) * m * h * h / 12
-    felt = stiff[0] * abs(v) + p * h * abs(strain), stiff[1] * abs(strain) + p * h * abs(v)
-    error_v = (abs(second) * felt[0] + p * h * felt[1]) / abs(below)
-    error_strain = (p * h * felt[0] + abs(first) * felt[1]) / abs(below)
-    spring = v - h / 2 * strain - base
-    condition = np.maximum(error_v / abs(v), (error_v + h / 2 * error_strain) / abs(spring))
-    return Vibration(v, -2 * p / w * spring, condition)
+    p = scene.contact.stiffness
+    K = np.array([[2 * p, -p * h], [-p * h, E * w * h + p * h * h / 2]])
+    M = scene.block.density * w * h * np.diag([1, h * h / 12])
+    force = p * np.array([2, -h]) if base else -scene.load.pressure * w * np.array([1, h / 2])
+    inverse = np.linalg.inv(K - w2 * M)
+    motion = inverse @ force
+    errors = np.einsum("nij,njk,nk->ni", abs(inverse), abs(K) + abs(w2) * M, abs(motion))
+    below = np.array([1, -h / 2])  # of the springs, over v and ey
+    spring = motion @ below - base
+    condition = np.maximum(errors[:, 0] / abs(motion[:, 0]), errors @ abs(below) / abs(spring))
+    return Vibration(motion[:, 0], -2 * p / w * spring, condition)
 
 
 def bar(scene: Scene, w2: ArrayLike) -> Vibration:

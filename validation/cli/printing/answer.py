@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -238,11 +239,11 @@ def _alarms(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
 
 def next_commands(answer: RunAnswer) -> list[str]:
     """Return what to type next."""
-    place = "" if answer.results.directory == RESULTS else f" --results {answer.results.directory}"
+    place = "" if answer.results.directory == RESULTS else f" --results {shlex.quote(str(answer.results.directory))}"
     report = f"dda-validate report{place} writes the PDF"
     failing = next((run.study.name for run in answer.runs if counts(run)["FAIL"]), None)
     if failing is not None:
-        return [f"dda-validate report {failing} --figures figures{place} draws the histories", report]
+        return [f"dda-validate report {shlex.quote(failing)} --figures figures{place} draws the histories", report]
     return [report] if answer.user_scenes else [report, "the same command with --verbose lists every gate"]
 
 

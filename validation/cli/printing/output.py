@@ -6,7 +6,7 @@ import io
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -83,11 +83,6 @@ def in_minutes(seconds: float) -> str:
     """Return a duration in words, "36 s" or "2 m 6 s"."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} m {rest} s" if minutes else f"{rest} s"
-
-
-def settings_text(settings: Mapping[str, float]) -> str:
-    """Return settings as ``--set`` takes them."""
-    return ", ".join(f"{key} = {value:.6g}" for key, value in settings.items())
 
 
 @contextmanager

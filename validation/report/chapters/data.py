@@ -153,11 +153,6 @@ def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:
     return {case.name: case.label for group in groups for case in group.cases}
 
 
-def verdicts_of(groups: Iterable[CaseGroup]) -> list[VerdictRecord]:
-    """Return the verdicts of scenes."""
-    return list(itertools.chain.from_iterable(group.verdicts for group in groups))
-
-
 def cases_with(
     records_by_case: Mapping[str, Sequence[CaseRecord]],
     rows: Mapping[str, Row],

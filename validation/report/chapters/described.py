@@ -16,6 +16,7 @@ A column has a title, and where needed a group, a kind and what it is `of`, in a
 
 from __future__ import annotations
 
+import math
 import operator
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -49,6 +50,8 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "brief": _brief,
     # Signed; without a power of ten where it is large.
     "signed": lambda value, _: f"{value:{'+.0f' if abs(value) >= 1000 else '+.3g'}}".replace("-", "−"),
+    "decade": lambda value, _: f"$10^{{{round(math.log10(value))}}}$",  # on an axis
+    "digits": lambda error, _: f"{math.floor(min(16.0, max(0.0, -math.log10(max(error, 1e-16)))))}",  # that are right
     "three": lambda value, _: f"{value:.3g}",
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
@@ -177,5 +180,5 @@ class Description:
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
         file = described["file"].format_map(values)
-        caption = values.get("caption") or described["caption"].format_map(values)
+        caption = values.get("whole_caption") or described["caption"].format_map(values)
         return histories.saved(figure, directory, file, caption, scene)

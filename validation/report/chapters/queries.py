@@ -15,7 +15,7 @@ An expression says what is looked up of a line:
     "time.step"                     a datum of the scene
     "label", "scene", "title"       of the case within its scene, and of its scene; "case": scene, and label if several
     "dda mode1.frequency"           a metric of a solver; of that of the line, "* mode1.frequency"
-    "dda work.unknowns"             work, seconds and their sum, "dda seconds"
+    "dda work.unknowns"             work, seconds and their sum, "dda seconds"; "dda outcome"
     "dda|fem displacement.l2"       a metric of a pair
     "closed: drag"                  a metric of the derived row `closed` of the case, or of its scene
     "bars/pieces: piece 1"          the same of another owner, in which words may stand, "impact-{method}/map: mean"
@@ -30,6 +30,7 @@ import fnmatch
 import math
 import operator
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -40,7 +41,8 @@ from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Value
 
-Query = Mapping[str, Any]
+Query = dict[str, Any]
+NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number
 PLACEHOLDER = re.compile(r"\\\{(\w+)\\\}")
 
 
@@ -115,7 +117,7 @@ class StudyTable:
     def _with_rows(self, query: Query) -> Iterator[Line]:
         """Yield the derived rows whose names follow a pattern, by their owners' order in the query."""
         pattern = _pattern(query["row"])
-        for wanted in _listed(query.get("scene", query.get("of", "*"))):
+        for wanted in _listed(query.get("scene") or query.get("of") or "*"):
             for (owner, name), metrics in self.derived.items():
                 match = pattern.fullmatch(name)
                 words = _words_of_owner(owner, wanted)
@@ -174,17 +176,23 @@ class StudyTable:
     def picked(self, lines: Iterable[Line], column: Query) -> Value:
         """Return the value of a column in some lines: of the first that has one, or as ``pick`` says.
 
-        ``pick`` is ``"most"`` or ``"least"``, of the values, or of the expression ``among``; or ``"count"``.
+        ``pick`` is ``"most"`` or ``"least"``, of the values, or of the expression ``among``; ``"count"`` counts lines,
+        ``"tally"`` lines by value. ``where`` says what a line must meet, ``unless`` what it must not.
         """
         expression = column["of"]
         chosen = [line for line in lines if self._meets(line, column.get("where", {}))]
+        if "unless" in column:
+            chosen = [line for line in chosen if not self._meets(line, column["unless"])]
         pick = column.get("pick")
         if pick == "count":
-            return len(chosen)
+            return len(chosen) or (None if column.get("positive") else 0)
+        if pick == "tally":
+            counts = Counter(str(self.value(line, expression)) for line in chosen)
+            return ", ".join(f"{value} {count}" for value, count in counts.items()) or None
         if pick is None:
             values = (self.value(line, expression) for line in chosen)
             return next((value for value in values if value is not None), None)
-        among = column.get("among", expression)
+        among = column.get("among") or expression
         numbered = []
         for line in chosen:
             number = self.number(line, among)
@@ -202,7 +210,7 @@ class StudyTable:
         return True
 
     def grouped(self, lines: Sequence[Line], expressions: Sequence[str]) -> list[list[Line]]:
-        """Return lines in groups of one value in each expression, in the order of their first lines; else one by one."""
+        """Return lines in groups of one value in each expression, in the order of first lines; else one by one."""
         if not expressions:
             return [[line] for line in lines]
         groups: dict[tuple[Value, ...], list[Line]] = {}
@@ -285,4 +293,7 @@ def _of_solver(case: CaseResults, solver: str, metric: str) -> Value:
         return row.seconds.get(name) if name else sum(row.seconds.values())
     if part == "work":
         return row.work.get(name)
-    return case.number(solver, metric)
+    if metric == "outcome":
+        return str(row.outcome)
+    value = row.metrics.get(metric)
+    return value if isinstance(value, str) and value not in NO_NUMBERS else case.number(solver, metric)

@@ -136,11 +136,13 @@ def _symbol(scene: Scene, field: str) -> tuple[str, str]:
 
 
 def _pressure(text: str) -> tuple[str, str]:
-    """Return a pressure in MPa where it is large, as number and unit; zero needs none."""
-    value = float(text)
-    if value == 0:
+    """Return a pressure, or the components of a stress, in MPa where they are large; a zero needs no unit."""
+    values = [float(part) for part in text.split("x")]
+    largest = max(map(abs, values))
+    if largest == 0:
         return "0", ""
-    return (f"{value / 1e6:g}", " MPa") if abs(value) >= 1e4 else (f"{value:g}", " Pa")
+    factor, unit = (1e-6, " MPa") if largest >= 1e4 else (1.0, " Pa")
+    return ", ".join(f"{factor * value:g}" for value in values), unit
 
 
 def parameters(scene: Scene, varied: set[str]) -> str:

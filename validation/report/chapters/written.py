@@ -16,12 +16,12 @@ and is left out where a table or figure that it names shows nothing:
 and ``when``, a list of scenes that must be there. `validation.report.chapters.queries` has queries and expressions:
 
     [text]          paragraphs and captions; ``{name}`` stands for a number or a list
-    [number.NAME]   a query, an expression ``of_`` as those of columns, and how it is written
+    [number.NAME]   a query, its ``value``, an expression, and how it is written
     [list.NAME]     a query, ``group_by``, the numbers of each line, its ``text``, what joins them
     [table.NAME]    a query, ``group_by``, columns; caption, notes, dense, ruled
     [figure.NAME]   panels, file, caption
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
-    [maps.NAME]     file, caption; ``of`` a list, a line of maps for each; rows, columns, and the maps, each an expression
+    [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ from validation.runs.row import Value
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
+NO_QUERY: Query = {}
 COLUMN_FIELDS = {one.name for one in fields(CaseColumn)}
 LINE_FIELDS = {one.name for one in fields(ChartLine)} - {"name", "x", "y", "shaded", "notes"}
 
@@ -94,7 +95,7 @@ class WrittenChapter:
                 blocks += self._part(part)
         return blocks
 
-    def _part(self, part: Query, query: Query = {}) -> Blocks:
+    def _part(self, part: Query, query: Query = NO_QUERY) -> Blocks:
         if "opening" in part:
             return self._opening(part)
         if "call" in part:
@@ -180,8 +181,10 @@ class WrittenChapter:
 
     # ---- tables -----------------------------------------------------------------------------------------------------
 
-    def _table(self, name: str, query: Query = {}) -> list[Table]:
+    def _table(self, name: str, query: Query = NO_QUERY) -> list[Table]:
         described = self.page.described("table", name) | query
+        if "notes_of" in described:
+            described["notes"] = self.table.data.get(described["notes_of"], ())
         columns = [({"title": one} if isinstance(one, str) else one) for one in described["columns"]]
         rows: list[list[str]] = []
         previous: list[str] = []
@@ -207,7 +210,8 @@ class WrittenChapter:
         if value is None:
             return text
         others = [self._cell(one, group) for one in column.get("also", ())]
-        return column.get("pattern", "{}").format(text, *others)
+        pattern: str = column.get("pattern", "{}")
+        return pattern.format(text, *others)
 
     def _caption(self, text: str) -> str:
         values = {word: self._word(word) for _, word, _, _ in string.Formatter().parse(text) if word}
@@ -226,7 +230,7 @@ class WrittenChapter:
         if not panels:
             return []
         caption = self._caption(described["caption"])
-        return [self.page.figure(name, panels, self.directory, described.get("scene", ""), caption=caption)]
+        return [self.page.figure(name, panels, self.directory, described.get("scene", ""), whole_caption=caption)]
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:
         """Yield the lines of one entry of a panel: one, or one for each value of ``each``, or for each history."""
@@ -256,7 +260,7 @@ class WrittenChapter:
         for name, number in line.get("numbers", {}).items():
             words[name] = self._number(number, [first]) or DASH
         for part in ("name", "note"):
-            look[part] = look.get(part, line.get(part, "")).format(each=_key(key), **words)
+            look[part] = str(look.get(part, line.get(part, ""))).format(each=_key(key), **words)
         return replace(drawn, **look)
 
     def _points(self, line: Query, group: Sequence[Line]) -> ChartLine:
@@ -330,21 +334,22 @@ class WrittenChapter:
             own = self.table.lines(described | {"of": patterns})
             if own:
                 grid.append([self._map(one, own, described, row_values, column_values) for one in described["maps"]])
-        if not grid:
+        if not any(np.isfinite(one.values).any() for row in grid for one in row):
             return []
         row_texts = [rows.get("pattern", "{}").format(_written(rows, value)) for value in row_values]
         column_texts = [_written(columns, value) for value in column_values]
         labels = columns.get("label", ""), rows.get("label", "")
         figure = map_figure(grid, row_texts, column_texts, labels, MapScale(*described["scale"]))
         caption = self._caption(described["caption"])
-        return [saved(figure, self.directory, described["file"], caption)]
+        file = described["file"].format(study=self.table.manifest["study"])
+        return [saved(figure, self.directory, file, caption)]
 
     def _map(
         self, one: Query, lines: Sequence[Line], maps: Query, rows: Sequence[float], columns: Sequence[float]
     ) -> NumberMap:
         """Return a map: the number of each cell, shaded from ``from`` to ``to``."""
         values = np.full((len(rows), len(columns)), np.nan)
-        texts = []
+        texts: list[list[str]] = []
         for i, row in enumerate(rows):
             texts.append([])
             for j, column in enumerate(columns):
@@ -365,8 +370,8 @@ def _shade(shade: Query, value: float) -> float:
     low, high = shade["from"], shade["to"]
     if shade.get("logarithmic"):
         value, low, high = (math.log(max(one, 1e-300)) for one in (value, low, high))
-    share = (value - low) / (high - low)
-    return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share)) * shade.get("most", 1.0)
+    share: float = (value - low) / (high - low)
+    return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share))
 
 
 def _is_measured(column: Query) -> bool:

@@ -6,17 +6,20 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import resources
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
-
-import jinja2
-from markupsafe import Markup, escape
 
 from validation.report.blocks import Block, as_data
 from validation.report.names import unescaped
 from validation.report.references import CITED, marked, references
 from validation.runs.text import shown, visible
+
+if TYPE_CHECKING:
+    import jinja2
+    from markupsafe import Markup
 
 STYLE = "page.css"
 SCRIPT = "filter.js"
@@ -76,6 +79,13 @@ def page(
     )  # fmt: skip
 
 
+def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:
+    """Return the titles that neighbouring columns share, and how many do; nothing where none does."""
+    if not any(column["group"] for column in columns):
+        return []
+    return [(title, len([*shared])) for title, shared in groupby(columns, key=itemgetter("group"))]
+
+
 def _cleaned(text: str) -> str:
     """Return the lines of a text, with the marks of citations."""
     lines = (CITED.join(readable(part) for part in line.split(CITED)) for line in text.split("\n"))
@@ -84,6 +94,8 @@ def _cleaned(text: str) -> str:
 
 @cache
 def _environment(package: str) -> jinja2.Environment:
+    import jinja2
+
     packages = dict.fromkeys((package, __package__))
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(name, "") for name in packages]),
@@ -93,12 +105,14 @@ def _environment(package: str) -> jinja2.Environment:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters["cited"] = _cited
+    environment.filters |= {"cited": _cited, "spans": _spans}
     return environment
 
 
 def _finalized(value: Any) -> Any:
     """Return a value as a page writes it: texts are visible, what is markup already is left."""
+    from markupsafe import Markup
+
     if not isinstance(value, str) or isinstance(value, Markup):
         return value
     return visible(value.replace(CITED, "@"))
@@ -106,6 +120,7 @@ def _finalized(value: Any) -> Any:
 
 def _cited(text: str) -> Markup:
     """Return a text whose citations are links to the page of references, as author and year."""
+    from markupsafe import Markup, escape
 
     def link(match: re.Match[str]) -> str:
         source = references()[match[1]]

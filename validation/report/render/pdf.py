@@ -8,8 +8,6 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import typst
-
 from validation.errors import InputError
 from validation.report.blocks import Block, References, as_data
 from validation.report.names import unescaped
@@ -41,6 +39,8 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
 
 def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
+    import typst
+
     shutil.copyfile(TEMPLATE, root / "report.typ")
     shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
     data = {
@@ -60,6 +60,8 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
 
 def png_of(svg: Path) -> Path:
     """Write a PNG of an SVG file beside it, rendered as in the report."""
+    import typst
+
     page = f'#set page(width: auto, height: auto, margin: 2mm)\n#image("{svg.name}")\n'
     with tempfile.TemporaryDirectory() as name:
         shutil.copyfile(svg, Path(name) / svg.name)

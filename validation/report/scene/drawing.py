@@ -11,6 +11,7 @@ from operator import itemgetter
 import numpy as np
 
 from validation.scenes.keys import described, stated
+from validation.scenes.plane import PlaneSection, Segment
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
@@ -25,6 +26,8 @@ def drawing(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield the model of a scene, drawn in text."""
     if scene.rigid is not None:
         return boxes(scene.rigid)
+    if scene.plane is not None:
+        return plane_blocks(scene.plane)
     return column(scene) if scene.column is not None else block(scene, width)
 
 
@@ -115,6 +118,39 @@ def column(scene: Scene) -> Iterator[str]:
         yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
     base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
     yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"
+
+
+def plane_blocks(plane: PlaneSection) -> Iterator[str]:
+    """Yield the outline of blocks in the plane with what they are beside it."""
+    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
+    wide, high = np.ptp(corners, axis=0)
+    slenderness = wide / high
+    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+    cut = f"{len(plane.polygons)} blocks"
+    if plane.subdivide is not None:
+        cut = f"cut into {plane.subdivide[0]} x {plane.subdivide[1]} {plane.pattern}"
+    beside = [
+        f"{wide:.3g} m wide, {high:.3g} m high, {cut}",
+        f"rho = {plane.density:g} kg/m3, E = {plane.young:g} Pa, mu = {plane.poisson:g}, {plane.hypothesis}",
+        f"glued by {plane.glue:g} E at each end of an edge",
+    ]
+    if plane.clamp:
+        beside.append(f"clamped along {', '.join(_segment(clamp.edge) for clamp in plane.clamp)}")
+    if any(plane.stress):
+        beside.append(f"stress s_xx, s_yy, s_xy = {', '.join(f'{part:g}' for part in plane.stress)} Pa on the outline")
+    if any(plane.gravity):
+        beside.append(f"gravity {', '.join(f'{part:g}' for part in plane.gravity)} m/s2")
+    for load in plane.load:
+        beside.append(f"traction {', '.join(f'{part:g}' for part in load.traction)} Pa along {_segment(load.edge)}")
+    rows = max(_rows(across, slenderness), len(beside))
+    yield f"  +{'-' * across}+"
+    for text in (*beside, *[""] * (rows - len(beside))):
+        yield f"  |{' ' * across}|   {text}".rstrip()
+    yield f"  +{'-' * across}+"
+
+
+def _segment(edge: Segment) -> str:
+    return " to ".join(f"({x:g}, {y:g})" for x, y in edge)
 
 
 def boxes(section: RigidSection) -> Iterator[str]:

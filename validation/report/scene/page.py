@@ -13,7 +13,7 @@ from validation.report.blocks import Blocks, Callout, Listing, TableColumn, tabl
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing
 from validation.scenes import features
-from validation.scenes.keys import described, stated
+from validation.scenes.keys import described, stated, value_text
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
@@ -58,7 +58,7 @@ class SceneDescription:
     @classmethod
     def of(cls, scene: Scene) -> SceneDescription:
         """Return the description of a scene with its sweep."""
-        varied = {key: [*map(_short, values)] for key, values in scene.sweep.items() if key != "mode"}
+        varied = {key: [*map(value_text, values)] for key, values in scene.sweep.items() if key != "mode"}
         return cls(numbers.cases(scene), len(scene.expand()), varied, scene.run.solvers, len(scene.gate))
 
     @cached_property
@@ -144,10 +144,6 @@ def _other_keys(scene: Scene) -> Iterator[str]:
             for name, value, key in stated(section):
                 if name not in WRITTEN:
                     yield described(name, value, key)
-
-
-def _short(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def as_data(scene: Scene) -> dict[str, Any]:

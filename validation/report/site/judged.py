@@ -7,8 +7,6 @@ from contextlib import ExitStack
 from importlib import metadata
 from pathlib import Path
 
-import jinja2
-
 from validation.errors import InputError
 from validation.problems.data import PACK
 from validation.problems.judge import Word
@@ -78,6 +76,8 @@ def badge(judged: JudgedAnswer) -> str:
 
 def badge_of(label: str, verdict: str, color: str) -> str:
     """Return a badge: a label, and a verdict on a coloured ground."""
+    import jinja2
+
     widths = {name: LETTER * len(text) + MARGIN for name, text in (("left", label), ("right", verdict))}
     template = Path(__file__).with_name("badge.svg.j2").read_text("utf-8")
     texts = {"label": visible(label), "verdict": visible(verdict), "color": color}

@@ -1,4 +1,4 @@
-"""The site of results: the chapters, a page for each scene, the calculators; written under a temporary name as a whole."""
+"""The site of results: chapters, a page for each scene, calculators; written under a temporary name as a whole."""
 
 from __future__ import annotations
 

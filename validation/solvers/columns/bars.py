@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.modes import Switch
 from validation.scenes import features
@@ -173,6 +174,7 @@ class BarsEvents(Solver):
     rank = 6.5
     line = LineStyle("#333333", (1.0, 1.0), 0.9, 1)
     own_columns = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
+    libraries = extras.EXACT
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""

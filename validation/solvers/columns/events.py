@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs import extras
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
@@ -248,6 +249,7 @@ class ColumnEvents(Solver):
     rank = 5.6
     line: LineStyle | None = LineStyle("#cc79a7", (6.0, 1.5), 0.9, 3)
     own_columns = (DISPLACEMENT, PRESSURE, *AT_HEIGHTS)
+    libraries = extras.EXACT
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""

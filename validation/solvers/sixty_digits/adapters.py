@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex, History
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
@@ -62,6 +63,7 @@ class PreciseDDA(DDA):
     role = Role.REPEAT
     rank = 7.0
     line = None
+    libraries = extras.EXACT
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""

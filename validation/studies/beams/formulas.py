@@ -41,6 +41,7 @@ def over_elements() -> tuple[Derived, ...]:
     rows = []
     for name in SCENES:
         for case in cases(name):
+            rows.append(Derived(case.name, "blocks", (), partial(_blocks, case)))
             for solver in ("dda", "fenicsx"):
                 if solver in case.run.solvers:
                     needs = ((case.name, solver), (case.name, "fem"))
@@ -54,6 +55,13 @@ def over_elements() -> tuple[Derived, ...]:
 
 
 READ = ("displacement.static", *FREQUENCIES)
+
+
+def _blocks(case: Scene, finished: Finished) -> Mapping[str, Value]:
+    """Return the blocks across the beam, and the glue over n / sqrt(24)."""
+    plane = table_of(case)
+    across = min(plane.subdivide or (1, 1))
+    return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
 
 def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
@@ -84,8 +92,8 @@ def bending_ratio(squares: int, glue: float) -> float:
 
     Example
     -------
-    >>> round(bending_ratio(8, 2.0), 10), round(bending_ratio(4, 1.0), 10)
-    (1.0748753965, 1.125)
+    >>> round(bending_ratio(8, 2.0), 10), round(bending_ratio(2, 1.0), 10)
+    (1.0748753965, 2.25)
     """
     x = np.arange(squares) - (squares - 1) / 2
     neighbours = np.diff(np.eye(squares), axis=0)  # e_{i+1} - e_i

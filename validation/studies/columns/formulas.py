@@ -80,8 +80,8 @@ def printed(row: str) -> dict[str, dict[str, Any]]:
     """Return the printed numbers of a row, by case and metric."""
     numbers: dict[str, dict[str, Any]] = {}
     for entry in tables.read(__file__)["gate"]:
-        if entry["pairs"] == [[row]]:
-            numbers |= entry.get("numbers", {})
+        if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
+            numbers |= entry["numbers"]
     return numbers
 
 

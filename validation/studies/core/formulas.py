@@ -123,8 +123,8 @@ def order(finished: Finished) -> Mapping[str, Value]:
     levels = tuple(cases(MESHES))
     errors = []
     for case in levels:
-        histories = (finished.needed_history(case.name, solver) for solver in ("fem", "bar"))
-        errors.append(or_nan(pair("displacement.l2", *histories)))
+        elements, bar = (finished.needed_history(case.name, solver) for solver in ("fem", "bar"))
+        errors.append(or_nan(pair("displacement.l2", elements, bar)))
     return {"power": fitted_order([case.fem.per_side for case in levels], errors)}
 
 

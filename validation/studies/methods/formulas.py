@@ -411,7 +411,7 @@ def data() -> Mapping[str, Any]:
     damping = []
     landings = []
     for one in map(method, CURVES):
-        named = {"method": one.id, "label": one.label}
+        named: dict[str, Any] = {"method": one.id, "label": one.label}
         ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
         damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
         if one.id in MAP_CURVES:

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from validation.gates.gate import Gate
+from validation.metrics.growth import Stability
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import gate
 from validation.theory import spectra
@@ -136,3 +137,8 @@ def gates() -> Iterator[Gate]:
 def gates_of_corners() -> Iterator[Gate]:
     """Yield the gates of the corners."""
     return gates_of(corners())
+
+
+def data() -> Mapping[str, Any]:
+    """Return what the ends of runs are, in words."""
+    return {"kinds": [f"{kind}: {kind.sentence}" for kind in Stability]}

@@ -1,0 +1,68 @@
+"""Files of meshes and fields: the one module that meets meshio, which is optional."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from typing import Any
+
+from skfem import Mesh
+
+
+def library() -> Any:
+    """Return meshio.
+
+    Raises
+    ------
+    ValueError
+        It is not installed.
+    """
+    try:
+        import meshio
+    except ModuleNotFoundError as error:
+        if error.name != "meshio":
+            raise
+        raise ValueError("mesh: a file of a mesh or of fields needs meshio, which is not installed") from None
+    return meshio
+
+
+def read_data(path: str) -> Any:
+    """Return the points and cells of a file as meshio has them.
+
+    Raises
+    ------
+    ValueError
+        No reader of meshio takes the file, or meshio is not installed.
+    """
+    meshio = library()
+    with _refusing(path):
+        return meshio.read(path)
+
+
+def read_mesh(path: str) -> Mesh:
+    """Return the plane mesh of a file.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read, or meshio is not installed.
+    """
+    data = read_data(path)
+    from skfem.io.meshio import from_meshio
+
+    with _refusing(path):
+        data.points = data.points[:, :2]
+        return from_meshio(data)
+
+
+@contextmanager
+def _refusing(path: str) -> Iterator[None]:
+    """Name the file in what meshio and scikit-fem say of one that they do not take."""
+    messages = io.StringIO()  # meshio prints and exits where no reader of it takes the file
+    try:
+        with redirect_stdout(messages), redirect_stderr(messages):
+            yield
+    except (Exception, SystemExit) as error:  # its readers raise anything at a file that is not whole
+        words = " ".join(messages.getvalue().split()) or f"{type(error).__name__}: {error}"
+        raise ValueError(f"mesh: must be a readable mesh of triangles or quadrilaterals, {path!r}: {words}") from error

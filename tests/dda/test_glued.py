@@ -1,0 +1,113 @@
+"""Glued blocks under loads on their outline: hand values at rest, held and free, plain assembly in motion, refusals."""
+
+import numpy as np
+import pytest
+from oracles.plain_newmark import glued, stepped
+
+import dda
+
+YOUNG, DENSITY, GLUE, CLAMP = 1e9, 2700.0, 4e9, 7e9  # Pa, kg/m3, N/m, N/m
+ROCK = dda.Material(DENSITY, YOUNG, 0.0)
+LEFT, RIGHT = ((0.0, 0.0), (0.0, 1.0)), ((2.0, 0.0), (2.0, 1.0))
+SIZE = 3e6  # Pa
+PULLED = dda.Traction(*RIGHT, (SIZE, 0.0))
+SCHEME = dda.Scheme(0.25, 0.5, 0.99, 4e-4)
+
+
+def cell(x, y, width=1.0):
+    return dda.Block([(x, y), (x + width, y), (x + width, y + 1), (x, y + 1)], ROCK)
+
+
+PAIR = [cell(0.0, 0.0), cell(1.0, 0.0)]
+TEE = [cell(0.0, 0.0, 2.0), cell(0.0, 1.0), cell(1.0, 1.0)]
+HELD = {"clamps": [LEFT], "clamp_glue": CLAMP, "tractions": [PULLED]}
+FREE = {"tractions": [PULLED, dda.Traction(*LEFT, (-SIZE, 0.0))]}
+
+
+def body(blocks=PAIR, glue=GLUE, **loads):
+    return dda.GluedBlocks(dda.glued_blocks(blocks, glue, **loads))
+
+
+def rigid(blocks):
+    """Return translations and the turn about the origin in the blocks' unknowns, (unknowns, 3)."""
+    motions = np.zeros((len(blocks), 6, 3))
+    motions[:, :3] = np.eye(3)
+    motions[:, :2, 2] = [(-block.section.centroid[1], block.section.centroid[0]) for block in blocks]
+    return motions.reshape(-1, 3)
+
+
+@pytest.mark.parametrize(("loads", "held"), [(HELD, True), (FREE, False)])
+def test_a_pulled_pair_opens_its_springs_and_stretches(loads, held):
+    """The pull S over two springs at each edge, and S / E in each block; a free one keeps its centre and its turn."""
+    pair = body(**loads)
+    opening, clamp = SIZE / (2 * GLUE), SIZE / (2 * CLAMP)
+    assert pair.strains == pytest.approx(np.tile([SIZE / YOUNG, 0.0, 0.0], (2, 1)), abs=1e-15)
+    right, left, corner = (pair.observer(*place) @ pair.rest.ravel() for place in (RIGHT, LEFT, ((2.0, 1.0),) * 2))
+    stretch = 2 * SIZE / YOUNG + opening
+    assert right - left == pytest.approx([stretch, 0.0], rel=1e-12, abs=1e-15)
+    assert left == pytest.approx([clamp if held else -stretch / 2, 0.0], rel=1e-12, abs=1e-15)
+    assert corner == pytest.approx(right, rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize("gravity", [(0.0, -9.81), (6.0, 0.0), (-3.0, 4.0)])
+def test_a_hung_pair_carries_its_weight(gravity):
+    """Mean stress of each block is half its own weight and that of the one beyond."""
+    pair = body(clamps=[LEFT], gravity=gravity)
+    along = DENSITY * gravity[0] / YOUNG
+    assert pair.strains[:, 0] == pytest.approx([1.5 * along, 0.5 * along], rel=1e-11, abs=1e-15)
+
+
+@pytest.mark.parametrize("stress", [(SIZE, 0.0, 0.0), (0.0, -SIZE, 0.0), (0.0, 0.0, SIZE), (SIZE, -2 * SIZE, 5e5)])
+def test_a_t_junction_passes_every_stress(stress):
+    """Stiff glue; the edge below is cut where the two above meet. Nothing moves or turns as a whole."""
+    tee = body(TEE, 1e9 * YOUNG, stress=stress)
+    ends = {(joint.first, joint.second): {joint.start, joint.end} for joint in tee.system.joints}
+    assert {tuple(sorted(pair)): places for pair, places in ends.items()} == {
+        (0, 1): {(0.0, 1.0), (1.0, 1.0)}, (0, 2): {(1.0, 1.0), (2.0, 1.0)}, (1, 2): {(1.0, 1.0), (1.0, 2.0)}
+    }  # fmt: skip
+    e_x, e_y, s_xy = np.array(stress) / YOUNG
+    assert tee.strains == pytest.approx(np.tile([e_x, e_y, 2 * s_xy], (3, 1)), abs=2e-8 * max(map(abs, stress)) / YOUNG)
+    momentum = [block.mass() @ rest for block, rest in zip(TEE, tee.rest, strict=True)]
+    assert np.abs(np.concatenate(momentum) @ rigid(TEE)).max() < 1e-9 * np.abs(momentum).max()
+
+
+@pytest.mark.parametrize(("loads", "held"), [(HELD, True), (FREE, False)])
+def test_modes_and_steps_are_those_of_the_plain_assembly(loads, held):
+    pair = body(**loads)
+    springs = [(0, 1, (1.0, y), GLUE, GLUE) for y in (0.0, 1.0)]
+    springs += [(0, None, (0.0, y), CLAMP, CLAMP) for y in (0.0, 1.0)] * held
+    M, K = glued(PAIR, springs)
+    squares = np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real)[0 if held else 3 :]
+    modes = pair.modes(SCHEME, len(squares))
+    assert [mode.frequency for mode in modes] == pytest.approx(np.sqrt(squares), rel=1e-9)
+    assert sum(mode.share for mode in modes) == pytest.approx(1.0, rel=1e-9)
+    F = SIZE * np.concatenate([np.zeros(6) if held else -PAIR[0].T(0.0, 0.5)[0], PAIR[1].T(2.0, 0.5)[0]])
+    rows = pair.observer(*RIGHT)
+    expected = stepped(M, K, np.tile(F, (41, 1)), SCHEME) @ rows.T
+    result = pair.history(SCHEME, 40, rows)
+    for number, values in enumerate(expected.T):
+        assert result.columns[str(number)] == pytest.approx(values, abs=1e-11 * np.abs(expected).max())
+
+
+OFF, POINT = ((0.0, 0.5), (1.0, 0.5)), ((0.0, 0.0), (0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("ask", "field"),
+    [
+        (lambda: body(clamps=[OFF]), "clamp"),
+        (lambda: body(clamps=[((1.0, 0.0), (1.0, 1.0))]), "clamp"),  # glued, and no part of the outline
+        (lambda: body(clamps=[POINT]), "clamp"),
+        (lambda: body(tractions=[dda.Traction(*OFF, (1.0, 0.0))]), "load"),
+        (lambda: body(tractions=[PULLED]).rest, "load"),  # nothing holds it
+        (lambda: body(gravity=(0.0, -9.81)).rest, "load"),
+        (lambda: body(glue=0.0), "normal"),
+        (lambda: body(clamps=[LEFT], clamp_glue=-1.0), "normal"),
+        (lambda: body(**HELD).observer((3.0, 0.5), (3.0, 0.5)), "point"),
+        (lambda: body(**HELD).observer(*OFF), "edge"),
+        (lambda: body(**HELD).history(SCHEME, 0, np.zeros((1, 12))), "steps"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_field(ask, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        ask()

@@ -1,0 +1,115 @@
+"""The plane elastic body: order of a cantilever's tip, a free body's six numbers, cells that meet in a T, refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem_reference import Scheme
+from fem_reference.plane.body import PlaneBody, mesh_of
+from fem_reference.plane.model import PlaneModel
+
+YOUNG, POISSON = 1e9, 0.25
+RECTANGLE = (((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (0.0, 1.0)),)
+# one wide cell below two narrow ones, whose common corner lies on its side
+TEE = (
+    ((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)),
+    ((0.0, 1.0), (0.8, 1.0), (0.8, 2.0), (0.0, 2.0)),
+    ((0.8, 1.0), (2.0, 1.0), (2.0, 2.0), (0.8, 2.0)),
+)
+LEFT, RIGHT = ((0.0, 0.0), (0.0, 1.0)), ((4.0, 0.0), (4.0, 1.0))
+CANTILEVER = PlaneBody(
+    RECTANGLE, 2700.0, YOUNG, POISSON, rectangle=True, clamps=(LEFT,), tractions=((RIGHT, (0.0, -1e5)),)
+)
+STRESSED = PlaneBody(TEE, 2700.0, YOUNG, POISSON, stress=(3e6, -1e6, 2e6), elements=2)
+SCHEME = Scheme(0.25, 0.5, 1.0, 1e-3)
+
+
+def tip(**changes):
+    model = PlaneModel(replace(CANTILEVER, **changes))
+    return float(model.observer(*RIGHT)[1] @ model.rest)
+
+
+@pytest.mark.parametrize(
+    ("degree", "counts", "least", "most", "last"),
+    # the energy of bending has order 2 and 4; the singular corners, towards which cells halve, leave order 2 of the 4
+    [(1, (3, 6, 12), 1.6, 2.1, 5e-3), (2, (2, 4, 8), 1.9, 4.1, 1e-5)],
+)
+def test_a_cantilevers_tip_converges(degree, counts, least, most, last):
+    truth = tip(elements=16)
+    errors = [abs(tip(elements=n, degree=degree) / truth - 1) for n in counts]
+    assert least < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < most
+    assert errors[-1] < last
+
+
+def test_a_cantilever_bends_and_shears_as_a_beam():
+    """P L^3 / 3 E I and 6 P L / 5 G A, but for the clamp."""
+    load, length, inertia = 1e5, 4.0, 1 / 12
+    beam = -load * (length**3 / (3 * YOUNG * inertia) + 1.2 * length * 2 * (1 + POISSON) / YOUNG)
+    assert tip() == pytest.approx(beam, rel=5e-3)
+
+
+@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_a_free_body_has_its_three_strains_and_no_momentum(hypothesis, degree):
+    model = PlaneModel(replace(STRESSED, hypothesis=hypothesis, degree=degree))
+    assert model.stress_error() < 1e-10
+    momentum = model.motions.T @ (model.M @ model.rest)
+    assert np.abs(momentum).max() < 1e-9 * np.abs(model.M @ model.rest).sum()
+    E, mu = (YOUNG, POISSON) if hypothesis == "plane stress" else (YOUNG / (1 - POISSON**2), POISSON / (1 - POISSON))
+    s_xx, s_yy, s_xy = STRESSED.stress
+    sides = [model.observer(*[(x, 1.0)] * 2) @ model.rest for x in (0.0, 2.0)]
+    ends = [model.observer(*[(1.0, y)] * 2) @ model.rest for y in (0.0, 2.0)]
+    across, up = (sides[1] - sides[0]) / 2, (ends[1] - ends[0]) / 2
+    strains = across[0], up[1], across[1] + up[0]
+    expected = (s_xx - mu * s_yy) / E, (s_yy - mu * s_xx) / E, 2 * (1 + POISSON) * s_xy / YOUNG
+    assert strains == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("elements", "cells"), [(1, 14), (2, 56)])
+def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
+    """Five triangles below, whose side the corner above cuts, and four in each cell above it."""
+    mesh = mesh_of(replace(STRESSED, elements=elements))
+    assert mesh.nelements == cells - elements**2  # 13 by four a halving
+    facets = mesh.p[:, mesh.facets[:, mesh.boundary_facets()]]
+    assert np.hypot(*(facets[:, 1] - facets[:, 0])).sum() == pytest.approx(8.0)  # the outline, and no slit
+
+
+def test_modes_of_a_cantilever_share_its_deflection():
+    modes = PlaneModel(replace(CANTILEVER, elements=4)).modes(SCHEME, 6)
+    assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
+    slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
+    assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia
+
+
+def test_a_step_of_a_cantilever_swings_about_its_rest():
+    model = PlaneModel(replace(CANTILEVER, elements=2))
+    rows = model.observer(*RIGHT)
+    period = 2 * np.pi / model.modes(SCHEME, 1)[0].frequency
+    steps = 400
+    tips = model.history(Scheme(0.25, 0.5, 1.0, period / steps, "consistent"), steps, rows).columns["1"]
+    rest = rows[1] @ model.rest
+    assert np.mean(tips) == pytest.approx(rest, rel=0.02) and np.min(tips) == pytest.approx(2 * rest, rel=0.05)
+
+
+INSIDE = ((0.0, 0.5), (4.0, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("ask", "field"),
+    [
+        (lambda: replace(CANTILEVER, poisson=0.5), "poisson"),
+        (lambda: replace(CANTILEVER, density=0.0), "density"),
+        (lambda: replace(CANTILEVER, hypothesis="bending"), "hypothesis"),
+        (lambda: replace(CANTILEVER, elements=0), "elements"),
+        (lambda: replace(CANTILEVER, degree=3), "degree"),
+        (lambda: PlaneModel(replace(CANTILEVER, clamps=(INSIDE,))), "edge"),
+        (lambda: PlaneModel(replace(CANTILEVER, tractions=((INSIDE, (1.0, 0.0)),))), "edge"),
+        (lambda: PlaneModel(CANTILEVER).observer(*INSIDE), "edge"),
+        (lambda: PlaneModel(replace(CANTILEVER, clamps=())).rest, "load"),
+        (lambda: PlaneModel(CANTILEVER).stress_error(), "stress"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_field(ask, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        ask()

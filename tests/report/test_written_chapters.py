@@ -1,0 +1,332 @@
+"""Chapters are queries of the table of a study: what is looked up, put into sentences, tables and charts, by name."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+import string
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.made_cases import between, kept_study, made_history, made_row
+
+from validation.report.blocks import Callout, FigureBlock, Heading, Paragraph, Table
+from validation.report.chapters.described import Description
+from validation.report.chapters.queries import StudyTable
+from validation.report.chapters.written import WrittenChapter
+from validation.results import Results
+from validation.runs.case_name import scene_of
+from validation.scenes.scene import load_scene
+from validation.suite.folders import StudyFolder, get_study, study_folders
+
+FOLDERS = {name: folder for name, folder in study_folders().items() if (folder.path / "chapter.toml").exists()}
+DERIVED = [
+    {"scene": "figures-3-4[time.step=0.01]", "name": "closed", "metrics": {"ratio": 0.5, "word": "stands"}},
+    {"scene": "figures-3-4", "name": "order", "metrics": {"power": -2.0}},
+    {"scene": "owner-a", "name": "dda at 10 blocks", "metrics": {"piece 1": 3.0, "piece 2": 4.0, "other": 9.0}},
+    {"scene": "owner-b", "name": "dda at 20 blocks", "metrics": {"piece 1": 5.0}},
+]
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> StudyTable:
+    """The table of a study of two cases by two solvers."""
+    results = Results(tmp_path / "results")
+    cases = []
+    for number, case in enumerate(load_scene("figures-3-4").expand()[:2], start=1):
+        for solver in ("dda", "fem"):
+            metrics = {"displacement.static": -0.01 * number, "pressure.settling_step": "undefined"}
+            history = made_history(case.time.step, [0.0, -1.0, -2.0], [0.0, 10.0, 20.0])
+            row = made_row(solver, metrics, case.name, work={"unknowns": 6}, seconds={"set-up": 1.0, "stepping": 2.0})
+            cases.append((case, row, history))
+    names = [case.name for case, *_ in cases]
+    data = {"curves": [{"kind": "a", "x": [1.0, 2.0], "y": [3.0, None]}, {"kind": "b", "x": [0.0], "y": [1.0]}]}
+    pairs = [between(names[0], "dda", "fem", displacement_l2=0.25)]
+    kept_study(results, cases, pairs, derived=DERIVED, data=data)
+    return StudyTable(results, results.manifest("made"))
+
+
+COARSE = {"where": {"time.step": 0.01}}
+
+
+@pytest.mark.parametrize(
+    ("query", "expression", "values"),
+    [
+        ({}, "time.step", [0.01, 0.002]),
+        ({"sort": "time.step"}, "time.step", [0.002, 0.01]),
+        ({"where": {"time.step": [0.002, 0.5]}}, "time.step", [0.002]),
+        (COARSE, "dda displacement.static", [-0.01]),
+        (COARSE, "dda pressure.settling_step", [None]),  # a word is no number
+        (COARSE, "dda|fem displacement.l2", [0.25]),
+        (COARSE, "fem|dda displacement.l2", [0.25]),
+        (COARSE, "dda work.unknowns", [6]),
+        (COARSE, "dda seconds", [3.0]),
+        (COARSE, "dda seconds.stepping", [2.0]),
+        (COARSE, "closed: ratio", [0.5]),
+        (COARSE, "closed: word", ["stands"]),
+        (COARSE, "order: power", [-2.0]),  # of its scene
+        (COARSE, "owner-a/dda at 10 blocks: other", [9.0]),
+        ({}, "closed: ratio else time.step", [0.5, 0.002]),
+        ({}, "closed: absent", [None, None]),
+        ({}, "column.height", [None, None]),  # of a table that the scene has not
+        ({"scene": "figures-{first}-{second}", **COARSE}, "second", [4.0]),
+        ({"by": "solver", **COARSE}, "* displacement.static", [-0.01, -0.01]),
+        ({"by": "solver", **COARSE}, "solver", ["dda", "fem"]),
+        ({"row": "dda at {blocks} blocks", "of": "owner-*"}, "blocks", [10.0, 20.0]),
+        ({"row": "dda at {blocks} blocks", "of": ["owner-b", "owner-a"]}, "blocks", [20.0, 10.0]),
+        ({"row": "dda at {blocks} blocks", "where": {"blocks": 10}}, ": other", [9.0]),
+        ({"row": "dda at {blocks} blocks", "scene": "owner-{letter}"}, "letter", ["a", "b"]),
+        ({"row": "dda at {blocks} blocks", "metric": "piece {piece}"}, "value", [3.0, 4.0, 5.0]),
+        ({"row": "dda at {blocks} blocks", "metric": "piece {piece}", "sort": ["piece", "blocks"]}, "piece", [1, 1, 2]),
+        ({"of": "nowhere"}, "time.step", []),
+    ],
+)
+def test_a_query_looks_up_what_it_names(table: StudyTable, query: Any, expression: str, values: list[Any]) -> None:
+    assert [table.value(line, expression) for line in table.lines(query)] == values
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ({"of": "time.step"}, 0.01),
+        ({"of": "time.step", "pick": "least"}, 0.002),
+        ({"of": "dda displacement.static", "pick": "most", "among": "time.step"}, -0.01),
+        ({"of": "dda displacement.static", "pick": "least", "among": "time.step"}, -0.02),
+        ({"of": "closed: ratio", "pick": "least", "among": "time.step"}, 0.5),  # of those that have one
+        ({"of": "time.step", "pick": "count"}, 2),
+        ({"of": "time.step", "where": {"time.step": 0.002}}, 0.002),
+        ({"of": "closed: absent", "pick": "most"}, None),
+        ({"of": "time.step", "unless": {"time.step": 0.01}}, 0.002),
+        ({"of": "dda outcome", "pick": "tally"}, "completed 2"),
+        ({"of": "dda outcome", "pick": "tally", "unless": {"dda outcome": "completed"}}, None),
+        ({"of": "time.step", "pick": "count", "where": {"time.step": 1.0}}, 0),
+        ({"of": "time.step", "pick": "count", "positive": True, "where": {"time.step": 1.0}}, None),
+    ],
+)
+def test_a_column_picks_one_of_some_lines(table: StudyTable, column: Any, value: Any) -> None:
+    assert table.picked(table.lines({}), column) == value
+
+
+PAGE = """
+parts = [
+    { opening = "" },
+    { text = "said" },
+    { text = "missing" },
+    { text = "replaced", tone = "fail" },
+    { heading = "Shown", figure = "chart", table = "cases", after = "said" },
+    { heading = "Never", table = "nothing" },
+    { text = "said", when = ["nowhere"] },
+]
+[text]
+said = "At {coarse} ms: {cases}."
+missing = "There is {absent}."
+replaced = "There is {absent}."
+replaced-without = "There is none."
+[number.coarse]
+value = "time.step"
+pick = "most"
+factor = 1e3
+form = "g"
+[number.absent]
+value = "closed: absent"
+[list.cases]
+text = "{step} s gives {static}"
+join = " and "
+[list.cases.numbers]
+step = { value = "time.step", form = "g" }
+static = { value = "dda displacement.static", decimals = 2 }
+[table.cases]
+caption = "To {coarse} ms."
+by = "solver"
+first = [["", "exact", "", "{coarse}"]]
+columns = [
+    { title = "Case", of = "scene", without = "figures-", once = true },
+    { title = "Solver", of = "solver", words = { fem = "elements" } },
+    { title = "", of = "time.step", form = "g", pattern = "{}, {}", also = [{ of = "* work.unknowns", digits = 1 }] },
+    { title = "v", of = "* displacement.static", decimals = 2, where = { "time.step" = 0.01 } },
+]
+[table.nothing]
+of = "nowhere"
+columns = [{ title = "v", of = "dda displacement.static" }]
+[figure.chart]
+file = "chart.svg"
+caption = "Drawn at {coarse} ms."
+panels = ["a", "b"]
+[panel.a]
+logarithmic = [false, false]
+lines = [
+    { x = "time.step", y = "dda displacement.static", y_factor = 100.0, sort = "time.step", name = "v" },
+    { x = "time.step", y = "closed: ratio", absent = 7.0, name = "all" },
+    { x = "time.step", y = "closed: ratio", absent = 7.0, only_absent = true, name = "absent" },
+    { x_ends = [0.0, 1.0], y = "closed: ratio", name = "level" },
+]
+[panel.b]
+[[panel.b.lines]]
+where = { "time.step" = 0.01 }
+history = "dda"
+y = "displacement"
+y_over = "closed: ratio"
+y_start = 1.0
+x_end = 0.025
+name = "{step} s"
+numbers = { step = { value = "time.step", form = "g" } }
+colors = ["#111111"]
+[[panel.b.lines]]
+where = { "time.step" = 0.01 }
+history = "dda"
+y = ["displacement", "contact_pressure"]
+name = "mean"
+[[panel.b.lines]]
+data = "curves"
+where = { kind = "a" }
+each = "kind"
+x = "x"
+y = "y"
+looks = { a = { dash = [1.0, 2.0] } }
+name = "{each}"
+[[panel.b.lines]]
+each = "time.step"
+x = "time.step"
+y = "dda displacement.static"
+looks = { "0.01" = { color = "#222222" } }
+name = "at {each}"
+"""
+
+
+def test_parts_become_blocks_in_their_order(table: StudyTable, tmp_path: Path) -> None:
+    (tmp_path / "chapter.toml").write_text(PAGE)
+    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
+    blocks = chapter.blocks()
+    said = "At 10 ms: 0.01 s gives −0.01 and 0.002 s gives −0.02."
+    assert blocks[2:4] == [Paragraph(said), Callout("There is none.", "fail")]
+    heading, figure, cases, after = blocks[4:]
+    assert heading == Heading("Shown", 2) and after == Paragraph(said)
+    assert isinstance(figure, FigureBlock) and figure.caption == "Drawn at 10 ms."
+    assert (tmp_path / figure.file).exists()
+    assert isinstance(cases, Table) and cases.caption == "To 10 ms."
+    assert cases.rows == (
+        ("", "exact", "", "10"),
+        ("3-4", "dda", "0.01, 6", "−0.01"),
+        ("", "elements", "0.01, 6", "−0.01"),
+        ("", "dda", "0.002, 6", "–"),
+        ("", "elements", "0.002, 6", "–"),
+    )
+
+
+def test_lines_hold_what_their_queries_name(table: StudyTable, tmp_path: Path) -> None:
+    (tmp_path / "chapter.toml").write_text(PAGE)
+    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
+    lines = {line.name: line for panel in "ab" for one in chapter.page.described("panel", panel)["lines"]
+             for line in chapter._lines(one)}  # fmt: skip
+    points = {name: (list(line.x), list(line.y)) for name, line in lines.items()}
+    assert points["v"] == ([0.002, 0.01], [-2.0, -1.0])
+    assert points["all"] == ([0.01, 0.002], [0.5, 7.0]) and points["absent"] == ([0.002], [7.0])
+    assert points["level"] == ([0.0, 1.0], [0.5, 0.5])
+    assert points["0.01 s"] == ([0.01, 0.02], [1.0, -1.0]) and lines["0.01 s"].color == "#111111"
+    assert points["mean"][1] == [0.0, 4.5, 9.0]
+    assert lines["a"].dash == (1.0, 2.0) and np.isnan(lines["a"].y[1])
+    assert points["at 0.01"] == ([0.01], [-0.01]) and lines["at 0.01"].color == "#222222"
+    assert lines["at 0.002"].color == ""
+
+
+MAPS = """
+parts = [{ maps = "steps" }, { maps = "nothing" }]
+[maps.steps]
+file = "{study}.svg"
+caption = "Maps."
+of = ["figures-*"]
+rows = { of = "contact.stiffness", form = "decade" }
+columns = { of = "time.step", factor = 1e3, form = "g", descending = true }
+scale = ["Greys", 1.0, 5.0]
+missing = "none"
+[[maps.steps.maps]]
+title = "v"
+of = "dda displacement.static"
+decimals = 2
+shade = { from = 0.0, to = -0.04 }
+[[maps.steps.maps]]
+title = "r"
+of = "closed: ratio"
+digits = 1
+shade = { from = 0.25, to = 4.0, logarithmic = true }
+[[maps.steps.maps]]
+title = "s"
+of = "closed: ratio"
+form = "digits"
+shade = { from = 2.0, to = 8.0, logarithmic = true, either_side = true }
+[maps.nothing]
+file = "nothing.svg"
+caption = ""
+of = ["figures-*"]
+rows = { of = "contact.stiffness" }
+columns = { of = "time.step" }
+scale = ["Greys", 1.0, 5.0]
+maps = [{ title = "v", of = "closed: absent", shade = { from = 0.0, to = 1.0 } }]
+"""
+
+
+def test_maps_shade_and_write_the_number_of_each_cell(table: StudyTable, tmp_path: Path) -> None:
+    (tmp_path / "chapter.toml").write_text(MAPS)
+    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
+    (figure,) = chapter.blocks()
+    assert isinstance(figure, FigureBlock) and figure.file == "made.svg"
+    described = chapter.page.described("maps", "steps")
+    maps = [chapter._map(one, table.lines({}), described, [1e9], [0.01, 0.002]) for one in described["maps"]]
+    assert [one.texts for one in maps] == [[["−0.01", "−0.02"]], [["0.5", "none"]], [["0", "none"]]]
+    assert [one.values.tolist()[0][0] for one in maps] == pytest.approx([0.25, 0.25, 1.0])
+    assert np.isnan(maps[1].values[0, 1])
+
+
+# ---- the chapters of the suite --------------------------------------------------------------------------------------
+
+
+def queries(folder: StudyFolder) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the tables of a description that hold expressions, with the query that they stand in."""
+
+    def walk(place: str, part: Any, query: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+        if isinstance(part, dict):
+            own = query | part
+            yield place, own
+            for key, value in part.items():
+                yield from walk(f"{place}.{key}", value, {} if key in ("maps", "rows") else own)
+        elif isinstance(part, list):
+            for value in part:
+                yield from walk(place, value, query)
+
+    page = Description(folder.path / "chapter.toml")
+    for kind in ("number", "list", "table", "panel"):
+        for name, part in page._data.get(kind, {}).items():
+            yield from walk(f"{kind}.{name}", part, {})
+
+
+@pytest.mark.parametrize("name", FOLDERS)
+def test_a_chapter_asks_for_what_its_study_has(name: str) -> None:
+    folder = FOLDERS[name]
+    study = get_study(name)
+    page = Description(folder.path / "chapter.toml")
+    cases = {case.scene.name for case in study.cases()}
+    rows = study.derived()
+    owners = {*cases, *map(scene_of, cases), *(row.scene for row in rows)}
+    names = {row.name for row in rows}
+    for place, query in queries(folder):
+        for pattern in [query.get("of", [])] if isinstance(query.get("of"), str) else query.get("of", []):
+            if isinstance(pattern, str) and not re.search(r"[ .:]", pattern) and place.split(".")[0] != "table":
+                assert fnmatch.filter(owners, pattern), (place, pattern)
+        for key in ("x", "y", "value", "among"):
+            for expression in str(query.get(key, "")).split(" else "):
+                row = expression.rpartition(": ")[0].rpartition("/")[2]
+                assert not row or row in names, (place, expression)
+        if "row" in query:
+            pattern = re.compile(re.sub(r"\\\{\w+\\\}", ".+", re.escape(query["row"])))
+            assert any(pattern.fullmatch(one) for one in names), (place, query["row"])
+    for part in page._data.get("parts", ()):
+        for kind in ("text", "after", "table", "figure", "maps"):
+            assert kind not in part or page.has({"after": "text"}.get(kind, kind), part[kind]), part
+    texts = [*page._data.get("text", {}).values()] if "parts" in page._data else []
+    texts += [one.get("caption", "") for kind in ("table", "figure") for one in page._data.get(kind, {}).values()]
+    for text in texts if "parts" in page._data else ():
+        for _, word, _, _ in string.Formatter().parse(text):
+            assert not word or word == "gates" or page.has("number", word) or page.has("list", word), word

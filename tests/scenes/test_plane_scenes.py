@@ -1,0 +1,86 @@
+"""Scenes of glued blocks in the plane: what is refused by its field, and the modes both solvers share their rest in."""
+
+import copy
+
+import pytest
+
+from validation.errors import InputError
+from validation.scenes.scene import parse_scene
+from validation.solvers.registry import get_solver
+
+SQUARE = {"vertices": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]}
+EDGE = [[2.0, 0.0], [2.0, 1.0]]
+TABLES = {
+    "plane": {
+        "young": 1e9,
+        "density": 2700.0,
+        "width": 2.0,
+        "height": 1.0,
+        "subdivide": [4, 2],
+        "clamp": [{"edge": [[0.0, 0.0], [0.0, 1.0]]}],
+        "load": [{"edge": EDGE, "traction": [0.0, -1e5]}],
+        "observe": {"edge": EDGE, "direction": [0.0, 1.0]},
+    },
+    "time": {"step": 1e-3, "steps": 5},
+}
+
+
+def scene(changes=None):
+    """Return the scene with other values by dotted keys; None takes one away."""
+    tables = copy.deepcopy(TABLES)
+    for key, value in (changes or {}).items():
+        *path, last = key.split(".")
+        table = tables
+        for name in path:
+            table = table.setdefault(name, {})
+        if value is None:
+            del table[last]
+        else:
+            table[last] = value
+    return parse_scene(tables, "plane")
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"plane.block": [SQUARE]}, "plane"),
+        ({"plane.subdivide": None}, "plane"),
+        ({"plane.subdivide": [200, 101]}, "plane"),
+        ({"plane.load": None}, "plane"),
+        ({"plane.observe": None}, "plane.observe"),
+        ({"plane.observe.direction": [1.0, 1.0]}, "plane.observe"),
+        ({"plane.observe.point": [2.0, 1.0]}, "plane.observe"),
+        ({"plane.observe.edge": None}, "plane.observe"),
+        ({"plane.poisson": 0.5}, "plane.poisson"),
+        ({"plane.glue": 0.0}, "plane.glue"),
+        ({"plane.pattern": "hexagons"}, "plane.pattern"),
+        ({"fem.foundation": "corner"}, "fem"),
+        ({"block": {"side": 2.0, "density": 1.0, "young": 1.0}}, "block"),
+    ],
+)
+def test_what_does_not_go_together_is_refused_by_field(changes, field):
+    scene()
+    with pytest.raises(InputError) as caught:
+        scene(changes)
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("place", ["plane.clamp", "plane.load"])
+def test_a_place_beside_the_outline_is_refused(solver, place):
+    off = [{"edge": [[0.5, 0.5], [0.5, 1.0]], "traction": [1.0, 0.0]}]
+    with pytest.raises(InputError):
+        get_solver(solver).solve(scene({place: off if place == "plane.load" else [{"edge": off[0]["edge"]}]}))
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+def test_the_modes_share_the_rest(solver):
+    modes = get_solver(solver).modes(scene())
+    assert modes[0].share == max(mode.share for mode in modes)
+    assert 0.9 < sum(mode.share for mode in modes) <= 1 + 1e-9  # of four modes that are reported
+
+
+def test_triangles_are_two_a_cell_and_tile_the_rectangle():
+    polygons = scene({"plane.pattern": "triangles"}).plane.polygons
+    areas = [((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2 for a, b, c in polygons]
+    assert areas == pytest.approx([0.125] * 16)

@@ -1,0 +1,1 @@
+"""Adapters of glued blocks in the plane."""
