@@ -63,6 +63,16 @@ def test_a_block_on_an_incline(tmp_path: Path) -> None:
     assert impulse == pytest.approx(np.trapezoid(record.force, record.time), rel=1e-3)  # a sum between samples
 
 
+def test_every_load_acts_as_on_the_block_of_steps(tmp_path: Path) -> None:
+    loads = {"load.pressure": 2e5, "load.eccentricity": 0.4, "load.traction": -2e5, "contact.cohesion": 2e4}
+    time = {"time.step": 1e-4, "time.steps": 200, "time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+    columns = {"run.columns": ["displacement", "horizontal_displacement", "rotation"]}
+    given = scene(tmp_path).with_values(loads | time | columns)
+    exact, stepped = (get_solver(name).solve(given).history.columns for name in ("block-events", "dda"))
+    for name, values in exact.items():
+        assert np.abs(stepped[name] - values).max() < 0.02 * np.abs(values).max(), name
+
+
 def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stuck(*_args: object) -> None:
         raise NoContactStateError("no state of the corners agrees with the motion at 0.5 s")
