@@ -127,10 +127,8 @@ def laws(scene: Scene) -> Iterator[Candidate]:
     reversed_input = {f"input.{key}": -given[key] for key in ("velocity", "pressure") if given.get(key)}
     if reversed_input:
         yield fixed("load-factor", "the input acts the other way", reversed_input, -1.0)
-    if has_velocity:
-        for words, factor in (("reversed", -1.0), ("forgotten", 0.0)):
-            changed = layers("velocity")(scene, factor)
-            yield fixed("velocity-factor", f"the starting velocity is {words}", changed, factor)
+    for words, factor in (("reversed", -1.0), ("forgotten", 0.0)) if has_velocity else ():
+        yield fixed("velocity-factor", f"the starting velocity is {words}", layers("velocity")(scene, factor), factor)
 
 
 # ---- the search -----------------------------------------------------------------------------------------------------
@@ -486,59 +484,52 @@ def _is_same(first: ColumnExplanation, second: ColumnExplanation) -> bool:
 def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     """Return a verdict as the answer of `compare`."""
     search = verdict.search
-    reading = search.reading
     cause = verdict.cause
-    ids = [*reading.slips, *([cause.id] if cause else [])]
     explained = verdict.is_scene or cause is not None
     best = cause or (verdict.ranked[0] if verdict.ranked else None)
     columns = None if best is None else search.run(best.values, len(search.time))
-    if columns is None:
-        columns = search.scene_run
+    columns = search.scene_run if columns is None else columns
     scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
     unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
-    departure = None if not ids and explained else _departure(search)
+    slips_of_reading = search.reading.corrected if explained else ()
+    ids = [*search.reading.slips, *([cause.id] if cause else [])] if explained else [UNEXPLAINED]
+    departure = _departure(search) if ids else None
     own = own_scheme(scene)
     scheme = scheme_numbers(own)
-    words = words_of_slips(reading.corrected)
+    stated = sentences.scheme_of(own)
+    words = words_of_slips(search.reading.corrected)
     (judged_solver, *_) = by_role(Role.JUDGED)
     alpha, delta = (own.alpha, own.delta) if own.family == "newmark" else (None, None)
     ranking = [row_of(judged_solver, alpha, delta, own.gg, scene_misfit, None)]
-    alike = [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
+    alike = [] if cause else [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if cause is not None:
-        alike = []
-        if "time.alpha" in cause.values:
+        if cause.id in ("scheme", "start"):
             scheme = {"alpha": cause.values["time.alpha"], "delta": cause.values["time.delta"], "gg": scheme["gg"]}
         scheme["gg"] = cause.values.get("time.gg", scheme["gg"])
         words[cause.id] = cause.words
         if cause.id == "scheme":
-            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(own)}"
+            words["scheme"] = f"a different scheme from the scene's {stated}"
+        stated = cause.words if cause.id == "scheme" else sentences.scheme_of(replace(own, gg=scheme["gg"]))
         ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     if verdict.slipped is not None:
         slipped = list(verdict.slipped.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
-    subject = sentences.Subject(
-        cause.words if cause and cause.id == "scheme" else sentences.scheme_of(replace(own, gg=scheme["gg"])),
-        words,
-        departure,
-        sentences.remaining(misfit),
-        alike,
-    )
     nearest: dict[str, Any] | None = None
     if not explained and not alike and best is not None:
         nearest = best.as_dict() | {"left": unexplained}
         del nearest["further_scene"]
     stages = _stages(search)
-    if explained:
-        sentence = sentences.sentence(subject)
-    else:
+    subject = sentences.Subject(stated, words, departure, sentences.remaining(misfit), alike)
+    sentence = sentences.sentence(subject)
+    if not explained:
         sentence = f"{sentences.not_explained(subject, nearest, unexplained, stages)[:-1]}; {_first_rows(search)}."
     curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
     return Answer(
         sentence=sentence,
-        causes=ids if explained else [UNEXPLAINED],
+        causes=ids,
         scheme=scheme,
         departure=departure,
-        notes=(*foreign.notes, *_notes(search, scene, stages)),
+        notes=(*foreign.notes, *search.reading.notes, *_notes(search, scene)),
         ranking=ranking,
         misfit=misfit,
         curves={name: (search.time, run[0]) for name, run in curves.items()},
@@ -548,26 +539,23 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         alike=alike,
         evidence=tuple(stages),
         pressures={name: run[1] for name, run in curves.items()} if len(search.scene_run) > 1 else {},
-        slips=reading.corrected if explained else (),
+        slips=slips_of_reading,
     )
 
 
 def _departure(search: ColumnSearch) -> Departure | None:
     """Return the first row that is not the scene's own, and how the displacement differs most."""
-    departing = search.departing
-    if not len(departing):
+    if not len(search.departing):
         return None
     rows = search.reading.stepping.rows[: search.rows]
     departure = evidence.measured(search.scene_run[0, : search.rows], search.recorded[0, : search.rows], rows, 0.0)
-    return replace(departure, step=int(rows[departing[0]]) + 1)
+    return replace(departure, step=int(rows[search.departing[0]]) + 1)
 
 
 def _first_rows(search: ColumnSearch) -> str:
     """Return which rows agree, and what would tell."""
     row = search.departing[0] if len(search.departing) else search.rows
-    agree = "no row agrees"
-    if row:
-        agree = f"the first {row} rows agree, up to t = {search.time[row - 1]:.6g} s"
+    agree = f"the first {row} rows agree, up to t = {search.time[row - 1]:.6g} s" if row else "no row agrees"
     return f"{agree}; what would tell: {WOULD_TELL}"
 
 
@@ -576,32 +564,35 @@ def _stages(search: ColumnSearch) -> list[Stage]:
     stages = [evidence.reading_stage(search.reading)]
     shares = search.over(search.scene_run, search.rows)
     for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.scene_run), shares, strict=False):
-        beyond = np.flatnonzero(np.abs(share) > 1)
-        of_column = f"the {name.replace('_', ' ')} alone "
-        what = f"is {100 * misfit:.3g} % off, from row {beyond[0] + 1} on" if len(beyond) else "is the scene's"
-        first = float(beyond[0] + 1) if len(beyond) else None
-        stages.append(Stage(name, not len(beyond), of_column + what, {"misfit": misfit, "first_row": first}))
+        beyond = np.flatnonzero(np.abs(share) > 1) + 1
+        what = f"is {100 * misfit:.3g} % off, from row {beyond[0]} on" if len(beyond) else "is the scene's"
+        words = f"the {name.replace('_', ' ')} alone {what}"
+        first = float(beyond[0]) if len(beyond) else None
+        stages.append(Stage(name, not len(beyond), words, {"misfit": misfit, "first_row": first}))
     if search.rows < search.scene_run.shape[1]:
-        time = float(search.time[max(search.rows - 1, 0)])
-        words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
-        stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))
+        stages.append(Stage("horizon", None, _horizon(search), {"rows": float(search.rows)}))
     return stages
 
 
-def _notes(search: ColumnSearch, scene: Scene, stages: Sequence[Stage]) -> list[str]:
-    """Return what there is to know beside the verdict: times, horizon, limits of solves."""
-    notes = [*search.reading.notes, *(stage.words for stage in stages if stage.name == "horizon")]
+def _horizon(search: ColumnSearch) -> str:
+    time = search.time[max(search.rows - 1, 0)]
+    return f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
+
+
+def _notes(search: ColumnSearch, scene: Scene) -> list[str]:
+    """Return what there is to know beside the verdict: the horizon, limits of solves."""
+    notes = [_horizon(search)] if search.rows < search.scene_run.shape[1] else []
     steps = len(search.reading.stepping.steps)
     result = search.result({}, steps + 1)
     if result is None:
         return notes
     limit = column_of(scene).solve_limit
-    exceeding = np.flatnonzero(result.step_solves[:steps] > limit) if limit else np.zeros(0, int)
-    if len(exceeding):
-        step = exceeding[0] + 1
+    solves = result.step_solves
+    if limit and largest(solves[:steps]) > limit:
+        step = np.argmax(solves > limit) + 1
         notes.append(f"the scene's own limit of {limit} solves ends its run at step {step}: it was left out")
-    needed = int(result.step_solves[-1])
-    is_first = needed > max(int(result.step_solves[:steps].max()), LEAST_LIMIT)
+    needed = int(solves[-1])
+    is_first = needed > max(largest(solves[:steps]), LEAST_LIMIT)
     same_step = search.reading.stepping.steps[0] == scene.time.step
     if is_first and same_step and steps < scene.time.steps and not len(search.departing):
         notes.append(

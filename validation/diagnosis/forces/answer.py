@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -17,7 +16,7 @@ from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits, significant
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding, judge
 from validation.diagnosis.forces.laws import body_of
-from validation.diagnosis.forces.runs import DDA, OneChange, agreement, at_step, displacements
+from validation.diagnosis.forces.runs import DDA, Agreement, OneChange, agreement, at_step, displacements
 from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, remedy_of, words_of_slips
@@ -37,6 +36,7 @@ UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
 NEAR_POWER = 0.5  # of the exponent: what creeps and slides differs by a factor of a few from program to program
 FRICTION_CAUSES = frozenset({"friction-factor", "cohesion", "shear-springs-factor"})
 NORMAL_CAUSES = frozenset({"springs-factor", "normal-springs-factor"})
+OTHER_SLOPE = "another slope or coefficient of friction"
 UNIFORM = 1e-3  # relative; times are often printed with four digits
 
 
@@ -138,101 +138,84 @@ def answer_of(scene: Scene, foreign: Foreign, reading: SlopeReading) -> Answer:
         first = 1 if reading.corrected and result.explained else result.first
         departure = Departure(first or 1, "offset")
     t = scene.time
-    softer = result.values.get("base-compliance", 0.0)
-    answer = Answer(
+    alike = [_alone(change) for change in result.alike]
+    evidence = stages(result, reading)
+    left = 0.0
+    nearest: dict[str, Any] | None = None
+    if result.explained:
+        words = {name: result.change or words_of(name, result.values.get(name, 0.0)) for name in result.causes}
+        law = "lagged" if result.lagged else "consistent"
+        remainder = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
+        if result.change or all_benign(ids):
+            remainder = _motion(result.run)
+        scheme = sentences.scheme_words(t.alpha, t.delta, t.discount)
+        subject = sentences.Subject(scheme, words_of_slips(reading.corrected) | words, departure, remainder)
+        sentence = sentences.sentence(subject)
+    else:
+        left = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
+        nearest = {"causes": list(result.causes), "values": result.values, "left": left}
+        sentence = sentences.not_explained(sentences.Subject("", {}, None, "", alike), nearest, left, evidence)
+    return Answer(
         scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, softer)],
+        ranking=[row_of(DDA, t.alpha, t.delta, t.discount, result.normal, result.values.get("base-compliance", 0.0))],
         departure=departure,
         causes=ids,
-        opened=result.opened,
-        sentence=sentence(scene, result, ids, departure, reading.corrected),
+        opened=result.opened if result.explained else None,
+        sentence=sentence,
         notes=(*foreign.notes, *reading.notes),
         misfit=result.normal,
         curves={"the file": (foreign.time, foreign.displacement)},
-        values=result.values,
-        alike=[_alone(change) for change in result.alike],
-        evidence=tuple(stages(result, reading)),
-        slips=reading.corrected,
+        values=result.values if result.explained else {},
+        unexplained=left,
+        nearest=nearest,
+        alike=alike,
+        evidence=evidence,
+        slips=reading.corrected if result.explained else (),
     )
-    if result.explained:
-        return answer
-    left = significant(min(1.0, np.nanmax([1 - max(result.shares.values()), result.run.left])), 4)
-    nearest = {"causes": list(result.causes), "values": result.values, "left": left}
-    return replace(answer, opened=None, values={}, unexplained=left, nearest=nearest, slips=())
 
 
 def _alone(change: OneChange) -> dict[str, Any]:
     """Return one of several changes that give the same rows, as plain data."""
     values = {} if change.value is None else {change.id: change.value}
-    further = "another slope or coefficient of friction"
-    if "springs" in change.id:
-        further = CAUSES["springs-factor"].further_scene
+    further = CAUSES["springs-factor"].further_scene if "springs" in change.id else OTHER_SLOPE
     return {"causes": [change.id], "values": values, "further_scene": further}
 
 
-def stages(result: ContactFinding, read: SlopeReading) -> list[Stage]:
-    """Return what was measured: signs, normal law, friction."""
-    per_cents = {name: 100 * share for name, share in result.shares.items()}
-    shares = f"consistent in {per_cents['consistent']:.3g} % of the steps, lagged in {per_cents['lagged']:.3g} %"
-    friction = f"rules that hold to {per_cent(result.tolerance, 2)} % of the limit: {shares}"
-    friction += f"; {result.telling} steps tell them apart"
-    numbers: dict[str, float | None] = {**result.shares, "telling": float(result.telling), "allowed": result.tolerance}
-    right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
-    pressed = f"the normal forces of the motion are those of the springs to {per_cent(result.normal, 2)} %"
-    of_scene = result.scene_run if result.change else result.run
-    misfit = None if math.isnan(of_scene.left) else of_scene.left
-    causes = {*result.causes} if result.explained else set()
-    is_normal = result.normal <= NORMAL and causes.isdisjoint(NORMAL_CAUSES)
-    # whether the scene's own law gives the forces; not known where the forces suit it and the motion does not
-    law_holds: bool | None = None
+def stages(result: ContactFinding, read: SlopeReading) -> tuple[Stage, ...]:
+    """Return what was measured: signs, the scene's own run, normal law, friction."""
+    consistent, lagged = (f"{100 * result.shares[law]:.3g} %" for law in ("consistent", "lagged"))
+    friction = f"within {per_cent(result.tolerance, 2)} % of the limit it is consistent in {consistent} of the steps, "
+    friction += f"lagged in {lagged}; {result.telling} steps tell which"
     if result.tolerance > BLURRED:
         friction += "; the digits of the file do not show it"
-    elif result.change:
+    of_scene = result.scene_run if result.change else result.run
+    causes = {*result.causes} if result.explained else set()
+    # whether the scene's own law gives the forces; not known where the forces suit it and the motion does not
+    law_holds = True if result.run.same else None
+    if result.change:
         law_holds = None if causes.isdisjoint(FRICTION_CAUSES) else False
     elif result.first is not None or max(result.shares.values()) < MOST:
         law_holds = False
-    elif result.run.same:
-        law_holds = True
-    return [
+    if result.tolerance > BLURRED:
+        law_holds = None
+    right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
+    pressed = f"the normal forces are those of the springs to {per_cent(result.normal, 2)} %"
+    is_normal = result.normal <= NORMAL and causes.isdisjoint(NORMAL_CAUSES)
+    misfit = None if math.isnan(of_scene.left) else of_scene.left
+    shares: dict[str, float | None] = {**result.shares, "telling": result.telling, "allowed": result.tolerance}
+    return (
         Stage("reading", not read.slips, right, {}),
-        Stage("motion", result.run.same and not result.change, _motion(result), {"misfit": misfit}),
+        Stage("motion", result.run.same and not result.change, _motion(of_scene), {"misfit": misfit}),
         Stage("normal forces", is_normal, pressed, {"misfit": result.normal, "allowed": NORMAL}),
-        Stage("friction", law_holds, friction, numbers),
-    ]
+        Stage("friction", law_holds, friction, shares),
+    )
 
 
-def _motion(result: ContactFinding, with_change: bool = False) -> str:
-    """Return what the suite's own run leaves of the displacements, in words: the scene's, or with what explains it."""
-    run = result.run
+def _motion(run: Agreement) -> str:
+    """Return what a run of the suite leaves of the displacements, in words."""
+    if run.same:
+        part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
+        return f"the suite's own run gives the displacements to their digits or noise{part}"
     if math.isnan(run.left):
         return "the suite has no run of it"
-    if result.change and not with_change:
-        return f"the suite's own run of the scene leaves {per_cent(result.scene_run.left, 2)} % of the displacements"
-    part = f" up to step {run.until}, beyond which the scene amplifies rounding" if run.until else ""
-    if run.same:
-        return f"the suite's own run gives the displacements to their digits or noise{part}"
-    return f"the suite's own run of it leaves {per_cent(run.left, 2)} % of the displacements"
-
-
-def sentence(
-    scene: Scene, result: ContactFinding, ids: Sequence[str], departure: Departure | None, corrected: Sequence[Slip]
-) -> str:
-    """Return the first line of the answer."""
-    law = "lagged" if result.lagged else "consistent"
-    share = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
-    if not result.explained:
-        if result.alike:
-            words = list(dict.fromkeys(one.words for one in result.alike))
-            same = "gives" if len(words) == 1 else "give"
-            return f"Departs, not explained: {' or '.join(words)}, which {same} the same rows; {_motion(result)}."
-        why = "the digits of the file do not show its forces" if result.tolerance > BLURRED else f"at best, {share}"
-        normal = f"the normal law leaves {per_cent(result.normal, 2)} %"
-        return f"Departs, not explained: {why}; {normal}; {_motion(result)}."
-    if result.change:
-        faults = [*(slip.words for slip in corrected), result.change]
-        return f"Departs: {' and '.join(faults)}; {_motion(result, with_change=True)}."
-    words_by_id = {name: words_of(name, result.values.get(name, 0.0)) for name in ids} | words_of_slips(corrected)
-    remainder = _motion(result) if all_benign(ids) else share
-    t = scene.time
-    scheme = sentences.scheme_words(t.alpha, t.delta, t.discount)
-    return sentences.sentence(sentences.Subject(scheme, words_by_id, departure, remainder))
+    return f"the suite's own run leaves {per_cent(run.left, 2)} % of the displacements"
