@@ -9,13 +9,13 @@ from validation.solvers.rigid.impacts import impact_restitution, impact_statisti
 from validation.theory import stages
 from validation.theory.rebound import (
     conserving_steps,
-    impact_steps,
     midpoints,
     rebound_statistics,
     rebounds,
     spring_steps,
 )
 
+IMPLICIT_EULER = (stages.Stage(beta=1.0, gamma=1.0),)  # v1 = v + dt a1, x1 = x + dt v1
 OMEGAS = (0.1, 0.3, 1.0, 1.9, 4.0, 10.0, 1000.0)
 SCHEMES = {
     "constant": stages.newmark(0.5, 1.0),
@@ -27,7 +27,7 @@ SCHEMES = {
     "bathe-0.5": stages.composite(0.5),
     "leapfrog": stages.LEAPFROG,
     "explicit-euler": stages.EXPLICIT_EULER,
-    "implicit-euler": stages.IMPLICIT_EULER,
+    "implicit-euler": IMPLICIT_EULER,
 }
 # mean, least and greatest over 100 phases by omega, from an independent program
 TABLE = {
@@ -72,7 +72,7 @@ def test_rebounds_by_scheme_and_contact_frequency(name):
         (stages.wbz(0.5), 7 / 6, 1 / 3, 2.0, 43 / 27),
         (stages.composite(0.0, 0.5), 1.0952, 0.264, 1.999, 1.393),
         (stages.composite(0.5), 1.3862, 0.255, 2.663, 2.315),
-        (stages.IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
+        (IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
     ],
 )
 def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_square):
@@ -110,10 +110,8 @@ def test_energy_conserving_contact_has_no_rigid_stop():
 
 
 @pytest.mark.parametrize("omega", [0.1, 0.7, 1.9, 4.0, 1e3])
-def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
+def test_energy_conserving_contact_returns_the_speed(omega):
     assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)
-    for e in (0.0, 0.37, 1.0):
-        assert rebounds(impact_steps(e, 0.75), midpoints(20)) == pytest.approx(np.full(20, e), abs=1e-12)
 
 
 def test_a_dashpots_rebound_depends_on_scheme_and_step():

@@ -56,11 +56,6 @@ MASS = np.array([1.0, 1 / 12])
 STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
-def quarter_mass_frequency(scene: Scene) -> float:
-    """Return sqrt(8 p / m), of springs much stiffer than the block, p >> E [rad/s]."""
-    return math.sqrt(8 * scene.contact.stiffness / scene.block.mass)
-
-
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
     """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
     modulus, _ = statics.moduli(scene)
