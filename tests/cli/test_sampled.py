@@ -30,7 +30,7 @@ def test_what_the_steps_show_of_an_alias_is_no_peak() -> None:
 @pytest.mark.parametrize(("value", "proposed"), [(0.034, True), (0.49, True), (1.02, False), (1.5e47, False)])
 def test_a_gate_is_proposed_for_what_agrees(value: float, proposed: bool) -> None:
     record = {"scene": "s", "solver": "dda", "reference": "fem", "metrics": {"displacement.l2": value}}
-    text = "\n".join(tables._next([record], True))  # type: ignore[list-item]
+    text = "\n".join(tables._next([record], [], True))  # type: ignore[list-item]
     assert ("[[gate]]" in text) is proposed
 
 
