@@ -506,32 +506,30 @@ def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float
 
     errors = np.array([off(float(omega)) for omega in omegas])
     best = int(np.argmin(errors))
-    good = np.flatnonzero(errors <= error)
-    if not good.size:
+    good = errors <= error
+    nearest = (float(errors[best]), float(omegas[best]) * unit)
+    if not good.any():
         # below the grid the error falls as a power of the step, unless a discount keeps it up
         order = math.log(errors[1] / errors[0], omegas[1] / omegas[0]) if errors[0] > 0 else 0.0
-        if order > 0.5:
-            longest = float(omegas[0] * (error / errors[0]) ** (1 / order)) * unit
-            return AllowedSteps(longest, None, float(errors[best]), float(omegas[best]) * unit)
-        return AllowedSteps(None, None, float(errors[best]), float(omegas[best]) * unit)
-    first = int(good[0])
-    wrong_above = np.flatnonzero(errors[first:] > error)
-    last = first + int(wrong_above[0]) - 1 if wrong_above.size else len(omegas) - 1
-    longest = float(omegas[last])
-    if last + 1 < len(omegas):
-        longest = _edge(off, error, longest, float(omegas[last + 1]))
-    shortest = _edge(off, error, float(omegas[first]), float(omegas[first - 1])) * unit if first else None
-    return AllowedSteps(longest * unit, shortest, float(errors[best]), float(omegas[best]) * unit)
+        if order <= 0.5:
+            return AllowedSteps(None, None, *nearest)
+        return AllowedSteps(float(omegas[0] * (error / errors[0]) ** (1 / order)) * unit, None, *nearest)
+
+    def edge(inside: int, outside: int) -> float:
+        step = last_good(lambda omega: off(omega) <= error, float(omegas[inside]), float(omegas[outside]), 1e-3)
+        return step * unit
+
+    first = int(np.argmax(good))
+    last = first + int(np.argmin([*good[first:], False])) - 1
+    longest = edge(last, last + 1) if last + 1 < len(omegas) else float(omegas[last]) * unit
+    return AllowedSteps(longest, edge(first, first - 1) if first else None, *nearest)
 
 
-def _edge(off: Callable[[float], float], error: float, good: float, wrong: float) -> float:
-    """Return the last good value on the way to a wrong one, to a thousandth."""
-    while abs(wrong / good - 1) > 1e-3:
+def last_good(is_good: Callable[[float], bool], good: float, wrong: float, tolerance: float) -> float:
+    """Return the last good value on the way to a wrong one, to a share of it."""
+    while abs(wrong / good - 1) > tolerance:
         middle = math.sqrt(good * wrong)
-        if off(middle) <= error:
-            good = middle
-        else:
-            wrong = middle
+        good, wrong = (middle, wrong) if is_good(middle) else (good, middle)
     return good
 
 
