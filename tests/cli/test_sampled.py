@@ -37,5 +37,6 @@ def test_a_gate_is_proposed_for_what_agrees(value: float, proposed: bool) -> Non
 def test_a_pair_that_agrees_is_proposed_before_one_that_does_not(tmp_path: Path) -> None:
     scene = tmp_path / "s.toml"
     scene.write_text(SCENE + '[run]\nsolvers = ["dda", "bar"]\n')
-    done = typed("run", scene, "--results", tmp_path / "r")
+    undamped = ("--set", "time.alpha=0.25", "--set", "time.delta=0.5")  # no agreement by damping
+    done = typed("run", scene, *undamped, "--results", tmp_path / "r")
     assert "[[gate]]" in done.stdout
