@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from conftest import refused, typed
+from conftest import refused, thinned, typed
 
 from validation import InputError, advise_across, damping, load_scene
 from validation.advice.across import GAIN, STEPS, SchemeAdvice
@@ -20,13 +20,20 @@ def five() -> SchemeAdvice:
 
 
 @pytest.mark.long
-def test_an_offer_is_what_the_solver_then_has() -> None:
-    other = LOCKED.with_values({"time.scheme": "wbz", "time.rho_inf": 0.3})
-    for scene in (LOCKED, other):
-        for offer in advise_across(scene, 0.05).offers[:: 1 if scene is other else 3]:
-            first = damping(scene.with_values(offer.settings)).modes[0]
-            assert first.damping == pytest.approx(0.05, rel=1e-6), offer.name
-            assert first.damping == pytest.approx(offer.first_mode, rel=1e-6)
+@pytest.mark.parametrize("values", [{}, {"time.scheme": "wbz", "time.rho_inf": 0.3}])
+@pytest.mark.parametrize(("target", "frequency"), thinned([(0.05, None), (0.02, 31.0), (0.2, 90.0)], 3))
+def test_an_offer_is_what_the_solver_then_has(
+    values: dict[str, object], target: float, frequency: float | None
+) -> None:
+    scene = LOCKED.with_values(values)
+    advice = advise_across(scene, target, frequency)
+    assert len(advice.offers) > 4
+    for offer in advice.offers:
+        assert offer.damping == pytest.approx(target, rel=1e-9)
+        first = damping(scene.with_values(offer.settings)).modes[0]
+        assert first.damping == pytest.approx(offer.first_mode, rel=1e-6), offer.name
+        if frequency is None:
+            assert first.damping == pytest.approx(target, rel=1e-6), offer.name
 
 
 def test_the_recommended_gain_nothing_and_resolve_the_frequency(five: SchemeAdvice) -> None:

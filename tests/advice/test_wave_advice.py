@@ -66,9 +66,7 @@ def test_ten_blocks_a_wavelength_let_less_than_a_hundredth_arrive() -> None:
     assert -present.delay == pytest.approx(10 * (1 - 1 / 1.016724), abs=1e-4)
 
 
-def test_what_limits_a_wave_is_named() -> None:
-    assert advise_wave(COLUMN, 5.0, 0.1).present.loss == pytest.approx(0.333, abs=5e-4)
-    assert advise_wave(COLUMN.with_values(AVERAGE), 5.0, 0.1).present.loss == pytest.approx(0.0, abs=1e-12)
+def test_what_limits_blocks_and_step_is_named() -> None:
     both = advise_wave(COLUMN.with_values({"time.gg": 0.99}), 5.0, 0.1)
     assert (both.advised, both.limits_step) == (None, "gg")
     soft = advise_wave(COLUMN.with_values({"block.glue_ratio": 1e-3}), 5.0, 0.1)

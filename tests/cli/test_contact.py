@@ -15,7 +15,6 @@ from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.runs.run import Outcome
-from validation.theory.friction import distance_share
 
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
@@ -76,34 +75,6 @@ def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytes
     done = typed("contact", "unlocked-constant", *SHORT)
     assert done.returncode == 3
     assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
-
-
-def test_what_is_needed_is_told_with_its_own_step_depth_and_returns() -> None:
-    scene = load_scene("unlocked-constant").expand()[0].with_values({"time.gg": 0.9, "time.step": 0.01})
-    returns = {"mean": 0.5, "low": 0.25, "high": 0.75, "energy": 0.375, "own": 0.9}
-    steps = {"longest": 1e-4, "shortest": None, "best": 0.01, "best_step": 1e-5}
-    need = {"stiffness": 2e9, "steps": steps, "steps_now": steps | {"shortest": 2e-5}, "depth": 2e-5,
-            "restitution": returns}  # fmt: skip
-    asked = {"restitution_error": 0.05, "penetration": 1e-5, "stated": ["penetration"]}
-    found = {"needed": need, "asked": asked, "landing_speed": 1.5, "restitution_now": None}
-    text = list(contact_page._needed(scene, found))
-    assert "a restitution within 0.05 of the block's own" in text[0] and "below 1e-05 m" in text[0]
-    assert text[1].endswith(": the exact block then penetrates 2e-05 m, and no stiffer ones were tried")
-    assert text[2:4] == [
-        "  time step   at that p: dt <= 0.0001 s",
-        "              at present: dt from 2e-05 s, below which gg takes more, to 0.0001 s",
-    ]
-    assert "leaves the centre of mass 0.5 of its speed, 0.25 to 0.75" in text[4] and text[4].endswith("own is 0.9")
-    found["asked"] = asked | {"stated": []}
-    assert next(contact_page._needed(scene, found)).startswith("For accuracies that are usual")
-    found["needed"] = need | {"stiffness": 5e12}
-    assert "that is 5000 E, for the penetration of a landing" in list(contact_page._needed(scene, found))[2]
-    none = steps | {"longest": None, "best": 0.4}
-    assert contact_page._allowed(none, 0.99).startswith("none with gg = 0.99; the least difference is 0.4")
-    assert contact_page._allowed(None, 1.0).startswith("not known")
-    left = 100 * distance_share(0.9, 0.01, 1.0)
-    assert f"it leaves {left:.3g} % of the distance covered from rest in a second" in text[-1]
-    assert contact_page._depth(need | {"depth": 1e-5}, 1e-5).endswith("penetrates 1e-05 m")
 
 
 def test_the_landing_is_the_exact_block_s_then_dda_s_then_that_of_a_free_fall() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.impulses import impact_steps
 from oracles.unilateral_checks import DT, apart, random_model, size
 
 from dda import (
@@ -25,7 +26,7 @@ from dda import (
 from dda.one_block.unilateral_form import unilateral_form
 from dda.rotation.solution import RollingModel
 from validation.theory import stages
-from validation.theory.rebound import Advance, impact_steps, midpoints, rebounds, spring_steps
+from validation.theory.rebound import Advance, midpoints, rebounds, spring_steps
 from validation.theory.restitution import restitution
 
 MASS = 1.3 * 0.9 * 2350.0

@@ -8,15 +8,14 @@ import pytest
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
 from validation.theory import stages
 from validation.theory.rebound import (
-    Motion,
     conserving_steps,
-    impact_steps,
     midpoints,
     rebound_statistics,
     rebounds,
     spring_steps,
 )
 
+IMPLICIT_EULER = (stages.Stage(beta=1.0, gamma=1.0),)  # v1 = v + dt a1, x1 = x + dt v1
 OMEGAS = (0.1, 0.3, 1.0, 1.9, 4.0, 10.0, 1000.0)
 SCHEMES = {
     "constant": stages.newmark(0.5, 1.0),
@@ -28,7 +27,7 @@ SCHEMES = {
     "bathe-0.5": stages.composite(0.5),
     "leapfrog": stages.LEAPFROG,
     "explicit-euler": stages.EXPLICIT_EULER,
-    "implicit-euler": stages.IMPLICIT_EULER,
+    "implicit-euler": IMPLICIT_EULER,
 }
 # mean, least and greatest over 100 phases by omega, from an independent program
 TABLE = {
@@ -73,7 +72,7 @@ def test_rebounds_by_scheme_and_contact_frequency(name):
         (stages.wbz(0.5), 7 / 6, 1 / 3, 2.0, 43 / 27),
         (stages.composite(0.0, 0.5), 1.0952, 0.264, 1.999, 1.393),
         (stages.composite(0.5), 1.3862, 0.255, 2.663, 2.315),
-        (stages.IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
+        (IMPLICIT_EULER, 0.0, 0.0, 0.0, 0.0),
     ],
 )
 def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_square):
@@ -104,43 +103,5 @@ def test_energy_conserving_contact_has_no_rigid_stop():
 
 
 @pytest.mark.parametrize("omega", [0.1, 0.7, 1.9, 4.0, 1e3])
-def test_energy_conserving_contact_and_impulses_return_what_they_promise(omega):
+def test_energy_conserving_contact_returns_the_speed(omega):
     assert rebounds(conserving_steps(omega), midpoints(20)) == pytest.approx(np.ones(20), rel=1e-9)
-    for e in (0.0, 0.37, 1.0):
-        assert rebounds(impact_steps(e, 0.75), midpoints(20)) == pytest.approx(np.full(20, e), abs=1e-12)
-
-
-def test_a_step_of_impulses_moves_by_both_of_its_velocities():
-    """Three quarters of the end's, a quarter of the start's; what lies far away falls on."""
-    none = np.zeros(2)
-    after = impact_steps(0.5, 0.75)(Motion(np.array([0.4, 9.0]), np.array([-1.0, -1.0]), none, none, none))
-    assert after.x == pytest.approx([0.4 + 0.75 * 0.5 - 0.25, 8.0], rel=1e-15)
-    assert after.v == pytest.approx([0.5, -1.0], rel=1e-15)
-
-
-def test_a_dashpots_rebound_depends_on_scheme_and_step():
-    """With zeta = 0.1, exact 0.7441: stiff contact keeps its own map."""
-    expected = {
-        "constant": (0.6886, 0.3893, 0.4491),
-        "average": (0.7444, 0.7789, 1.5206),
-        "leapfrog": (0.7431, 0.7525),
-        "implicit-euler": (0.6359, 0.1875, 0.0053),  # a soft constraint of the physics engines
-    }
-    for name, means in expected.items():
-        for omega, mean in zip((0.1, 1.0, 10.0), means, strict=False):
-            statistics = rebound_statistics(spring_steps(SCHEMES[name], omega, zeta=0.1))
-            assert abs(statistics.mean - mean) < 6e-5
-
-
-def test_numbers_out_of_range_are_named():
-    for call, message in (
-        (lambda: spring_steps(SCHEMES["average"], 0.0), "omega: must be positive"),
-        (lambda: spring_steps(stages.LEAPFROG, math.inf), "omega: must be finite in an explicit scheme"),
-        (lambda: spring_steps(SCHEMES["average"], 1.0, 0.0), "gg: must be above 0"),
-        (lambda: spring_steps(SCHEMES["average"], 1.0, zeta=-1.0), "damping_ratio: must be finite"),
-        (lambda: rebounds(spring_steps(SCHEMES["average"], 1.0), [1.2]), "theta: must be from 0 to 1"),
-        (lambda: stages.hht(0.3), "rho_inf: must be from 0.5 to 1"),
-        (lambda: stages.composite(0.0, 1.0), "split: must be between 0 and 1"),
-    ):
-        with pytest.raises(ValueError, match="^" + message):
-            call()

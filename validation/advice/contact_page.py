@@ -1,4 +1,4 @@
-"""What `dda-validate contact` says of a scene: its runs side by side, and what springs and step would do better."""
+"""What `dda-validate contact` says of a block or a column: its runs side by side, and what would do better."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from validation.advice import contact, friction
+from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
@@ -144,13 +144,8 @@ def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
 
 def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
-    t = scene.time
-    yield f"{scene.name}: {scene.title or 'contact that opens'}"
-    yield (
-        f"p = {scene.contact.stiffness:.4g} N/m, dt = {t.step:g} s, {Stepping.of(scene).numbers}, "
-        f"gg = {t.discount:.6g}: w_c dt = {data['omega']:.3g}"
-    )
-    yield ""
+    springs = f"p = {scene.contact.stiffness:.4g} N/m"
+    yield from _heading(scene, "contact that opens", springs, f": w_c dt = {data['omega']:.3g}")
     yield in_columns(table(scene, data["runs"]))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
@@ -169,6 +164,14 @@ def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> It
         yield from _needed(scene, data)
     for alarm in data["alarms"]:
         yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
+
+
+def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "") -> Iterator[str]:
+    """Yield the name of a scene and its numbers, with an empty line after them."""
+    t = scene.time
+    yield f"{scene.name}: {scene.title or untitled}"
+    yield f"{contact_words}, dt = {t.step:g} s, {Stepping.of(scene).numbers}, gg = {t.discount:.6g}{remainder}"
+    yield ""
 
 
 def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
@@ -295,3 +298,37 @@ def _depth(need: Mapping[str, Any], penetration: float) -> str:
         return ", for the load at rest and one unloaded landing"
     reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
     return f": the exact block then penetrates {need['depth']:.3g} m{reservation}"
+
+
+# ---- a column whose contacts open or slip ---------------------------------------------------------------------------
+
+
+def column_scenes(scene: Scene) -> dict[str, Scene]:
+    """Return the scene that each solver runs: the exact motion has no kinetic damping."""
+    handled = {name for name in features.OF_MOVING_COLUMN if name in features.of(scene)}
+    free = scene.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else scene
+    return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
+
+
+def column_answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> dict[str, Any]:
+    """Return everything as plain data."""
+    return {
+        "scene": scene.name,
+        "limits": asdict(bound),
+        "runs": {name: measured(row) for name, row in rows.items()},
+        "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
+    }
+
+
+def column_page(
+    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the lines of one page of text; a line of the table that no run has a number for is left out."""
+    yield from _heading(scene, "a column whose contacts open or slip", f"{bound.contacts} contacts")
+    lines = [*measured_lines("column", data["runs"]), *measured_lines("repeatable", data["runs"])]
+    reported = [line for line in lines if {*line[1:]} != {NONE}]
+    yield in_columns([(f"over {scene.time.duration:.4g} s", *data["runs"]), *reported])
+    yield from (f"{name}: {why}" for name, why in absent.items())
+    yield ""
+    yield from columns.advised(scene, bound)
+    yield from (f"ALARM {alarm['kind']}: {alarm['sentence']}" for alarm in data["alarms"])

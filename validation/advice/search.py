@@ -33,7 +33,7 @@ class Search:
         bends = np.abs(np.diff(slopes)) > self.flat * np.abs(ratios[1:-1]) + np.finfo(float).eps
         turns = 1 + np.flatnonzero((slopes[1:] * slopes[:-1] <= 0) & bends)
         cuts = np.flatnonzero(np.diff(np.isfinite(ratios)))
-        refined = [*map(self._extremum, turns), *map(self._edge, cuts)]
+        refined = [*map(self._extremum, turns.tolist()), *map(self._edge, cuts.tolist())]
         coordinates = np.unique([*self.grid, *refined])
         return coordinates, self._ratios(coordinates)
 

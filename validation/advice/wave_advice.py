@@ -298,18 +298,17 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
         return is_stable(step) and arrives(step)
 
     steps = np.geomspace(0.5 / path.frequency, 1e-6 / path.frequency, GRID).tolist()
-    first_good = next((i for i, step in enumerate(steps) if good(step)), None)
-    if first_good is None:
-        if any(arrives(step) for step in steps):  # but not stably
+    first = next((i for i, step in enumerate(steps) if good(step)), None)
+    if first is None:
+        losses = [passed(step)[0] for step in steps]
+        limit = "gg" if min(losses) > loss and scene.time.discount < 1 else "scheme"
+        if any(map(arrives, steps)):  # but not stably
             limit = "stability"
-        else:
-            limit = _why_none(scene, [passed(step)[0] for step in steps], loss)
-        stable = [step for step in steps if is_stable(step)]
-        best = min(stable, key=lambda step: passed(step)[0], default=None)
-        return _LargestStep(None, limit) if best is None else _LargestStep(None, limit, passed(best)[0], best)
-    if first_good == 0:
+        stable = ((lost, step) for lost, step in zip(losses, steps, strict=True) if is_stable(step))
+        return _LargestStep(None, limit, *min(stable, default=()))
+    if first == 0:
         return _LargestStep(steps[0], "half a period")
-    step = edge(good, steps[first_good], steps[first_good - 1], ROUNDING)
+    step = edge(good, steps[first], steps[first - 1], ROUNDING)
     beyond = step * (1 + 1e-6)
     if not is_stable(beyond):
         return _LargestStep(step, "stability")
@@ -347,11 +346,6 @@ def _advised_scene(scene: Scene, path: _WavePath) -> Scene:
         return scene
     columns = 1 if scene.block.subdivide is None else scene.block.subdivide[0]
     return scene.with_values({"block.subdivide": [columns, counts[0]]})
-
-
-def _why_none(scene: Scene, losses: list[float], allowed: float) -> str:
-    """Return what keeps every step from being good enough."""
-    return "gg" if min(losses) > allowed and scene.time.discount < 1 else "scheme"
 
 
 def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import count
 from typing import TYPE_CHECKING, Annotated
 
@@ -23,7 +23,6 @@ from validation.cli.app import (
 from validation.cli.printing.output import broken, echo_answer
 
 if TYPE_CHECKING:
-    from validation.advice.columns import ColumnLimits
     from validation.runs.row import Row
     from validation.scenes.scene import Scene
 
@@ -58,32 +57,22 @@ def contact(
     from validation.advice import contact_page
     from validation.advice.columns import limits
     from validation.advice.plain import plain
+    from validation.scenes import features
 
     case = one_case(scene, assignments)
-    if (bounds := limits(case)) is not None:
-        if error is not None or penetration is not None:
-            from validation.scenes import features
-
-            features.refuse_column(case, "contact with --restitution-error or --penetration")
-        return _of_column(case, bounds, as_json)
-    scenes = contact_page.scenes(case)
+    bounds = limits(case)
+    if bounds is not None and (error is not None or penetration is not None):
+        features.refuse_column(case, "contact with --restitution-error or --penetration")
+    scenes = contact_page.scenes(case) if bounds is None else contact_page.column_scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
-        probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
-        contact_answer = contact_page.answer(case, rows, error, penetration, probe)
-    echo_answer(plain(contact_answer | {"absent": absent}), contact_page.page(case, contact_answer, absent), as_json)
-    return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
-
-
-def _of_column(case: Scene, bounds: ColumnLimits, as_json: bool) -> int:
-    """Say what the contacts of a column did, and what its steps need."""
-    from validation.advice import column_page, contact_page
-    from validation.advice.plain import plain
-
-    with _progress("contact", between_calls=True) as progress:
-        rows, absent = _rows(column_page.scenes(case), progress)
-    data = column_page.answer(case, rows, bounds)
-    lines = map(broken, column_page.page(case, bounds, data, absent))
+        if bounds is None:
+            probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
+            data = contact_page.answer(case, rows, error, penetration, probe)
+            lines: Iterable[str] = contact_page.page(case, data, absent)
+        else:
+            data = contact_page.column_answer(case, rows, bounds)
+            lines = map(broken, contact_page.column_page(case, bounds, data, absent))
     echo_answer(plain(data | {"absent": absent}), lines, as_json)
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 

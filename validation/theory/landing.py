@@ -506,29 +506,25 @@ def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float
     def off(omega: float) -> float:
         return stepped_landing(stepping, ratio, omega * unit, transit).error
 
-    def is_allowed(omega: float) -> bool:
-        return off(omega) <= error
-
     errors = np.array([off(float(omega)) for omega in omegas])
     best = int(np.argmin(errors))
-    good = np.flatnonzero(errors <= error)
-    if not good.size:
+    good = errors <= error
+    nearest = (float(errors[best]), float(omegas[best]) * unit)
+    if not good.any():
         # below the grid the error falls as a power of the step, unless a discount keeps it up
         order = math.log(errors[1] / errors[0], omegas[1] / omegas[0]) if errors[0] > 0 else 0.0
-        if order > 0.5:
-            longest = float(omegas[0] * (error / errors[0]) ** (1 / order)) * unit
-            return AllowedSteps(longest, None, float(errors[best]), float(omegas[best]) * unit)
-        return AllowedSteps(None, None, float(errors[best]), float(omegas[best]) * unit)
-    first = int(good[0])
-    wrong_above = np.flatnonzero(errors[first:] > error)
-    last = first + int(wrong_above[0]) - 1 if wrong_above.size else len(omegas) - 1
-    longest = float(omegas[last])
-    if last + 1 < len(omegas):
-        longest = edge(is_allowed, longest, float(omegas[last + 1]), NEIGHBOURS)
-    shortest = None
-    if first:
-        shortest = edge(is_allowed, float(omegas[first]), float(omegas[first - 1]), NEIGHBOURS) * unit
-    return AllowedSteps(longest * unit, shortest, float(errors[best]), float(omegas[best]) * unit)
+        if order <= 0.5:
+            return AllowedSteps(None, None, *nearest)
+        return AllowedSteps(float(omegas[0] * (error / errors[0]) ** (1 / order)) * unit, None, *nearest)
+
+    def last_step(inside: int, outside: int) -> float:
+        ends = float(omegas[inside]), float(omegas[outside])
+        return edge(lambda omega: off(omega) <= error, *ends, NEIGHBOURS) * unit
+
+    first = int(np.argmax(good))
+    last = first + int(np.argmin([*good[first:], False])) - 1
+    longest = last_step(last, last + 1) if last + 1 < len(omegas) else float(omegas[last]) * unit
+    return AllowedSteps(longest, last_step(first, first - 1) if first else None, *nearest)
 
 
 def springs_for(scene: Scene, speed: float, penetration: float) -> float:

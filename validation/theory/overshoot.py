@@ -15,13 +15,16 @@ static response.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
 
 from validation.theory.stages import Stages
 
 STEPS = 10  # in which the greatest energy is looked for; it is that of the first one
 
 
-def energies(stages: Stages, omega_dt: float, is_consistent: bool) -> list[float]:
+def energies(stages: Stages, omega_dt: Any, is_consistent: bool) -> list[Any]:
     """Return E / G of a mode at the ends of the first steps under a load that comes on at once.
 
     Parameters
@@ -29,7 +32,7 @@ def energies(stages: Stages, omega_dt: float, is_consistent: bool) -> list[float
     stages
         The scheme.
     omega_dt
-        W = w dt.
+        W = w dt, of one mode or, as an array, of several.
     is_consistent
         Whether A0 = w^2 x_s; otherwise A0 = 0.
     """
@@ -59,8 +62,5 @@ def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[f
     omegas_dt, shares
         W = w dt of each mode, and its share of the static response.
     """
-    sums = [0.0] * STEPS
-    for omega_dt, share in zip(omegas_dt, shares, strict=True):
-        parts = energies(stages, omega_dt, is_consistent)
-        sums = [total + share * part for total, part in zip(sums, parts, strict=True)]
-    return max(0.0, *sums)
+    parts = np.array(energies(stages, np.array(omegas_dt), is_consistent))
+    return max(0.0, float(np.max(parts @ np.array(shares))))

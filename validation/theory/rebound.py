@@ -15,8 +15,7 @@ Under generalised alpha v goes on changing in flight, by the powers of am/(am - 
 last force. With gg < 1 flight loses speed, and e is read at the end of the first step without force instead.
 
 Kane's rule is Newmark's (1/2, 1) here (a rigid mass has nothing but the contact's force), symplectic Euler is
-leapfrog, a soft constraint is implicit Euler with zeta, and the rule of impulses (Moreau and Jean) returns its own e
-at every step.
+leapfrog, and a soft constraint is implicit Euler with zeta.
 """
 
 from __future__ import annotations
@@ -145,18 +144,6 @@ def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
         landing = k * d**2 / (2 * way)
         N = np.where(w0 < 0, np.where(2 * pressed >= -k * w0, pressed, lifting), np.where(free < 0, landing, 0.0))
         return Motion(free + N / 2, u + N, 0 * u, N, N)
-
-    return advance
-
-
-def impact_steps(e: float, theta_method: float = 0.5, gg: float = 1.0) -> Advance:
-    """Return the step of impulses with the restitution e (Moreau and Jean): v1 = -e u where x + u/2 <= 0 falls."""
-
-    def advance(start: Motion) -> Motion:
-        u = gg * start.v
-        P = np.where(start.x + u / 2 <= 0, np.maximum(-(1 + e) * u, 0.0), 0.0)
-        v = u + P
-        return Motion(start.x + theta_method * v + (1 - theta_method) * u, v, 0 * u, P, P)
 
     return advance
 

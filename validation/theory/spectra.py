@@ -41,17 +41,9 @@ def bar_frequency(scene: Scene) -> float:
 
 
 def roots(scene: Scene, frequency: float) -> tuple[complex, complex]:
-    """Eigenvalues of one step of a mode, Newmark's by lambda^2 - trace lambda + det = 0, (10) to (12) with gg."""
-    t = scene.time
-    if t.scheme != "newmark":
-        first, second = Stepping.of(scene).roots(frequency * t.step)[:2]
-        return complex(first), complex(second)
-    omega2 = (frequency * t.step) ** 2
-    beta = 1 + t.alpha * omega2
-    trace = 1 - omega2 / (2 * beta) + t.discount * (1 - t.delta * omega2 / beta)
-    det = t.discount * (1 + (0.5 - t.delta) * omega2 / beta)
-    root = cmath.sqrt(trace * trace - 4 * det)
-    return (trace + root) / 2, (trace - root) / 2
+    """Principal eigenvalues of one step of a mode."""
+    first, second = Stepping.of(scene).roots(frequency * scene.time.step)[:2]
+    return complex(first), complex(second)
 
 
 def damping_ratio(scene: Scene, frequency: float) -> float:
@@ -75,9 +67,7 @@ def critical_omega(scene: Scene) -> float:
 
 def spectral_radius(scene: Scene, frequency: float) -> float:
     """Largest |lambda| of one step of a mode."""
-    if scene.time.scheme != "newmark":
-        return Stepping.of(scene).spectral_radius(frequency * scene.time.step)
-    return max(map(abs, roots(scene, frequency)))
+    return Stepping.of(scene).spectral_radius(frequency * scene.time.step)
 
 
 def remaining_motion(scene: Scene) -> float:

@@ -43,7 +43,6 @@ class Stage(NamedTuple):
 Stages = tuple[Stage, ...]
 
 LEAPFROG: Stages = (Stage(e_0=1.0, g_0=1.0),)  # of v half a step before: the force is that of the start
-IMPLICIT_EULER: Stages = (Stage(beta=1.0, gamma=1.0),)  # v1 = v + dt a1, x1 = x + dt v1
 EXPLICIT_EULER: Stages = (Stage(g_0=1.0),)  # x1 = x + dt v, v1 = v + dt a
 
 

@@ -75,12 +75,12 @@ class Composite(NamedTuple):
         return np.asarray((1 + self.q0 * s + self.q1 * s * middle) / (1 - self.q2 * s))
 
     @property
-    def series(self) -> tuple[float, float]:
-        """Return c3 and c4 of ln R = s + c3 s^3 + c4 s^4 + ..."""
+    def fourth(self) -> float:
+        """Return c4 of ln R = s + c3 s^3 + c4 s^4 + ..."""
         g, q0, q1, q2 = self
         above = (1.0, q0 + q1, q1 * g, q1 * g**2 / 2, q1 * g**3 / 4)
         r3, r4 = (sum(above[k] * q2 ** (n - k) for k in range(n + 1)) for n in (3, 4))
-        return r3 - 1 / 6, r4 - r3 + 1 / 8
+        return r4 - r3 + 1 / 8
 
 
 @dataclass(frozen=True)
@@ -346,26 +346,13 @@ class Stepping:
         """Return the leading term of xi for small W, (1 - gg) / (2 W) of the discount included."""
         kinetic = (1 - self.gg) / (2 * omega_dt)
         if self.scheme == "composite":
-            return kinetic - self.composite.series[1] * omega_dt**3
+            return kinetic - self.composite.fourth * omega_dt**3
         numbers = self.one_stage
         if numbers is None:
             return kinetic
         if self.scheme == "newmark":
             return kinetic + (self.delta - 0.5) / 2 * omega_dt
         return kinetic + (numbers.af - numbers.am) * (1 - numbers.am - numbers.af) ** 2 * omega_dt**3 / 8
-
-    def leading_period_error(self, omega_dt: float) -> float:
-        """Return the leading term of the period error for small W without a discount."""
-        square = omega_dt**2
-        if self.scheme == "composite":
-            return self.composite.series[0] * square
-        numbers = self.one_stage
-        if numbers is None:
-            return -square / 24
-        am, af = numbers.am, numbers.af
-        if self.scheme == "newmark":
-            return (self.alpha / 2 - (self.delta - 0.5) / 4 - 1 / 24) * square
-        return (1 / 12 + (af - am) / 4 - 3 * af**2 / 8 + af * am / 4 + am**2 / 8) * square
 
     def rayleigh(self) -> tuple[float, float]:
         """Return (a0 [1/s], a1 [s]) of the Rayleigh damping that the step hides, in the limit w dt -> 0.
