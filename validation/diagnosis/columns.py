@@ -570,7 +570,8 @@ def _stages(search: ColumnSearch) -> list[Stage]:
         first = float(beyond[0]) if len(beyond) else None
         stages.append(Stage(name, not len(beyond), words, {"misfit": misfit, "first_row": first}))
     if search.rows < search.scene_run.shape[1]:
-        stages.append(Stage("horizon", None, _horizon(search), {"rows": float(search.rows)}))
+        time = float(search.time[max(search.rows - 1, 0)])
+        stages.append(Stage("horizon", None, _horizon(search), {"time": time, "rows": float(search.rows)}))
     return stages
 
 
@@ -588,11 +589,11 @@ def _notes(search: ColumnSearch, scene: Scene) -> list[str]:
         return notes
     limit = column_of(scene).solve_limit
     solves = result.step_solves
-    if limit and largest(solves[:steps]) > limit:
+    if limit and np.max(solves[:steps]) > limit:
         step = np.argmax(solves > limit) + 1
         notes.append(f"the scene's own limit of {limit} solves ends its run at step {step}: it was left out")
     needed = int(solves[-1])
-    is_first = needed > max(largest(solves[:steps]), LEAST_LIMIT)
+    is_first = needed > max(int(np.max(solves[:steps])), LEAST_LIMIT)
     same_step = search.reading.stepping.steps[0] == scene.time.step
     if is_first and same_step and steps < scene.time.steps and not len(search.departing):
         notes.append(
