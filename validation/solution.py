@@ -88,8 +88,6 @@ class Solution(Run):
         return figure
 
 
-
-
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Solution:
     """Run one scene with one solver.
 

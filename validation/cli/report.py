@@ -22,9 +22,7 @@ def report(
         list[str] | None,
         typer.Argument(help="Studies or scenes with results (default: all).", metavar="[STUDY]..."),
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help=f"PDF file to write, by default {PDF}.", metavar="FILE.pdf")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help=f"PDF file to write, by default {PDF}.", metavar="FILE.pdf")] = None,
     site: Annotated[
         Path | None,
         typer.Option(help="Write a static site instead: a new directory, or a site to replace.", metavar="DIR"),

@@ -178,9 +178,7 @@ class References:
     """The sources that the document cites, numbered; without it keys are not set as numbers."""
 
 
-Block = (
-    Heading | Paragraph | Table | FigureBlock | Callout | PageBreak | Points | Beside | Listing | Links | References
-)
+Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak | Points | Beside | Listing | Links | References
 Blocks = list[Block]
 Chapter = Callable[["Results", "Manifest", Path], Blocks]
 

@@ -79,6 +79,8 @@ def print_lines(lines: Iterable[StyledLine]) -> None:
             end = len(word) if text.startswith(word) else len(text)
             styled_text.stylize(STYLES[word], 0, end)
         printer.print(styled_text, soft_wrap=True)
+
+
 def in_minutes(seconds: float) -> str:
     """Return a duration in words, "36 s" or "2 m 6 s"."""
     minutes, rest = divmod(round(seconds), 60)

@@ -11,6 +11,7 @@ and is left out where a table or figure that it names shows nothing:
     { ledger = true }                                      where the energy of each scene went
     { history = "long-run", columns = ["displacement"] }   the histories of a scene
     { outcomes = 3 }                                       as many callouts on runs that did not complete
+    { picture = "cuts" }                                   blocks in the plane as they are cut
     { call = "f" }                                         what the function f(table, directory) of chapter.py returns
 
 and ``when``, a list of scenes that must be there. `validation.report.chapters.queries` has queries and expressions:
@@ -21,6 +22,7 @@ and ``when``, a list of scenes that must be there. `validation.report.chapters.q
     [table.NAME]    a query, ``group_by``, columns; caption, notes, dense, ruled
     [figure.NAME]   panels, file, caption
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
+    [picture.NAME]  file, caption, height in mm; ``scenes``, the title of each
     [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
 """
 
@@ -43,6 +45,7 @@ from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.queries import Line, Query, StudyTable
 from validation.report.chapters.scene import gate_count, history_block, opening, outcomes, scene_section
 from validation.report.chapters.text import DASH, capital
+from validation.report.figures.blocks import blocks_figure
 from validation.report.figures.charts import ChartLine
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
@@ -117,7 +120,9 @@ class WrittenChapter:
             shown += self._maps(part["maps"])
         if "table" in part:
             shown += self._table(part["table"], query)
-        if {"figure", "maps", "table"} & set(part) and not shown:
+        if "picture" in part:
+            shown += self._picture(part["picture"])
+        if {"figure", "maps", "table", "picture"} & set(part) and not shown:
             return []
         if "history" in part:
             shown.append(history_block(self.table.groups[part["history"]], part["columns"], self.directory))
@@ -232,6 +237,19 @@ class WrittenChapter:
         caption = self._caption(described["caption"])
         return [self.page.figure(name, panels, self.directory, described.get("scene", ""), whole_caption=caption)]
 
+    def _picture(self, name: str) -> Blocks:
+        """Return blocks in the plane as they are cut, of the first case of each scene."""
+        described = self.page.described("picture", name)
+        cut = []
+        for scene, title in described["scenes"].items():
+            for line in self.table.lines({"of": scene})[:1]:
+                if line.case is not None and line.case.scene.plane is not None:
+                    cut.append((title, line.case.scene.plane))
+        if not cut:
+            return []
+        figure = blocks_figure(cut, described["height"])
+        return [saved(figure, self.directory, described["file"], described["caption"])]
+
     def _lines(self, line: Query) -> Iterator[ChartLine]:
         """Yield the lines of one entry of a panel: one, or one for each value of ``each``, or for each history."""
         if "data" in line:
@@ -271,9 +289,9 @@ class WrittenChapter:
         x_values = []
         y_values = []
         notes = []
-        for one in group:
-            x = self.table.number(one, line["x"])
-            y = self.table.number(one, line["y"])
+        for row in group:
+            x = self.table.number(row, line["x"])
+            y = self.table.number(row, line["y"])
             if "absent" in line and (y is None) is line.get("only_absent", y is None):
                 y = line["absent"] if y is None else y
             elif "absent" in line:
@@ -282,26 +300,26 @@ class WrittenChapter:
                 x_values.append(x * line.get("x_factor", 1.0))
                 y_values.append(y * line.get("y_factor", 1.0))
                 if "note_of" in line:
-                    notes.append(_written({"of": ""} | line["note_of"], self.table.value(one, line["note_of"]["of"])))
+                    notes.append(_written({"of": ""} | line["note_of"], self.table.value(row, line["note_of"]["of"])))
         return ChartLine("", np.array(x_values), np.array(y_values), notes=tuple(notes))
 
-    def _history(self, line: Query, one: Line) -> ChartLine | None:
+    def _history(self, line: Query, row: Line) -> ChartLine | None:
         """Return a column of a history over time, or the mean of some; it is drawn, and no number comes from it."""
-        history = None if one.case is None else one.case.histories.get(line["history"])
+        history = None if row.case is None else row.case.histories.get(line["history"])
         if history is None:
             return None
         names = line["y"] if isinstance(line["y"], list) else [line["y"]]
         column = np.mean([history.columns[name] for name in names], axis=0)
         x, y = (
-            values * line.get(f"{axis}_factor", 1.0) / self._unit(line, axis, one)
+            values * line.get(f"{axis}_factor", 1.0) / self._unit(line, axis, row)
             for axis, values in (("x", history.time), ("y", column))
         )
         drawn = x < line.get("x_end", np.inf)
         return ChartLine("", x[drawn], y[drawn] + line.get("y_start", 0.0))
 
-    def _unit(self, line: Query, axis: str, one: Line) -> float:
+    def _unit(self, line: Query, axis: str, row: Line) -> float:
         """Return the number of a case in which a history is drawn."""
-        return (self.table.number(one, line[f"{axis}_over"]) or np.nan) if f"{axis}_over" in line else 1.0
+        return (self.table.number(row, line[f"{axis}_over"]) or np.nan) if f"{axis}_over" in line else 1.0
 
     def _curves(self, line: Query) -> Iterator[ChartLine]:
         """Yield the curves that the study keeps as plain data: one, or a list of them."""

@@ -159,9 +159,7 @@ class Site:
         ]
         self._write("index.html", NAME, index)
         sources = "The paper whose model is tested, and the sources of the methods."
-        self._write(
-            html.REFERENCES, "References", [Heading("References"), Paragraph(sources, "lead"), References()]
-        )
+        self._write(html.REFERENCES, "References", [Heading("References"), Paragraph(sources, "lead"), References()])
         self._write(
             CALCULATORS, "Calculators", [], template="calculators.html.j2", package=__package__, scripts=SCRIPTS
         )

@@ -81,7 +81,6 @@ class AnswerCell:
     reason: str = ""  # the cause of a failure, or why it is not judged
 
 
-
 def cells(judged: JudgedSet) -> list[AnswerCell]:
     """Return what a table holds of a folder of answers: each problem of the pack, then those that are in it no more."""
     by_name = {answer.name: answer for answer in judged.answers.answers}

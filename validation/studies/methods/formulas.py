@@ -56,18 +56,20 @@ FAST = ("ch-0", "conserving")  # of second order, and none of whose switches gai
 ENERGIES = tuple(f"energy.{name}" for name in ("kinetic", "strain", "springs", "load"))
 BLOCK_EVENTS = ("methods-refined-exact", "block-events")
 COLUMN_EVENTS = ("methods-column-exact", "column-events")
-IMPLICIT = tuple(one for one in METHODS if one.group != "explicit")  # what a rigid block's own strain allows
-FRICTIONAL = tuple(one for one in IMPLICIT if one.id != "conserving")  # conserving contact has no friction
+IMPLICIT = tuple(scheme for scheme in METHODS if scheme.group != "explicit")  # what a rigid block's own strain allows
+FRICTIONAL = tuple(scheme for scheme in IMPLICIT if scheme.id != "conserving")  # conserving contact has no friction
 
 # ---- scenes ---------------------------------------------------------------------------------------------------------
 
 
-def varied(one: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]) -> Scene:
+def varied(
+    scheme: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]
+) -> Scene:
     """Return a built-in scene under a method, whose lists of values are varied together; a key is ``time_step``."""
-    scene = one.scene(load_scene(base), {"run.solvers": ["dda"], **values})
+    scene = scheme.scene(load_scene(base), {"run.solvers": ["dda"], **values})
     sweep = {"mode": "zip"} | {key.replace("_", ".", 1): list(row) for key, row in lists.items()}
     return scene.model_copy(
-        update={"name": f"methods-{name}-{one.id}", "title": f"{title}: {one.label}", "sweep": sweep}
+        update={"name": f"methods-{name}-{scheme.id}", "title": f"{title}: {scheme.label}", "sweep": sweep}
     )
 
 
@@ -88,33 +90,33 @@ def halved(coarsest: int, levels: int) -> dict[str, list[float]]:
 
 
 @functools.cache
-def locked(one: Method) -> Scene:
+def locked(scheme: Method) -> Scene:
     """Return the locked block from rest, over springs and step."""
     rows = [(ratio, step) for ratio in RATIOS for step in STEPS]
-    if one.id == "leapfrog":
+    if scheme.id == "leapfrog":
         rows = [STABLE_EXPLICIT]
-    if one.id == "average":
+    if scheme.id == "average":
         rows.append((1.0, HALVED))
-    return varied(one, "figures-3-4", "locked", "The locked block from rest", {}, **over_springs(rows, LOCKED_TIME))
+    return varied(scheme, "figures-3-4", "locked", "The locked block from rest", {}, **over_springs(rows, LOCKED_TIME))
 
 
 @functools.cache
-def unlocked(one: Method) -> Scene:
+def unlocked(scheme: Method) -> Scene:
     """Return the block whose contact opens, over springs and step."""
-    values = {"time.allow_unstable": one.group == "explicit"}
+    values = {"time.allow_unstable": scheme.group == "explicit"}
     lists = over_springs(UNLOCKED, UNLOCKED_TIME)
-    return varied(one, "unlocked-average", "unlocked", "Contact that opens", values, **lists)
+    return varied(scheme, "unlocked-average", "unlocked", "Contact that opens", values, **lists)
 
 
 @functools.cache
-def refined(one: Method) -> Scene:
+def refined(scheme: Method) -> Scene:
     """Return the block whose contact opens, at p = 1E, over halved steps."""
-    lists = halved(COARSEST, SLOW_LEVELS.get(one.id, LEVELS))
-    return varied(one, "unlocked-average", "refined", "Contact that opens, steps refined", {}, **lists)
+    lists = halved(COARSEST, SLOW_LEVELS.get(scheme.id, LEVELS))
+    return varied(scheme, "unlocked-average", "refined", "Contact that opens, steps refined", {}, **lists)
 
 
 @functools.cache
-def impacts(one: Method) -> Scene:
+def impacts(scheme: Method) -> Scene:
     """Return the rigid block that lands on springs, over w_c dt and the phase of the landing."""
     scene = load_scene("rebound-average")
     rows = [(omega, phase) for omega in IMPACT_OMEGAS for phase in IMPACT_PHASES]
@@ -123,23 +125,23 @@ def impacts(one: Method) -> Scene:
     gaps = [(3 - phase) * dt * -scene.block.velocity for _, phase in rows]
     lists = {"contact_stiffness": stiffnesses, "contact_gap": gaps}
     title = "A rigid block lands on springs"
-    return varied(one, scene.name, "impact", title, {"time.steps": IMPACT_STEPS}, **lists)
+    return varied(scheme, scene.name, "impact", title, {"time.steps": IMPACT_STEPS}, **lists)
 
 
 @functools.cache
-def column(one: Method) -> Scene:
+def column(scheme: Method) -> Scene:
     """Return five rigid blocks that are dropped on each other, over two steps."""
     lists = {"time_step": COLUMN_STEPS, "time_steps": [round(COLUMN_TIME / step) for step in COLUMN_STEPS]}
     values = {"run.columns": ["displacement"]}
-    return varied(one, "columns-drop-average", "column", "Five rigid blocks dropped", values, **lists)
+    return varied(scheme, "columns-drop-average", "column", "Five rigid blocks dropped", values, **lists)
 
 
 @functools.cache
-def sliding(one: Method) -> Scene:
+def sliding(scheme: Method) -> Scene:
     """Return the block that slides down an incline."""
     steps = {"time.step": SLIDING_STEP, "time.steps": round(SLIDING_TIME / SLIDING_STEP)}
     values = {"contact.cohesion": 0.0, **steps}
-    return varied(one, "slope-sliding", "sliding", "A block that slides", values, time_step=[SLIDING_STEP])
+    return varied(scheme, "slope-sliding", "sliding", "A block that slides", values, time_step=[SLIDING_STEP])
 
 
 STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
@@ -178,13 +180,13 @@ def exact(base: str, case: tuple[str, str], title: str, step: float, duration: f
 @functools.cache
 def scenes() -> tuple[Scene, ...]:
     """Return all scenes of the study."""
-    declared = [locked(one) for one in SCHEMES]
-    declared += [unlocked(one) for one in METHODS]
-    declared += [refined(one) for one in METHODS]
-    declared += [impacts(one) for one in IMPLICIT]
+    declared = [locked(scheme) for scheme in SCHEMES]
+    declared += [unlocked(scheme) for scheme in METHODS]
+    declared += [refined(scheme) for scheme in METHODS]
+    declared += [impacts(scheme) for scheme in IMPLICIT]
     declared += [rigid(stop) for stop in STOPS]
-    declared += [column(one) for one in SCHEMES]
-    declared += [sliding(one) for one in FRICTIONAL]
+    declared += [column(scheme) for scheme in SCHEMES]
+    declared += [sliding(scheme) for scheme in FRICTIONAL]
     columns = {"run.columns": ["displacement"]}
     dropped = exact("columns-drop-average", COLUMN_EVENTS, "Five rigid blocks dropped", 1e-3, COLUMN_TIME, **columns)
     step = REFINED_TIME / COARSEST
@@ -205,8 +207,8 @@ def expanded(scene: Scene) -> tuple[Scene, ...]:
 
 def locked_cases() -> Iterator[Scene]:
     """Yield the cases of the locked block."""
-    for one in SCHEMES:
-        yield from expanded(locked(one))
+    for scheme in SCHEMES:
+        yield from expanded(locked(scheme))
 
 
 def rigid_stops() -> tuple[Scene, ...]:
@@ -235,8 +237,8 @@ def opened_exactly() -> dict[str, Scene]:
 
 def sliding_cases() -> Iterator[Scene]:
     """Yield the cases of the block that slides."""
-    for one in FRICTIONAL:
-        yield from expanded(sliding(one))
+    for scheme in FRICTIONAL:
+        yield from expanded(sliding(scheme))
 
 
 # ---- what is derived from the runs ----------------------------------------------------------------------------------
@@ -266,18 +268,18 @@ def error_of_steps(case: Scene, finished: Finished) -> float:
     return relative_error(displacement, finished.needed_history(*BLOCK_EVENTS).displacement)
 
 
-def refined_error(one: Method, case: Scene, finished: Finished) -> Mapping[str, Value]:
+def refined_error(scheme: Method, case: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return the error of a run, and its steps times the solves of one."""
-    return {"error": error_of_steps(case, finished), "solves": case.time.steps * one.solves}
+    return {"error": error_of_steps(case, finished), "solves": case.time.steps * scheme.solves}
 
 
-def order(one: Method, finished: Finished) -> Mapping[str, Value]:
+def order(scheme: Method, finished: Finished) -> Mapping[str, Value]:
     """Return the order of the last halving, and the steps times solves that reach the target."""
-    errors = {case.time.steps: error_of_steps(case, finished) for case in expanded(refined(one))}
+    errors = {case.time.steps: error_of_steps(case, finished) for case in expanded(refined(scheme))}
     *_, coarse, fine = errors.values()
     reached = [count for count, error in errors.items() if error <= TARGET]
     values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
-    values["solves to 1 %"] = float(min(reached) * one.solves) if reached else "undefined"
+    values["solves to 1 %"] = float(min(reached) * scheme.solves) if reached else "undefined"
     return values | {f"error of {count} steps": error for count, error in errors.items()}
 
 
@@ -324,35 +326,35 @@ def slid_distance(case: Scene, history: History) -> Mapping[str, Value]:
     return {"error": abs(distance) / friction.run_out(case, case.time.duration) - 1}
 
 
-def compared_map(one: Method, finished: Finished) -> Mapping[str, Value]:
+def compared_map(scheme: Method, finished: Finished) -> Mapping[str, Value]:
     """Return the largest difference of DDA's restitution from the map, and the greatest restitution."""
     differences = []
     restitutions = []
-    for case in expanded(impacts(one)):
+    for case in expanded(impacts(scheme)):
         history = finished.needed_history(case.name, "dda").displacement
         restitution = float(history[-1] - history[-2]) / case.time.step / -case.block.velocity
         omega = math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step
         steps = case.contact.gap / (-case.block.velocity * case.time.step)
         phase = math.ceil(steps) - steps
-        differences.append(abs(restitution - float(rebound.rebounds(one.step_of_impact(omega), [phase])[0])))
+        differences.append(abs(restitution - float(rebound.rebounds(scheme.step_of_impact(omega), [phase])[0])))
         restitutions.append(restitution)
     return {"largest difference": max(differences), "greatest": max(restitutions)}
 
 
 @functools.cache
-def rigid_statistics(one: Method) -> rebound.ReboundStatistics:
+def rigid_statistics(scheme: Method) -> rebound.ReboundStatistics:
     """Return the statistics of the restitution on a rigid contact over many phases."""
-    return rebound.rebound_statistics(one.step_of_impact(math.inf), count=RIGID_PHASES)
+    return rebound.rebound_statistics(scheme.step_of_impact(math.inf), count=RIGID_PHASES)
 
 
-def rigid_map(one: Method, finished: Finished) -> Mapping[str, Value]:
+def rigid_map(scheme: Method, finished: Finished) -> Mapping[str, Value]:
     """Return mean, least, greatest and mean square of the restitution on a rigid contact."""
-    return dict(rigid_statistics(one)._asdict())
+    return dict(rigid_statistics(scheme)._asdict())
 
 
 def cost_cases() -> dict[str, Scene]:
     """Return composite schemes at p = 1E and 1 ms, and average acceleration at half the step, by method."""
-    compared = {one.id: expanded(locked(one))[2] for one in SCHEMES if one.group == "composite"}
+    compared = {scheme.id: expanded(locked(scheme))[2] for scheme in SCHEMES if scheme.group == "composite"}
     return compared | {"average": expanded(locked(method("average")))[-1]}
 
 
@@ -380,20 +382,20 @@ def derived() -> tuple[Derived, ...]:
     declared = [row(COST, ERROR, [*cost_cases().values()], equal_cost)]
     compared = [case for name in ("constant", *FAST) for case in expanded(refined(method(name)))]
     declared.append(row(COST, "order", compared, slow_and_fast, exact=(BLOCK_EVENTS,)))
-    for one in METHODS:
-        for case in expanded(unlocked(one)):
+    for scheme in METHODS:
+        for case in expanded(unlocked(scheme)):
             declared.append(row(case, "energy at the end", [case], final_energy, case, reads=ENERGIES))
-        declared.append(row(refined(one), "order", expanded(refined(one)), order, one, exact=(BLOCK_EVENTS,)))
-        for case in expanded(refined(one)):
-            declared.append(row(case, "refined", [case], refined_error, one, case, exact=(BLOCK_EVENTS,)))
-    for one in IMPLICIT:
-        declared.append(row(impacts(one), "rebound map", expanded(impacts(one)), compared_map, one))
-        if one.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
-            declared.append(row(impacts(one), RIGID_MAP, (), rigid_map, one))
+        declared.append(row(refined(scheme), "order", expanded(refined(scheme)), order, scheme, exact=(BLOCK_EVENTS,)))
+        for case in expanded(refined(scheme)):
+            declared.append(row(case, "refined", [case], refined_error, scheme, case, exact=(BLOCK_EVENTS,)))
+    for scheme in IMPLICIT:
+        declared.append(row(impacts(scheme), "rebound map", expanded(impacts(scheme)), compared_map, scheme))
+        if scheme.id != "conserving":  # which returns all of the speed at any step, and has no rigid limit
+            declared.append(row(impacts(scheme), RIGID_MAP, (), rigid_map, scheme))
     for stop in STOPS:
         declared.append(row(rigid(stop), "approach", expanded(rigid(stop)), approach, stop))
-    for one in SCHEMES:
-        for case in expanded(column(one)):
+    for scheme in SCHEMES:
+        for case in expanded(column(scheme)):
             declared.append(row(case, "column error", [case], column_error, case, exact=(COLUMN_EVENTS,)))
     return (*declared, *facts.derived(opened(), opened_exactly()))
 
@@ -410,15 +412,15 @@ def data() -> Mapping[str, Any]:
     """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
     damping = []
     landings = []
-    for one in map(method, CURVES):
-        named: dict[str, Any] = {"method": one.id, "label": one.label}
-        ratios = [one.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
+    for scheme in map(method, CURVES):
+        named: dict[str, Any] = {"method": scheme.id, "label": scheme.label}
+        ratios = [scheme.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
         damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
-        if one.id in MAP_CURVES:
-            rows = [rebound.rebound_statistics(one.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
+        if scheme.id in MAP_CURVES:
+            rows = [rebound.rebound_statistics(scheme.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
             parts = {part: [_short(getattr(row, part)) for row in rows] for part in ("mean", "least", "most")}
             landings.append(named | {"omega": [*map(_short, MAP_OMEGAS)]} | parts)
-    return {"damping": damping, "impacts": landings, "labels": {one.id: one.label for one in METHODS}}
+    return {"damping": damping, "impacts": landings, "labels": {scheme.id: scheme.label for scheme in METHODS}}
 
 
 def _short(value: float) -> float | None:
@@ -441,14 +443,14 @@ def damping_ratios(case: Scene) -> dict[str, Band]:
 
 def column_cases() -> Iterator[Scene]:
     """Yield the cases of five blocks that are dropped on each other."""
-    for one in SCHEMES:
-        yield from expanded(column(one))
+    for scheme in SCHEMES:
+        yield from expanded(column(scheme))
 
 
 def solves_of_a_step(case: Scene) -> Band:
     """Return the solves of a scheme's stages, and what the few steps in which a contact switches add to their mean."""
-    (one,) = (one for one in SCHEMES if column(one).name == scene_of(case.name))
-    return float(one.solves), one.solves + 0.25
+    (scheme,) = (scheme for scheme in SCHEMES if column(scheme).name == scene_of(case.name))
+    return float(scheme.solves), scheme.solves + 0.25
 
 
 def settled(case: Scene) -> float:
