@@ -269,6 +269,6 @@ def test_a_column_on_contacts_is_judged(tmp_path: Path, undrawn: None) -> None:
     """The step of the habit damps; the badge and the page carry names of columns with their units."""
     done = typed("judge", "mass-ratio", "--solver", "dda", "--out", tmp_path)
     assert done.returncode == 1, done.stderr
-    assert "cause: DDA's usual scheme" in done.stdout
+    assert "Cause: DDA's usual scheme" in done.stdout
     assert re.search(r"force_3_Pa +FAIL", done.stdout) and re.search(r"displacement_2_m +PASS", done.stdout)
     assert "the contacts&#39; stiffness" in (tmp_path / "judged.html").read_text(encoding="utf-8")

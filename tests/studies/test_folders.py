@@ -138,6 +138,15 @@ def test_a_folder_that_is_taken_away_leaves_the_others_whole(
     assert typed("list", "studies").returncode == 0
 
 
+@pytest.mark.parametrize("name", sorted({*study_names()} - {"field"}))  # whose programs are those that are installed
+def test_what_gates_and_derived_rows_need_is_run(name: str) -> None:
+    study = get_study(name)
+    owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes())
+    needed = {pair for gate in study.gates() for pair in study.needs(gate)}
+    needed |= {tuple(pair) for recipe in study.recipes().values() for pair in recipe.needs}
+    assert not needed - owned
+
+
 def test_scenes_of_the_library_are_no_studys_alone() -> None:
     assert all(path.parent == LIBRARY or path.parent.parent.parent == HERE for path in scene_files().values())
     assert load_scene("mesh-convergence").title

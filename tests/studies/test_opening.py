@@ -34,8 +34,8 @@ def pressed(found: Any) -> Any:
 def carrying(sound: Callable[..., Any]) -> Callable[..., Any]:
     """Return a motion whose contact is pressed a little, where it is open as well."""
 
-    def solve(problem: Any, end: float) -> Any:
-        motion = sound(problem, end)
+    def solve(problem: Any, end: float, **options: Any) -> Any:
+        motion = sound(problem, end, **options)
         names = ("switches", "touches", "simultaneous", "radius", "bars", "impacts", "cascades", "problem")
         known = {name: getattr(motion, name) for name in names if hasattr(motion, name)}
         return SimpleNamespace(at=lambda t: pressed(motion.at(t)), **known)

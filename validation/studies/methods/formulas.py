@@ -235,6 +235,11 @@ def opened_exactly() -> dict[str, Scene]:
     return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
 
 
+def exact_cases() -> tuple[tuple[str, str], ...]:
+    """Return the cases whose exact motion is run, beside the solvers of their scenes."""
+    return tuple((case.name, "block-events") for case in opened_exactly().values())
+
+
 def sliding_cases() -> Iterator[Scene]:
     """Yield the cases of the block that slides."""
     for scheme in FRICTIONAL:
