@@ -253,3 +253,6 @@ def test_the_data_of_a_scene_are_those_of_the_scene_with_their_units() -> None:
     for part in ("law = unilateral", "band = 0.001, 0 m", "base motion = slope-base.csv", "mass = 0.5 1/s"):
         assert f", {part}," in f", {line}"
     assert "φ" not in line and "cut" not in line
+    assert chapters_text.parameters(load_scene("beams-supported"), set()).startswith(
+        "256 blocks, E = 1×10⁹ Pa, ρ = 2700 kg/m³, μ = 0.25, g = 1×10⁹ m, gravity = 0, −9.81 m/s², W = 8 m, H = 1 m"
+    )

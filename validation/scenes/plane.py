@@ -86,7 +86,7 @@ class PlaneSection(Section):
     stress: Annotated[
         tuple[Real, Real, Real], Key("Pa", "s_xx, s_yy, s_xy, whose tractions act on all of the outline", "σ")
     ] = (0.0, 0.0, 0.0)
-    gravity: Annotated[tuple[Real, Real], Key("m/s2", "acceleration in x and y", "g")] = (0.0, 0.0)
+    gravity: Annotated[tuple[Real, Real], Key("m/s2", "acceleration in x and y")] = (0.0, 0.0)
     width: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "W")] = None
     height: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "H")] = None
     subdivide: Annotated[tuple[Count, Count] | None, Key("blocks", "of it in x and in y", "")] = None

@@ -26,13 +26,17 @@ _MEANINGS = (
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
 _UNITS = str.maketrans("23", "²³")
 
-PLACES = ("block", "column", "rigid", "contact", "load", "input", "damping", "time", "fem", "run")  # tables of data
+PLACES = (  # tables of data
+    "block", "column", "rigid", "plane", "contact", "load", "input", "damping", "time", "fem", "run",
+)  # fmt: skip
 ALWAYS = {  # data that are written at their defaults too
     "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
 }  # fmt: skip
 NEWMARK_DATA = {"time.alpha", "time.delta"}  # which no other scheme has
 OF_STEPPING = {*NEWMARK_DATA, "time.start", "fem.degree", "fem.foundation"}  # which rigid boxes have none of
-NO_DATA = {"block.base", "block.top", "run.solvers", "run.columns"}  # edges of a polygon, and what is run
+NO_DATA = {  # edges of a polygon, the cut of which the blocks are counted, and what is run
+    "block.base", "block.top", "plane.subdivide", "run.solvers", "run.columns",
+}  # fmt: skip
 
 
 def raised(number: int) -> str:
@@ -158,13 +162,16 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
         items.append(f"{blocks} blocks, layers: {len(scene.column.layer)}, {scene.column.height:g} m high")
     if scene.rigid is not None and "rigid.box" not in varied:
         items += _boxes(scene.rigid)
+    if scene.plane is not None and not {"plane.block", "plane.subdivide"} & varied:
+        items.append(f"{len(scene.plane.polygons)} blocks")
+    without = OF_STEPPING if scene.rigid is not None else {"fem.foundation"} if scene.plane is not None else set()
     for place, table in scene.tables().items():
         for name, field, _ in keys_of(type(table)) if place in PLACES else ():
             path = f"{place}.{name}"
             value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)
             is_newmarks = path in NEWMARK_DATA and scene.time.scheme != "newmark"
-            if path in varied | NO_DATA or is_default or is_newmarks or (scene.rigid and path in OF_STEPPING):
+            if path in varied | NO_DATA | without or is_default or is_newmarks:
                 continue
             symbol, unit = _symbol(scene, path)
             items.append(f"{symbol} = {_written(value)}{unit}" if symbol else f"{_written(value)}{unit}")
