@@ -56,6 +56,7 @@ def rows_of(results: Path) -> dict[str, Row]:
 def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_path, monkeypatch):
     (tmp_path / "waiting_solver.py").write_text(WAITING)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.syspath_prepend(tmp_path)  # for the second run, which is this process's
     scene_file.write_text(SCENE + '[run]\nsolvers = ["dda", "waiting_solver:solve", "bar"]\n')
     results = tmp_path / "r"
     with start(scene_file, results) as process:
