@@ -16,6 +16,7 @@ from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
 from validation.runs.row import Value
+from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene, load_scene
 
 Band = tuple[float, float]
@@ -33,6 +34,13 @@ def cases(*names: str) -> Iterator[Scene]:
 @cache
 def _expanded(name: str) -> tuple[Scene, ...]:
     return load_scene(name).expand()
+
+
+def plane_of(case: Scene) -> PlaneSection:
+    """Return the blocks in the plane of a case."""
+    if case.plane is None:
+        raise ValueError(f"{case.name}: must be of blocks in the plane")
+    return case.plane
 
 
 def about(value: float, half: float) -> Band:

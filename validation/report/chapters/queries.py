@@ -82,10 +82,8 @@ class StudyTable:
 
     def lines(self, query: Query) -> list[Line]:
         """Return the lines that a query asks for."""
-        lines = list(self._with_rows(query) if "row" in query else self._of_cases(query))
-        for expression, wanted in query.get("where", {}).items():
-            values = wanted if isinstance(wanted, list) else [wanted]
-            lines = [line for line in lines if _is_among(self.value(line, expression), values)]
+        every = self._with_rows(query) if "row" in query else self._of_cases(query)
+        lines = [line for line in every if self._meets(line, query.get("where", {}))]
         for expression in reversed(_listed(query.get("sort", ()))):
             lines.sort(key=lambda line, by=expression: _order(self.value(line, by)))  # type: ignore[misc]
         return lines

@@ -19,21 +19,13 @@ import numpy as np
 
 from validation.engine.finished import Derived, Finished, NothingToDerive
 from validation.runs.row import Value
-from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, cases, plane_of
 
 ORDER = "order"
 FREQUENCIES = tuple(f"frequency.{number}" for number in (1, 2, 3, 4))
 SCENES = ("beams-triangles", "beams-weight", "beams-squares", "beams-glue", "beams-wanted-glue", "beams-supported")
 CONVERGING = ("beams-triangles", "beams-weight", "beams-supported")
-
-
-def table_of(case: Scene) -> PlaneSection:
-    """Return the blocks of a case."""
-    if case.plane is None:
-        raise ValueError(f"{case.name}: must be of blocks in the plane")
-    return case.plane
 
 
 def over_elements() -> tuple[Derived, ...]:
@@ -59,7 +51,7 @@ READ = ("displacement.static", *FREQUENCIES)
 
 def _blocks(case: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return the blocks across the beam, and the glue over n / sqrt(24)."""
-    plane = table_of(case)
+    plane = plane_of(case)
     across = min(plane.subdivide or (1, 1))
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
@@ -125,7 +117,7 @@ def locked_tip(case: Scene) -> Band:
 
 def _parts(case: Scene) -> tuple[float, float, int]:
     """Return the shear and the bending of the end of a cantilever of squares [m], and the number of its rows."""
-    plane = table_of(case)
+    plane = plane_of(case)
     across, rows = plane.subdivide or (1, 1)
     width, length = plane.rectangle or (1.0, 1.0)
     force = plane.load[0].traction[0] * width

@@ -23,7 +23,6 @@ from validation.theory import friction
 EXACT = "creep-exact"
 STEPS = "creep-steps"
 LAGGED = "creep-lagged"
-CLAIM = "creep-claim"
 STIFFNESS = "creep-stiffness"
 DAMPED = "creep-damped"
 REFINED = ("slope-exact-constant", "slope-exact-average")
