@@ -20,9 +20,10 @@ from validation.advice.advice import LARGEST_RATIO
 from validation.advice.coarse import closed
 from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
-from validation.advice.spectra import dda_modes, highest_frequency, percent
+from validation.advice.spectra import dda_modes, highest_frequency
 from validation.errors import InputError
 from validation.runs.modes import Mode
+from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory import landing
@@ -283,20 +284,20 @@ def _fears(offer: Offer, omega: float) -> Iterator[str]:
     elif offer.greatest_rebound > 1 + GAIN:
         yield f"at longer steps or stiffer contact impacts give back up to {offer.greatest_rebound:.3g} times the speed"
     if offer.start_rise is not None and offer.start_rise > overshoot.NOTABLE:
-        rise = percent(offer.start_rise)
+        rise = share_text(offer.start_rise)
         yield f"from a consistent start under a load at once the first step adds {rise} of the energy it gives"
     if offer.contact_radius > KEEPS:
-        yield f"the contact mode keeps {100 * offer.contact_radius:.3g} % of its amplitude a step"
+        yield f"the contact mode keeps {share_text(offer.contact_radius)} of its amplitude a step"
     if offer.gg < 1:
         drag = -math.log(offer.gg) / offer.step
         yield f"the discount is a drag of {drag:.3g} 1/s in flight and in sliding, and damps slow motion most"
     if offer.first_mode is None:
         yield "the block's first axial mode no longer oscillates"
     elif offer.first_mode > 2 * offer.damping:
-        yield f"the block's first axial mode is damped at {percent(offer.first_mode)}"
+        yield f"the block's first axial mode is damped at {share_text(offer.first_mode)}"
     if abs(offer.period_error) > 0.02:
         size = "long" if offer.period_error > 0 else "short"
-        yield f"the period at the requested frequency is {percent(abs(offer.period_error))} too {size}"
+        yield f"the period at the requested frequency is {share_text(abs(offer.period_error))} too {size}"
     steps = 2 * math.pi / (omega * offer.step)
     if steps < STEPS:
         yield f"only {steps:.2g} steps a period of the requested frequency"
@@ -304,7 +305,7 @@ def _fears(offer: Offer, omega: float) -> Iterator[str]:
 
 def _sentence(advice: SchemeAdvice) -> str:
     """Return the answer in one sentence."""
-    wish = f"{percent(advice.target)} at {advice.frequency:.4g} Hz"
+    wish = f"{share_text(advice.target)} at {advice.frequency:.4g} Hz"
     if advice.no_gain:
         wish += " and nothing gained on contact"
     fitting = [offer for offer in advice.offers if not (advice.no_gain and offer.gains)]

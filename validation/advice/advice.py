@@ -28,12 +28,12 @@ from validation.advice.spectra import (
     highest_frequency,
     mode_damping,
     mode_names,
-    percent,
     runs,
 )
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
+from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
@@ -296,23 +296,24 @@ def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[S
     """Return the answer in one sentence: what to set, and what follows from it."""
     if not solutions:
         least, least_at, greatest, greatest_at = reach
-        refusal = f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {percent(target)} of critical"
+        refusal = (
+            f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {share_text(target)} of critical"
+        )
         if greatest is None or least is None or greatest_at is None or least_at is None:
             return f"{refusal}: the mode has no damping ratio here, since a root of the step is not positive."
         unit = " s" if solve_for == "dt" else ""
         name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
         if greatest - least < FLAT:
-            return f"{refusal}: the largest attainable value is {percent(abs(greatest))}, at any {name}."
+            return f"{refusal}: the largest attainable value is {share_text(abs(greatest))}, at any {name}."
         if least < target < greatest:
             return f"{refusal}: it lies in a gap between attainable values."
         if target > greatest:
-            return (
-                f"{refusal}: the largest attainable value is {percent(greatest)}, at {name} = {greatest_at:.6g}{unit}."
-            )
-        return f"{refusal}: the smallest attainable value is {percent(least)}, at {name} = {least_at:.6g}{unit}."
+            largest = share_text(greatest)
+            return f"{refusal}: the largest attainable value is {largest}, at {name} = {greatest_at:.6g}{unit}."
+        return f"{refusal}: the smallest attainable value is {share_text(least)}, at {name} = {least_at:.6g}{unit}."
     first = solutions[0]
     answers = " or ".join(_answer(solve_for, s) for s in solutions)
-    text = f"Set {answers}: the first axial mode of the DDA block is then damped at {percent(target)} of critical"
+    text = f"Set {answers}: the first axial mode of the DDA block is then damped at {share_text(target)} of critical"
     if len(solutions) > 1:
         text += " in each case"
     settles = [f"{s.settling_steps} steps ({s.settling_seconds:.4g} s)" for s in solutions if s.settling_steps]

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from validation.runs.numbers import significant
 from validation.runs.records import AlarmRecord
 from validation.runs.row import Row
 from validation.solvers.contract import Role
@@ -27,7 +28,7 @@ class Alarm:
 
     def record(self) -> AlarmRecord:
         """Return plain data, numbers rounded well above the last bits."""
-        rounded = {key: float(f"{value:.4g}") for key, value in self.values.items()}
+        rounded = {key: significant(value, 4) for key, value in self.values.items()}
         return {"kind": self.kind, "scene": self.scene, "sentence": self.sentence, "values": rounded}
 
 

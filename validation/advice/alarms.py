@@ -28,6 +28,7 @@ from validation.advice.overshoot import overshoot_alarms
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
+from validation.runs.numbers import share_text
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
@@ -88,7 +89,7 @@ def agreement(scene: Scene, finished: Cases) -> str:
     difference = pair_metric("displacement.l2", history, reference)
     if not isinstance(difference, float) or difference >= AGREES:
         return ""
-    return f"{judged} and {name} are {100 * difference:.2g} % apart only"
+    return f"{judged} and {name} are {share_text(difference, 2)} apart only"
 
 
 def _first(scene: Scene, finished: Cases, role_of_solver: Role) -> tuple[str, History | None]:

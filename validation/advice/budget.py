@@ -19,6 +19,7 @@ from validation.errors import InputError
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array
 from validation.runs.modes import contact_index
+from validation.runs.numbers import significant
 from validation.runs.records import BudgetRecord
 from validation.scenes.scene import Scene
 from validation.theory import spectra
@@ -73,7 +74,7 @@ def budget(cases: list[Scene]) -> BudgetRecord:
         "dt": _listed(dt),
         "modes": curves,
         "limits": limits,
-        "real roots at": float(f"{limits.get('real roots', 0.0) * first:.4g}"),
+        "real roots at": significant(limits.get("real roots", 0.0) * first, 4),
         "floor": _floor(scene, first),
     }
 
@@ -139,15 +140,15 @@ def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     if total[0] >= 1 and (total < 1).any():
         limits["overdamped below"] = float(fine[int(np.argmax(total < 1))])
     limits["wave transit"] = spectra.transit(scene)
-    return {name: float(f"{value:.4g}") for name, value in limits.items()}
+    return {name: significant(value, 4) for name, value in limits.items()}
 
 
 def _floor(scene: Scene, first: float) -> float | None:
     """First frequency of DDA over that of the exact bar; None for a block that is no rectangle or not at mu = 0."""
     if scene.block.vertices is not None or scene.block.poisson != 0:
         return None
-    return float(f"{first / spectra.bar_frequency(scene):.6g}")
+    return significant(first / spectra.bar_frequency(scene), 6)
 
 
 def _listed(values: Array) -> list[float | None]:
-    return [float(f"{value:.5g}") if math.isfinite(value) else None for value in values]
+    return [significant(value, 5) if math.isfinite(value) else None for value in values]

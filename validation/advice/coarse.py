@@ -24,6 +24,7 @@ import numpy as np
 from validation.advice.alarm import Alarm, alarm
 from validation.advice.spectra import dda_modes
 from validation.errors import InputError
+from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory import columns
@@ -90,7 +91,7 @@ def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Calla
         if damps:
             scheme = _scheme(scene)
             xi = scheme.damping_ratio(removal.omega_dt)
-            ratio = f" at {100 * xi:.3g} % of critical" if math.isfinite(xi) else ""
+            ratio = f" at {share_text(xi)} of critical" if math.isfinite(xi) else ""
             step = _followed(scheme, removal.omega_dt) * scene.time.step
             span = "two steps" if removal.omega_dt > math.pi else "a period"
             words |= {"ratio": ratio, "percent": 100 * removal.by_scheme, "span": span}

@@ -24,6 +24,7 @@ from collections.abc import Iterator, Mapping
 
 from validation.advice import contact
 from validation.advice.alarm import Alarm, alarm, first_row, number
+from validation.runs.numbers import share_text
 from validation.runs.row import Row
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -76,7 +77,7 @@ def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     tension = 2 * scene.contact.stiffness * scene.contact.band[1] if scene.contact.band[1] else 0.0
     load = abs(opened.resultant_load(scene)) or landing.impact_force(scene, scene.block.velocity)
     if tension > NOTABLE * load:
-        share = f", {100 * tension / load:.3g} % of the load" if load else ""
+        share = f", {share_text(tension / load)} of the load" if load else ""
         yield alarm(PULLING, scene.name, {"pull": tension}, share=share)
 
 

@@ -15,6 +15,7 @@ from validation.advice.contact_alarms import contact_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
+from validation.runs.numbers import number_text, share_text
 from validation.runs.row import Row, Value
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -191,7 +192,9 @@ def measured_lines(kind: str, runs: Mapping[str, Mapping[str, Value]]) -> list[L
     """Return a line of each metric of a kind of `LINES`, with its number in every run."""
     lines: list[Line] = []
     for line in LINES[kind]:
-        numbers = (written(run.get(line["metric"]), line["factor"], line["unit"]) for run in runs.values())
+        numbers = (
+            number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()
+        )
         lines.append((line["words"], *numbers))
     return lines
 
@@ -205,14 +208,6 @@ def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
     if touching and before:
         return "at once"
     return f"{value:.7g} s" if isinstance(value, float) else "never"
-
-
-def written(value: Value, factor: float, unit: str) -> str:
-    """Return a number of a run in its unit, `NONE` where it has none."""
-    if not isinstance(value, float):
-        return NONE
-    scaled = factor * value
-    return f"{0.0 if abs(scaled) < 1e-9 else scaled:.4g}{unit}"
 
 
 def _solves(run: Mapping[str, Value]) -> str:
@@ -234,7 +229,7 @@ def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> 
     if slides.stands or not share > 0 or not abs(distance - slides.run_out) > APART * slides.run_out:
         return
     yield (
-        f"  hops        the exact block is open for {100 * share:.3g} % of the time and moves {distance:.4g} m: the "
+        f"  hops        the exact block is open for {share_text(share)} of the time and moves {distance:.4g} m: the "
         "run-out above is that of a block that stays on the slope and never sticks"
     )
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from validation.errors import InputError
+from validation.runs.numbers import stated_text
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,7 @@ class Limit:
         """
         if value is None or self.above < value < self.below or value in self.ends:
             return
-        shown = f"{value:g}" if isinstance(value, float) else value
-        raise InputError(self.rule, field=self.field, value=shown, advice=self.advice)
+        raise InputError(self.rule, field=self.field, value=stated_text(value), advice=self.advice)
 
 
 def check_choice(field: str, value: str, choices: Iterable[str]) -> None:

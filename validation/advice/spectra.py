@@ -21,6 +21,7 @@ from dda.scheme.spectral import ComplexArray
 from validation.advice.plain import PlainAnswer
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
+from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
@@ -281,7 +282,7 @@ def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
 
 def runs(mode: ModeDamping) -> str:
     """Say in words how a mode is damped."""
-    keeps = f"keeps {100 * mode.spectral_radius:.3g} % of its amplitude per step"
+    keeps = f"keeps {share_text(mode.spectral_radius)} of its amplitude per step"
     if mode.spectral_radius > 1 + 1e-12:
         return f"grows by a factor of {mode.spectral_radius:.4g} per step"
     if mode.flips:
@@ -291,12 +292,7 @@ def runs(mode: ModeDamping) -> str:
     if mode.damping < 5e-16:
         return "is not damped"
     over = "is overdamped at" if mode.damping >= 1 else "is damped at"
-    return f"{over} {percent(mode.damping)} of critical, {parts(mode)}"
-
-
-def percent(value: float) -> str:
-    """Return a fraction in per cent with three digits."""
-    return f"{100 * value:.3g} %"
+    return f"{over} {share_text(mode.damping)} of critical, {parts(mode)}"
 
 
 def parts(mode: ModeDamping) -> str:
@@ -305,11 +301,11 @@ def parts(mode: ModeDamping) -> str:
         return "kinetic and algorithmic"
     if mode.viscous:
         shares = (("algorithmic", mode.algorithmic), ("kinetic", mode.kinetic), ("viscous", mode.viscous))
-        texts = [f"{percent(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
+        texts = [f"{share_text(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
         return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
     small = 1e-9 * mode.damping
     if abs(mode.kinetic) <= small:
         return "all of it algorithmic"
     if abs(mode.algorithmic) <= small:
         return "all of it kinetic"
-    return f"{percent(mode.algorithmic)} algorithmic and {percent(mode.kinetic)} kinetic"
+    return f"{share_text(mode.algorithmic)} algorithmic and {share_text(mode.kinetic)} kinetic"

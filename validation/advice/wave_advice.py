@@ -19,9 +19,10 @@ from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
 from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
-from validation.advice.spectra import highest_frequency, percent
+from validation.advice.spectra import highest_frequency
 from validation.errors import InputError
 from validation.runs.history import Array, Complex
+from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
@@ -358,10 +359,10 @@ def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:
         kind = "kinetic"
     distance = path.times * sum(layer.thickness for layer in path.layers)
     late = "late" if present.delay >= 0 else "early"
-    damping = f"has a steady ratio of {percent(present.damping)}, {kind}," if present.damping else "damps nothing"
+    damping = f"has a steady ratio of {share_text(present.damping)}, {kind}," if present.damping else "damps nothing"
     return (
         f"Your dt = {present.step:g} s {damping} at {path.frequency:g} Hz: "
-        f"{percent(1 - present.loss)} of a wave arrives after {distance:.4g} m, {path.wavelengths:.3g} wavelengths, "
+        f"{share_text(1 - present.loss)} of a wave arrives after {distance:.4g} m, {path.wavelengths:.3g} wavelengths, "
         f"{abs(present.delay):.3g} periods {late}."
     )
 
@@ -372,7 +373,7 @@ def _advised(scene: Scene, advised: Passage | None, height: str, largest: _Large
         heights = ", ".join(f"{h:.4g}" for h in advised.heights)
         late = "late" if advised.delay >= 0 else "early"
         return (
-            f"Blocks of {heights} m and dt = {advised.step:.4g} s lose {percent(advised.loss)} of it and bring it "
+            f"Blocks of {heights} m and dt = {advised.step:.4g} s lose {share_text(advised.loss)} of it and bring it "
             f"{abs(advised.delay):.3g} periods {late}; "
             f"the blocks are limited by the {height}, the step by the {largest.limit}."
         )
@@ -387,5 +388,5 @@ def _advised(scene: Scene, advised: Passage | None, height: str, largest: _Large
         "stability": f"larger steps are unstable, {unconditional}",
         "scheme": "choose another scheme",
     }
-    best = f"{percent(largest.least_loss)} is lost, at dt = {largest.least_loss_at:.3g} s"
+    best = f"{share_text(largest.least_loss)} is lost, at dt = {largest.least_loss_at:.3g} s"
     return f"No time step does: at best {best}; {cures[largest.limit]}."

@@ -9,6 +9,7 @@ import typer
 
 from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
 from validation.cli.printing.output import echo, echo_json
+from validation.runs.numbers import remainder_text
 
 if TYPE_CHECKING:
     from validation.diagnosis.answer import Answer
@@ -80,7 +81,7 @@ def _listed(alternative: dict[str, Any]) -> str:
 def _print(answer: Answer) -> None:
     """Print the sentence first, then what it rests on."""
     from validation.diagnosis.causes import CAUSES
-    from validation.diagnosis.sentences import cleaned, per_cent, told_lines
+    from validation.diagnosis.sentences import cleaned, told_lines
 
     echo(answer.sentence)
     if answer.remedy:
@@ -105,6 +106,6 @@ def _print(answer: Answer) -> None:
     for row in answer.ranking[:RANKING_LINES]:
         compliance = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
         scheme = "exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}"
-        echo(f"  {row['model']:<10} {row['name'] or scheme:<24} {per_cent(row['misfit']):>10} {compliance:>14}")
+        echo(f"  {row['model']:<10} {row['name'] or scheme:<24} {remainder_text(row['misfit']):>10} {compliance:>14}")
     for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
         echo(line)

@@ -18,6 +18,7 @@ from validation.cli.app import (
     one_case,
 )
 from validation.cli.printing.output import broken, columns, echo_answer
+from validation.runs.numbers import number_text, share_text
 
 if TYPE_CHECKING:
     from validation.advice.advice import Solution
@@ -144,7 +145,7 @@ def _of_wave(case: Scene, fmax: float, loss: float, wavelengths: float | None, p
     for name, passage in (("present", advice.present), ("advised", advice.advised)):
         if passage is not None:
             heights = ", ".join(f"{height:.5g}" for height in passage.heights)
-            shares = f"{100 * passage.loss:.4g} %", f"{passage.delay:+.4g}", _percent(passage.damping)
+            shares = share_text(passage.loss, 4), f"{passage.delay:+.4g}", _percent(passage.damping)
             rows.append((name, heights, f"{passage.step:.6g}", *shares))
     return advice.as_dict(), [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
 
@@ -159,7 +160,7 @@ def _of_schemes(case: Scene, damping: float, at: float | None, no_gain: bool | N
     rows: list[tuple[str, ...]] = [("", "dt [s]", *heads, "first mode", "contact", "solves", "rebound", "at any step")]
     for offer in offers:
         ratios = map(_percent, (*offer.hidden.values(), offer.first_mode, offer.contact_mode))
-        numbers = (_number(number, ".3g") for number in (offer.cost, offer.rebound["most"], offer.greatest_rebound))
+        numbers = (number_text(number, 3) for number in (offer.cost, offer.rebound["most"], offer.greatest_rebound))
         rows.append((offer.name, f"{offer.step:.5g}", *ratios, *numbers))
     notes = [f"{offer.name}: {'; '.join(offer.fears)}" for offer in offers if offer.fears]
     notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
@@ -189,12 +190,12 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
     parts = ("algorithmic", "kinetic", "viscous") if has_tables else ("algorithmic", "kinetic")
     rows: list[tuple[str, ...]] = [("mode", "w [rad/s]", "w dt", "xi [%]", *parts, "|lambda|", "w/w' - 1")]
     for mode in analysis.modes:
-        ratios = [_number(getattr(mode, part), ".4g", 100) for part in ("damping", *parts)]
-        elongation = _number(mode.period_elongation, ".3g")
+        ratios = [number_text(getattr(mode, part), factor=100) for part in ("damping", *parts)]
+        elongation = number_text(mode.period_elongation, 3)
         radius = f"{mode.spectral_radius:.6g}"
         rows.append((mode.name, f"{mode.frequency:.6g}", f"{mode.omega_dt:.4g}", *ratios, radius, elongation))
     for name, values in analysis.references.items():
-        ratio = _number(values["damping"], ".4g", 100)
+        ratio = number_text(values["damping"], factor=100)
         rows.append((f"{name}, first", f"{values['frequency']:.6g}", "", ratio, *[""] * (len(parts) + 2)))
     yield columns(rows)
     if analysis.alias is not None:
@@ -216,14 +217,14 @@ def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str
     elif solution.settling_steps is not None:
         steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
         settles = f"{steps} (from the {solution.settling_from})"
-    yield "damping ratio", f"{100 * solution.damping:.6g} %"
+    yield "damping ratio", share_text(solution.damping, 6)
     yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
     yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
     for name in ("fem", "continuum"):
         values = error.get(name, {})
-        differences = [f"{key} {100 * value:.3g} %" for key, value in values.items() if isinstance(value, float)]
+        differences = [f"{key} {share_text(value)}" for key, value in values.items() if isinstance(value, float)]
         text = "; ".join(map(str, values.values()))
         if differences:
             text = f"{', '.join(differences)} over {error['window']:.4g} s (relative L2)"
@@ -234,10 +235,5 @@ def _rate(gg_rate: float | None) -> str:
     return "" if gg_rate is None else f", c = {gg_rate:.4g} 1/s"
 
 
-def _number(value: float | None, digits: str, factor: float = 1.0, unit: str = "") -> str:
-    """Return a number in a unit, a dash where there is none; never "-0"."""
-    return "-" if value is None else f"{factor * value + 0.0:{digits}}{unit}"
-
-
 def _percent(value: float | None, none: str = "real roots") -> str:
-    return none if value is None else _number(value, ".4g", 100, " %")
+    return none if value is None else number_text(value, factor=100, unit=" %")

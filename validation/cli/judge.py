@@ -256,14 +256,14 @@ def _judge_solver(target: str, solver: str, assignments: list[str] | None, progr
 def _not_repeatable(history: History, again: History | None) -> list[str]:
     """Return in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
     from validation.metrics.sameness import largest_difference
-    from validation.report.chapters.judged import per_cent
+    from validation.runs.numbers import error_percent
 
     if again is None:
         return ["Not repeatable: a second run gave no history; the verdict is one of several."]
     column, difference = largest_difference(history, again)
     if not column:
         return []
-    size = "in length or columns" if difference == float("inf") else f"by {per_cent(difference)} in {column}"
+    size = "in length or columns" if difference == float("inf") else f"by {error_percent(difference)} in {column}"
     return [f"Not repeatable: a second run differs {size} (relative L2); the verdict may change from run to run."]
 
 

@@ -11,6 +11,7 @@ import typer
 
 from validation.cli.app import SceneArgument, SetOption, app, one_case
 from validation.cli.printing.output import columns, echo
+from validation.runs.numbers import share_text
 
 if TYPE_CHECKING:
     from validation.advice.rayleigh import Rayleigh
@@ -257,7 +258,7 @@ def _back(target: Rayleigh, points: list[tuple[float, float]], scheme: Stepping,
         echo(f"exactly: {error}")
         return leading
     missed = misfit(exact, *points)
-    how = "exactly" if missed <= ROUNDING else f"within {100 * missed:.2g} %"
+    how = "exactly" if missed <= ROUNDING else f"within {share_text(missed, 2)}"
     echo(f"{how} at both frequencies: {exact.words}")
     return exact
 

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, fit_one, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.runs.numbers import significant
 from validation.theory.edges import edge
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question

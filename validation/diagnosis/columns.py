@@ -24,7 +24,7 @@ from validation.diagnosis import evidence, families, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm, significant
+from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm
 from validation.diagnosis.numbers import Values, contacts, layers, places
 from validation.diagnosis.one_change import (
     UNITS,
@@ -46,6 +46,7 @@ from validation.errors import InputError
 from validation.metrics.contact import AGREED, SHIFT
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.numbers import share_text, significant
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
@@ -565,7 +566,7 @@ def _stages(search: ColumnSearch) -> list[Stage]:
     shares = search.over(search.scene_run, search.rows)
     for name, misfit, share in zip((DISPLACEMENT, PRESSURE), search.misfits(search.scene_run), shares, strict=False):
         beyond = np.flatnonzero(np.abs(share) > 1) + 1
-        what = f"is {100 * misfit:.3g} % off, from row {beyond[0]} on" if len(beyond) else "is the scene's"
+        what = f"is {share_text(misfit)} off, from row {beyond[0]} on" if len(beyond) else "is the scene's"
         words = f"the {name.replace('_', ' ')} alone {what}"
         first = float(beyond[0]) if len(beyond) else None
         stages.append(Stage(name, not len(beyond), words, {"misfit": misfit, "first_row": first}))

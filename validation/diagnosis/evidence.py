@@ -23,6 +23,7 @@ from validation.diagnosis.variant import Variant
 from validation.metrics.poles import swing
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.numbers import share_text
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
 DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
@@ -155,7 +156,9 @@ def reading_stage(reading: Reading) -> Stage:
 
 def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
     """Return single rows by column and step, with their errors over the column's largest value."""
-    words = [f"{name.replace('_', ' ')} in step {step}, {100 * error:.2g} % off" for name, step, error in single_rows]
+    words = [
+        f"{name.replace('_', ' ')} in step {step}, {share_text(error, 2)} off" for name, step, error in single_rows
+    ]
     more = len(words) - ROWS_IN_WORDS
     return "; ".join(words[:ROWS_IN_WORDS]) + (f"; and {more} more" if more > 0 else "")
 
@@ -197,7 +200,7 @@ def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: 
         agrees = bar.holds(values - expected_values)
         words = "is the scene's"
         if not agrees:
-            words = f"is {100 * misfit:.3g} % off (digits and noise: {100 * bar.allowed:.1g} %)"
+            words = f"is {share_text(misfit)} off (digits and noise: {share_text(bar.allowed, 1)})"
         words = f"the {name.replace('_', ' ')} alone {words}"
         measured.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": bar.allowed}))
     return measured + _motion(target, expected[0])

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from validation.diagnosis.causes import LISTED, causes_of, values_of
-from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.readings import Slip
 from validation.diagnosis.search import Verdict
 from validation.diagnosis.variant import Variant
+from validation.runs.numbers import significant
 
 SAME_FACTOR = 1e-5  # relative
 SIDE = "load.gravity = 9.81: the weight is proportional to the area of the block"

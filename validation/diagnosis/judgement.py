@@ -14,7 +14,6 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import significant
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.forces import answer as of_friction
@@ -36,6 +35,7 @@ from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, V
 from validation.errors import InputError
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -474,7 +474,7 @@ def _answer_of_rival(
     sentence = rival_sentence(verdict, ids, first_departure)
     if verdict.explained and own_run is not None:
         off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
-        sentence = f"{sentence[:-1]}; the scene's own run by DDA is {sentences.per_cent(off, 2)} % off."
+        sentence = f"{sentence[:-1]}; the scene's own run by DDA is {remainder_text(off, 2)} % off."
         stages = [evidence.surrounded(stage, "another model") for stage in stages]
     time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
@@ -502,7 +502,7 @@ def rival_sentence(verdict: RivalVerdict, ids: Sequence[str], departure: Departu
     if not verdict.explained:
         return (
             f"Departs, not explained: nearest is {model} with {scheme_of_best}, "
-            f"{sentences.per_cent(verdict.left, 2)} % of the difference left; {remainder}."
+            f"{remainder_text(verdict.left, 2)} % of the difference left; {remainder}."
         )
     numbers = {name: f" ({value:.4g})" for name, value in verdict.values.items()}
     faults = sentences.listed([CAUSES[name].words + numbers.get(name, "") for name in ids])

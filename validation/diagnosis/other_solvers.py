@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
-from validation.diagnosis.fits.bar import Bar, norm, significant
+from validation.diagnosis.fits.bar import Bar, norm
 from validation.diagnosis.fits.fit import NAMED, fit, fit_one, named
 from validation.diagnosis.fits.target import Target, joined
 from validation.diagnosis.numbers import Values
@@ -23,6 +23,7 @@ from validation.diagnosis.schemes import FAMILIES
 from validation.diagnosis.variant import Variant
 from validation.errors import InputError
 from validation.runs.history import Array
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 

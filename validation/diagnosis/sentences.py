@@ -10,7 +10,7 @@ from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.fits.fit import named
 from validation.diagnosis.schemes import EXPLICIT, FAMILIES, split_of
 from validation.diagnosis.variant import Variant
-from validation.gates.gate import ROUNDING
+from validation.runs.numbers import ROUNDING, remainder_text
 
 if TYPE_CHECKING:
     from validation.diagnosis.evidence import Departure, Stage
@@ -89,7 +89,7 @@ class Subject:
 
 def remaining(misfit: float) -> str:
     """Return what is left of a history, in words."""
-    return f"the remaining difference is {per_cent(misfit, 2)} %"
+    return f"the remaining difference is {remainder_text(misfit, 2)} %"
 
 
 def sentence(subject: Subject) -> str:
@@ -126,7 +126,7 @@ def not_explained(
         return f"{start}{words} give the same rows within digits and noise; {further}."
     near = "nothing is near"
     if nearest and nearest["causes"] and unexplained <= NEAR:
-        near = f"nearest is {_family(nearest)}, {per_cent(unexplained, 2)} % left"
+        near = f"nearest is {_family(nearest)}, {remainder_text(unexplained, 2)} % left"
     right = _names(stages, True)
     wrong = _names(stages, False)
     summary = [f"right so far: {right}" if right else "", f"wrong: {wrong}" if wrong else ""]
@@ -153,11 +153,6 @@ def told_lines(determined: Mapping[str, Interval], untold: Sequence[Mapping[str,
 def cleaned(value: float) -> float:
     """Return a number, zero where it is rounding."""
     return value if abs(value) > ROUNDING else 0.0
-
-
-def per_cent(value: float, digits: int = 3) -> str:
-    """Return a fraction in per cent, without its unit; rounding is not written as digits."""
-    return f"{100 * value:.{digits}g}" if abs(value) > ROUNDING else f"below {100 * ROUNDING:g}"
 
 
 def _fitted(interval: Interval) -> str:

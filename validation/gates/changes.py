@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.gates.gate import value_text
 from validation.runs import strict
+from validation.runs.numbers import band_text, measured_text
 from validation.runs.records import Baseline, BaselineVerdict, VerdictRecord
 from validation.runs.text import printable
 
@@ -165,24 +165,19 @@ def _rows_of_studies(records: Sequence[VerdictRecord]) -> list[list[str]]:
 
 
 def _row(v: VerdictRecord) -> list[str]:
-    band = " .. ".join(f"{edge:.4g}" for edge in v.get("band", ()))
-    return [_code(v["id"]), value_text(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
+    band = band_text(v.get("band"))
+    return [_code(v["id"]), measured_text(v["value"]), band, _cell(v.get("why") or v.get("reason", ""))]
 
 
 def _row_of_change(c: Change) -> list[str]:
     value = _step(c.value_before, c.value_after)
     if c.rebanded:
-        value += f"; band {band_said(c.band_before)} → {band_said(c.band_after)}"
+        value += f"; band {band_text(c.band_before)} → {band_text(c.band_after)}"
     return [c.kind, _code(c.id), _step(c.before, c.after), value]
 
 
-def band_said(band: Edges | None) -> str:
-    """Return a band as text."""
-    return "-" if band is None else " .. ".join(f"{edge:.4g}" for edge in band)
-
-
 def _step(before: object, after: object) -> str:
-    return value_text(after) if before == after else f"{value_text(before)} → {value_text(after)}"
+    return measured_text(after) if before == after else f"{measured_text(before)} → {measured_text(after)}"
 
 
 def _cell(text: str) -> str:

@@ -7,11 +7,11 @@ import math
 import sys
 from dataclasses import dataclass
 
+from validation.runs.numbers import ROUNDING, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
 LARGEST = sys.float_info.max
-ROUNDING = 1e-12  # a number of this size or less is rounding, and differs from processor to processor
 
 
 class Status(enum.StrEnum):
@@ -117,7 +117,7 @@ class Verdict:
 
 def _edge(value: float) -> float:
     """Return an edge of a band without its last bits, which depend on the processor; JSON knows no infinity."""
-    return max(-LARGEST, min(LARGEST, float(f"{value:.12g}")))
+    return max(-LARGEST, min(LARGEST, significant(value, 12)))
 
 
 def judge(gate: Gate, value: Value) -> Verdict:
@@ -127,13 +127,6 @@ def judge(gate: Gate, value: Value) -> Verdict:
         return Verdict(gate, word, Status.FAIL, "there is no value to judge")
     inside = gate.low <= value <= gate.high
     return Verdict(gate, float(value), Status.PASS if inside else Status.FAIL)
-
-
-def value_text(value: object) -> str:
-    """Return a measured number as text, ``below 1e-12`` where it is rounding; a count, which is an integer, in full."""
-    if isinstance(value, float) and abs(value) <= ROUNDING:
-        return f"below {ROUNDING:g}"
-    return f"{value:.4g}" if isinstance(value, float | int) else str(value if value is not None else "-")
 
 
 def settled(value: float) -> float:

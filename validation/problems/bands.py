@@ -19,6 +19,7 @@ from validation.metrics.values import largest
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
+from validation.runs.numbers import share_text
 from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene, parse_scene
 
@@ -59,10 +60,10 @@ class Band:
         if self.datum == DRIVE:
             return (
                 "no datum of block, layers or contact changes the exact motion: it is in proportion to what drives it "
-                f"(loads, velocity, base), of which {100 * self.high:.2g} % changes it by as much"
+                f"(loads, velocity, base), of which {share_text(self.high, 2)} changes it by as much"
             )
         return (
-            f"one per cent of {self.datum} changes the exact motion by {100 * self.high:.2g} %: data of a block are "
+            f"one per cent of {self.datum} changes the exact motion by {share_text(self.high, 2)}: data of a block are "
             "not known to better than one per cent, an error below that changes nothing for its user"
         )
 

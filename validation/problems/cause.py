@@ -17,7 +17,7 @@ import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.families import ONE_SCHEME
-from validation.diagnosis.fits.bar import norm, significant
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import Values, laws
 from validation.diagnosis.one_change import (
@@ -39,6 +39,7 @@ from validation.problems.bands import Standard
 from validation.problems.models import Base, Columns, Runs, runs_of
 from validation.problems.problem import Problem
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.runs.numbers import significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 

@@ -15,6 +15,8 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
+from validation.runs.numbers import stated_text
+
 _REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w -]+"(?: or "[\w -]+")*))?$')
 
 
@@ -71,7 +73,7 @@ def check_needs(tables: Mapping[str, Section]) -> None:
                 for requirement in key.needs:
                     if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"
-                        raise ValueError(f"{rule}, got {value_text(value)} without it")
+                        raise ValueError(f"{rule}, got {stated_text(value)} without it")
 
 
 def _entries(table: Section) -> Iterator[tuple[str, Section]]:
@@ -111,14 +113,7 @@ def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
 def described(name: str, value: object, key: Key) -> str:
     """Return a key with its value in words, ``band = 0, 0.001 m``."""
     unit = f" {key.unit}" if key.unit else ""
-    return f"{name.replace('_', ' ')} = {value_text(value)}{unit}"
-
-
-def value_text(value: object) -> str:
-    """Return a value in words, each number of a list by itself."""
-    if isinstance(value, tuple):
-        return ", ".join(map(value_text, value)) or "none"
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{name.replace('_', ' ')} = {stated_text(value)}{unit}"
 
 
 def range_of(field: FieldInfo) -> str:
@@ -147,4 +142,4 @@ def default_of(field: FieldInfo) -> str:
     """Return the default of a key in words."""
     if field.is_required():
         return "required"
-    return "-" if field.default is None else value_text(field.default)
+    return "-" if field.default is None else stated_text(field.default)

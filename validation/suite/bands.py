@@ -15,6 +15,7 @@ from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
+from validation.runs.numbers import significant
 from validation.runs.row import Value
 from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene, load_scene
@@ -60,7 +61,7 @@ def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
 
 def short(values: ArrayLike, digits: int = 5) -> list[float]:
     """Return the numbers of a curve, to some digits."""
-    return [float(f"{value:.{digits}g}") for value in np.asarray(values)]
+    return [significant(value, digits) for value in np.asarray(values)]
 
 
 def order_row(

@@ -18,11 +18,12 @@ import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import HORIZON
-from validation.gates.gate import Gate, value_text
+from validation.gates.gate import Gate
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
+from validation.runs.numbers import measured_text
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import about, cases, gate
@@ -235,7 +236,7 @@ def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
     """Return a register as a Markdown page, from the derived rows of its study."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):
-        listed = "; ".join(f"{k} {value_text(v)}" for k, v in entry["numbers"].items())
+        listed = "; ".join(f"{k} {measured_text(v)}" for k, v in entry["numbers"].items())
         condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
         parts += [
             f"## {entry['id']}: {entry['verdict']}{condition}",

@@ -12,9 +12,10 @@ from typing import Any
 from validation.cli.app import RESULTS
 from validation.engine.measured import JudgedStudy, unjudged
 from validation.gates.changes import Change
-from validation.gates.gate import Status, Verdict, value_text
+from validation.gates.gate import Status, Verdict
 from validation.report.blocks import TableColumn, table
 from validation.report.render.terminal import StyledLine, table_lines, wrapped
+from validation.runs.numbers import measured_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -105,7 +106,7 @@ def _measured(verdict: Verdict) -> str:
     band = f"[{gate.low:.4g}, {gate.high:.4g}]"
     if isinstance(value, str):
         return f"FAIL {printable(gate.id)}: {value}, allowed {band}"
-    return f"FAIL {printable(gate.id)}: {value_text(value)} is outside {band}"
+    return f"FAIL {printable(gate.id)}: {measured_text(value)} is outside {band}"
 
 
 def badly_ended(answer: RunAnswer) -> Iterator[str]:

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from validation.cli.printing.answer import how_it_ended
 from validation.cli.printing.output import broken, echo
-from validation.gates.gate import Verdict, value_text
+from validation.gates.gate import Verdict
 from validation.report.blocks import Blocks, Listing, Paragraph, Table, TableColumn, table
 from validation.report.scene.differences import DIFFERENCES, difference_table
 from validation.runs.case_name import CaseName
+from validation.runs.numbers import band_text, measured_text
 from validation.runs.records import AlarmRecord, BaselineVerdict, ComparisonRecord, VerdictRecord
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -43,8 +44,8 @@ def verdict_table(verdicts: Sequence[Verdict], results: Results, studies: Sequen
                 printable(name(v.gate.scene)),
                 " | ".join(v.gate.pair),
                 v.gate.id.rpartition(":")[2],
-                value_text(v.value),
-                _band(v),
+                measured_text(v.value),
+                band_text((v.gate.low, v.gate.high)),
                 str(v.status),
                 "" if case_seconds is None else f"{case_seconds:.2f}",
             )
@@ -55,10 +56,6 @@ def verdict_table(verdicts: Sequence[Verdict], results: Results, studies: Sequen
 
 def _numbers(title: str) -> TableColumn:
     return TableColumn(title, "decimal")
-
-
-def _band(verdict: Verdict) -> str:
-    return f"{verdict.gate.low:.4g} .. {verdict.gate.high:.4g}"
 
 
 def _namer(cases: Iterable[str]) -> Callable[[str], str]:
@@ -181,16 +178,14 @@ def printable_lines(text: str) -> str:
 
 def change_blocks(changes: Sequence[Change]) -> Blocks:
     """Return what changed: change, study, gate, verdict and value before and after."""
-    from validation.gates.changes import band_said
-
     if not changes:
         return [Paragraph("no gate differs")]
     rows = []
     for c in changes:
         sides = ((c.before, c.value_before), (c.after, c.value_after))
-        values = [f"{word} {value_text(value)}" for word, value in sides]
+        values = [f"{word} {measured_text(value)}" for word, value in sides]
         if c.rebanded:
-            bands = (band_said(band) for band in (c.band_before, c.band_after))
+            bands = (band_text(band) for band in (c.band_before, c.band_after))
             values = [f"{value} in {band}" for value, band in zip(values, bands, strict=True)]
         rows.append((c.kind, c.study, c.id, *values))
     counts = ", ".join(f"{count} {kind}" for kind, count in Counter(c.kind for c in changes).items())

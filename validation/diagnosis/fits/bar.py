@@ -65,11 +65,6 @@ def norm(values: Array) -> float:
     return float(np.linalg.norm(values))
 
 
-def significant(value: float, digits: int) -> float:
-    """Return a number rounded to significant digits."""
-    return float(f"{value:.{digits}g}")
-
-
 def noise(values: Array) -> float:
     """Return the standard deviation of what no recurrence of low order predicts, zero if the rows are too few."""
     y = np.asarray(values[:LONGEST], dtype=float)

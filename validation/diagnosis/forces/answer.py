@@ -13,18 +13,18 @@ from validation.diagnosis import sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign, words_of
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import last_digits, significant
+from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.forces.judge import BLURRED, MOST, NORMAL, ContactFinding, judge
 from validation.diagnosis.forces.laws import body_of
 from validation.diagnosis.forces.runs import DDA, Agreement, OneChange, agreement, at_step, displacements
 from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, remedy_of, words_of_slips
-from validation.diagnosis.sentences import per_cent
 from validation.diagnosis.variant import upright
 from validation.errors import InputError
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, Array
+from validation.runs.numbers import remainder_text, share_text, significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -145,7 +145,7 @@ def answer_of(scene: Scene, foreign: Foreign, reading: SlopeReading) -> Answer:
     if result.explained:
         words = {name: result.change or words_of(name, result.values.get(name, 0.0)) for name in result.causes}
         law = "lagged" if result.lagged else "consistent"
-        remainder = f"{law} friction gives the force of {100 * result.shares[law]:.4g} % of the steps"
+        remainder = f"{law} friction gives the force of {share_text(result.shares[law], 4)} of the steps"
         if result.change or all_benign(ids):
             remainder = _motion(result.run)
         scheme = sentences.scheme_words(t.alpha, t.delta, t.discount)
@@ -183,8 +183,10 @@ def _alone(change: OneChange) -> dict[str, Any]:
 
 def stages(result: ContactFinding, read: SlopeReading) -> tuple[Stage, ...]:
     """Return what was measured: signs, the scene's own run, normal law, friction."""
-    consistent, lagged = (f"{100 * result.shares[law]:.3g} %" for law in ("consistent", "lagged"))
-    friction = f"within {per_cent(result.tolerance, 2)} % of the limit it is consistent in {consistent} of the steps, "
+    consistent, lagged = (share_text(result.shares[law]) for law in ("consistent", "lagged"))
+    friction = (
+        f"within {remainder_text(result.tolerance, 2)} % of the limit it is consistent in {consistent} of the steps, "
+    )
     friction += f"lagged in {lagged}; {result.telling} steps tell which"
     if result.tolerance > BLURRED:
         friction += "; the digits of the file do not show it"
@@ -199,7 +201,7 @@ def stages(result: ContactFinding, read: SlopeReading) -> tuple[Stage, ...]:
     if result.tolerance > BLURRED:
         law_holds = None
     right = "; ".join(slip.words for slip in read.corrected) or "signs, units and columns are the scene's"
-    pressed = f"the normal forces are those of the springs to {per_cent(result.normal, 2)} %"
+    pressed = f"the normal forces are those of the springs to {remainder_text(result.normal, 2)} %"
     is_normal = result.normal <= NORMAL and causes.isdisjoint(NORMAL_CAUSES)
     misfit = None if math.isnan(of_scene.left) else of_scene.left
     shares: dict[str, float | None] = {**result.shares, "telling": result.telling, "allowed": result.tolerance}
@@ -218,4 +220,4 @@ def _motion(run: Agreement) -> str:
         return f"the suite's own run gives the displacements to their digits or noise{part}"
     if math.isnan(run.left):
         return "the suite has no run of it"
-    return f"the suite's own run leaves {per_cent(run.left, 2)} % of the displacements"
+    return f"the suite's own run leaves {remainder_text(run.left, 2)} % of the displacements"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.diagnosis.causes import round_factor
-from validation.diagnosis.fits.bar import norm, significant
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.forces.laws import Body, Followed, body_of, follow, motion_of
 from validation.diagnosis.forces.runs import (
     NO_RUN,
@@ -22,6 +22,7 @@ from validation.diagnosis.forces.runs import (
     surrounded,
 )
 from validation.runs.history import Array
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.scenes.tables import TimeSection
 from validation.theory.statics import moduli, size

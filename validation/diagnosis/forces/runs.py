@@ -14,14 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.fits.bar import (
-    ARITHMETIC,
-    WITHIN,
-    outlying,
-    significant,
-    spread_of_most,
-    white,
-)
+from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, outlying, spread_of_most, white
 from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
@@ -40,6 +33,7 @@ from validation.diagnosis.one_change import (
 from validation.diagnosis.reading import SAME_STEP, SIDEWAYS
 from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, Array
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 

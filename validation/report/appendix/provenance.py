@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Groups, varied_fields
-from validation.report.chapters.text import parameter_items, plain
+from validation.report.chapters.text import parameter_items
+from validation.runs.numbers import plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Row

@@ -9,11 +9,12 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.sentences import told_lines
 from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, Table, TableColumn, table
-from validation.report.chapters.text import DASH, parameters, short
+from validation.report.chapters.text import parameters
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import HistoryPanel
 from validation.report.render.pdf import write_document
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.numbers import DASH, short
 from validation.scenes.scene import Scene
 
 FIGURE = "compare.svg"

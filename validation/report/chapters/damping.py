@@ -7,7 +7,8 @@ import itertools
 from validation.report.blocks import Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.described import Description
-from validation.report.chapters.text import DASH, load_size, word_notes
+from validation.report.chapters.text import load_size, word_notes
+from validation.runs.numbers import DASH
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.solvers.contract import EXACT_IN_TIME

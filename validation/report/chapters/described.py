@@ -16,7 +16,6 @@ A column has a title, and where needed a group, a kind and what it is `of`, in a
 
 from __future__ import annotations
 
-import math
 import operator
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -26,36 +25,12 @@ from typing import Any
 
 from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults
-from validation.report.chapters.text import DASH, bounded, cell, percent, plain, power, short
+from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.runs.numbers import DASH, FORMS, decimal
 from validation.runs.row import Value
 
-
-def _brief(value: float, _: int) -> str:
-    """Return a number that fits into a cell of a map."""
-    if abs(value) < 1e-9:
-        return "0"
-    if abs(value) < 1e-3:
-        return "<0.001"
-    return short(value, 3) if value < 100 else f"{value:.0f}"
-
-
-FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written with some digits
-    "plain": plain,
-    "short": short,
-    "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
-    "power": lambda value, _: bounded(value, power(value)),
-    "g": lambda value, _: f"{value:g}",
-    "brief": _brief,
-    # Signed; without a power of ten where it is large.
-    "signed": lambda value, _: f"{value:{'+.0f' if abs(value) >= 1000 else '+.3g'}}".replace("-", "−"),
-    "decade": lambda value, _: f"$10^{{{round(math.log10(value))}}}$",  # on an axis
-    "digits": lambda error, _: f"{math.floor(min(16.0, max(0.0, -math.log10(max(error, 1e-16)))))}",  # that are right
-    "three": lambda value, _: f"{value:.3g}",
-    "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
-    "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
-}
 CaseValue = Value | Callable[[CaseResults], Value]
 
 
@@ -86,8 +61,7 @@ class CaseColumn:
         number = value * self.factor
         if self.decimals is None:
             return FORMS[self.form](number, self.digits)
-        # Adding zero takes the sign off a negative zero.
-        return f"{round(number, self.decimals) + 0.0:.{self.decimals}f}".replace("-", "−")
+        return decimal(number, self.decimals)
 
     def of_case(
         self, case: CaseResults | None, group: CaseGroup | None = None, own: Mapping[str, CaseValue] = {}

@@ -5,7 +5,8 @@ from __future__ import annotations
 from validation.metrics.catalogue import is_count
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
-from validation.report.chapters.text import bounded, capital, cell, short
+from validation.report.chapters.text import capital, cell
+from validation.runs.numbers import bounded, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 

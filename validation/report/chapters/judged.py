@@ -13,9 +13,9 @@ from validation.problems.judge import Column, Judgement, Word
 from validation.problems.problem import Problem
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
-from validation.report.chapters.text import DASH, bounded, plain, short
 from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
+from validation.runs.numbers import DASH, bounded, error_percent, plain, short
 
 if TYPE_CHECKING:
     from validation.problems.cause import Cause
@@ -48,8 +48,8 @@ def headline(answer: JudgedAnswer) -> str:
         return f"{judgement.verdict}: no column of it is judged."
     at_most = "at most " if judgement.word in (Word.PASS, Word.PARTIAL) else ""
     return (
-        f"{judgement.verdict}: it is {at_most}{per_cent(column.error)} off in {united(column.name)}, where "
-        f"{per_cent(column.band)} is allowed."
+        f"{judgement.verdict}: it is {at_most}{error_percent(column.error)} off in {united(column.name)}, where "
+        f"{error_percent(column.band)} is allowed."
     )
 
 
@@ -60,13 +60,6 @@ def reached(answer: JudgedAnswer) -> str:
         return "Its error is more than what is allowed from the first step on."
     until = max(column.until for column in answer.judgement.columns)
     return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
-
-
-def per_cent(share: float | None) -> str:
-    """Return an error in per cent."""
-    if share is None:
-        return DASH
-    return "below 1e-9 %" if share < 1e-11 else f"{short(100 * share, 2)} %"
 
 
 def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
@@ -172,7 +165,7 @@ def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
     caption = "Errors of the numbers that are judged." if numbers else "Relative L2 error of each column."
     for column in columns_of_answer:
         name = united(column.name)
-        error, band = map(per_cent, (column.error, column.band))
+        error, band = map(error_percent, (column.error, column.band))
         rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
         if column.band is None:
             notes.append(f"{name}: {column.reason}.")

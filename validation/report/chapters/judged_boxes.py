@@ -16,10 +16,10 @@ from validation.problems.judge import Word
 from validation.problems.questions import BoxQuestion
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.chapters.judged import ANSWER
-from validation.report.chapters.text import DASH, bounded, short
 from validation.report.figures.curves import HistoryPanel
 from validation.runs.columns import unit_of
 from validation.runs.history import History
+from validation.runs.numbers import DASH, bounded, short
 from validation.scenes.rigid import POSE
 
 ROUNDING = 1e-9  # of a band

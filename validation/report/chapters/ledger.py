@@ -11,11 +11,12 @@ import numpy as np
 
 from validation.report.blocks import Blocks, Heading, Paragraph
 from validation.report.chapters.data import CaseGroup, CaseGroups, CaseResults
-from validation.report.chapters.text import percent, span
+from validation.report.chapters.text import span
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HAIR
 from validation.report.figures.histories import Margins
+from validation.runs.numbers import percent
 from validation.scenes import features
 
 PARTS = {

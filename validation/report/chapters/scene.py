@@ -17,17 +17,7 @@ from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
-from validation.report.chapters.text import (
-    AS_STATED,
-    bounded,
-    capital,
-    load_size,
-    percent,
-    plain,
-    power,
-    short,
-    span,
-)
+from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
 from validation.report.scene.differences import difference_table
@@ -35,6 +25,7 @@ from validation.report.scene.page import SceneDescription
 from validation.runs.case_name import CaseName
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.numbers import bounded, percent, plain, power, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome

@@ -1,23 +1,21 @@
-"""Numbers and swept values as the report writes them."""
+"""Values, swept values and data of scenes as the report writes them."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from validation.runs.case_name import CaseName
+from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
 from validation.runs.text import shown
 from validation.scenes.keys import keys_of, stated, stated_value
 from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
-DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
     ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
     ("alias", "alias", "the frequency lies beyond π/Δt, and samples every Δt show another."),
@@ -39,49 +37,9 @@ NO_DATA = {  # edges of a polygon, the cut of which the blocks are counted, and 
 }  # fmt: skip
 
 
-def raised(number: int) -> str:
-    """Return a whole number in superscript digits."""
-    return str(number).translate(_RAISED)
-
-
-def power(value: float, digits: int = 2) -> str:
-    """Return a number as mantissa times a power of ten, ``3.6×10⁻²``."""
-    if value == 0 or not math.isfinite(value):
-        return plain(value, digits)
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}×10{raised(int(exponent))}".replace("-", "−")
-
-
-def plain(value: float, digits: int = 4) -> str:
-    """Return a number with significant digits, as a power of ten outside 1e-3 to 1e6."""
-    if math.isnan(value):
-        return "not a number"
-    if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
-    if value and not 1e-3 <= abs(value) < 1e6:
-        return power(value, digits)
-    text = f"{value:#.{digits}g}" if value else "0"
-    return (f"{value:.0f}" if "e" in text else text.removesuffix(".")).replace("-", "−")
-
-
-def short(value: float, digits: int = 4) -> str:
-    """Return a number as `plain` does, without zeros at the end of its decimals."""
-    return re.sub(r"(\.\d*?)0+(?=×|$)", r"\1", plain(value, digits)).replace(".×", "×").removesuffix(".")
-
-
-def bounded(value: float, text: str) -> str:
-    """Return the text of a measured value; where it is rounding, say that it is below 1e-12."""
-    return f"<10{raised(-12)}" if isinstance(value, float) and abs(value) <= 1e-12 else text
-
-
 def capital(text: str) -> str:
     """Return a sentence with a capital letter."""
     return text[:1].upper() + text[1:]
-
-
-def percent(value: float) -> str:
-    """Return a fraction in per cent, or as a power of ten below 0.01 %."""
-    return f"{short(100 * value, 3)}\u00a0%" if value == 0 or value >= 1e-4 else power(value)
 
 
 def span(values: Sequence[float]) -> str:

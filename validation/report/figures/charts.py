@@ -29,6 +29,7 @@ from validation.report.figures.histories import (
     size_of,
 )
 from validation.runs.history import Array
+from validation.runs.numbers import tick_text
 
 SETTINGS = ("#0072b2", "#009e73", "#cc79a7", "#8c6d1f")  # colours of settings, which are no solvers
 DASHED = (4.0, 1.8)  # pt
@@ -197,7 +198,7 @@ def _number_axis(axes: Axes, axis: Axis, logarithmic: bool, ticks: Mapping[float
     elif logarithmic:
         is_short = math.log10(high / low) < DECADES
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)) if is_short else LogLocator(numticks=7))
-        axis.set_major_formatter(lambda value, _: _tick_text(value))
+        axis.set_major_formatter(lambda value, _: tick_text(value))
         minor = LogLocator(subs=tuple(range(2, 10)), numticks=12) if axis is axes.xaxis else NullLocator()
         axis.set_minor_locator(minor)
         axis.set_minor_formatter(NullFormatter())
@@ -207,11 +208,6 @@ def _number_axis(axes: Axes, axis: Axis, logarithmic: bool, ticks: Mapping[float
         outer_ticks(axes, high, texts)
     elif ticks:
         axis.set_major_locator(MaxNLocator(ticks))
-
-
-def _tick_text(value: float) -> str:
-    """Return a tick's number, as a power of ten where it is long."""
-    return f"{value:g}" if 1e-3 < value < 1e4 else f"$10^{{{round(math.log10(value))}}}$"
 
 
 def _draw_hairlines(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:

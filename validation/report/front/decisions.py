@@ -12,12 +12,12 @@ import numpy as np
 from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table
 from validation.report.chapters.data import CaseResults, Groups
 from validation.report.chapters.described import Description
-from validation.report.chapters.text import DASH, percent, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.front import closed
-from validation.report.front.first import damping_at_steps, peak_excess, signed_percent
-from validation.report.front.groups import at_ratio, by_step, case_where, milliseconds
+from validation.report.front.first import damping_at_steps, peak_excess
+from validation.report.front.groups import at_ratio, by_step, case_where
+from validation.runs.numbers import DASH, milliseconds, percent, short, signed_percent
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -80,7 +80,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     step = closed.step_for(scenes[0], 0.05)
-    example = f": for 5\u00a0% at p = 1E, dt = {1e3 * step:.3g}\u00a0ms" if step else ""
+    example = f": for 5\u00a0% at p = 1E, dt = {milliseconds(step)}" if step else ""
     command = "advise my-block.toml --damping 0.05 --solve-for dt"
     return [
         Heading("Decision 1: which time step?", 2),
@@ -229,7 +229,7 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     overdamped_below = closed.overdamped_below(per_step)
     creep = ""
     if overdamped_below:
-        creep = f", and below dt = {1e3 * overdamped_below:.3g}\u00a0ms the block creeps instead of oscillating"
+        creep = f", and below dt = {milliseconds(overdamped_below)} the block creeps instead of oscillating"
     return [
         Heading("Decision 3: which discount?", 2),
         _rule(

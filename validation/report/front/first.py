@@ -13,14 +13,14 @@ import numpy as np
 from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Points
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, Verdicts
 from validation.report.chapters.gates import window
-from validation.report.chapters.text import percent, plain, short
 from validation.report.figures import histories
 from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed
-from validation.report.front.groups import PAPER, at_ratio, by_step, case_where, milliseconds
+from validation.report.front.groups import PAPER, at_ratio, by_step, case_where
 from validation.runs.history import Array
+from validation.runs.numbers import milliseconds, percent, plain, short, signed_percent
 from validation.scenes.scene import Scene
 from validation.theory import spectra
 
@@ -120,11 +120,6 @@ def peak_excess(case: CaseResults) -> float | None:
     return None if dda is None or not bar else dda / bar - 1
 
 
-def signed_percent(share: float) -> str:
-    """Return a share in per cent with its sign, also where it is positive."""
-    return f"{'+' if share >= 0 else '−'}{percent(abs(share))}"
-
-
 def _windows(groups: Groups, shortest: tuple[CaseResults, float, float]) -> str:
     """Say how a relative L2 difference of the pressure grows with its window, at the shortest step."""
     case, _, pressure_error = shortest
@@ -153,7 +148,7 @@ def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
     step = closed.step_for(paper, TARGET_DAMPING)
     advice = "see decision 1"
     if step:
-        advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {1e3 * step:.3g}\u00a0ms (decision 1)"
+        advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {milliseconds(step)} (decision 1)"
     return (
         "Which time step?",
         f"The step is the damping: constant acceleration, in DDA's usage Newmark's @newmark1959 weights (α, δ) = (1/2, "

@@ -45,8 +45,3 @@ def at_ratio(ratio: float, alpha: float | None = None) -> Callable[[Scene], bool
 def by_step(group: CaseGroup | None) -> list[CaseResults]:
     """Return the cases of a group from the longest step to the shortest."""
     return sorted(group.cases, key=lambda case: -case.scene.time.step) if group else []
-
-
-def milliseconds(step: float) -> str:
-    """Return a time step in milliseconds, ``2 ms``."""
-    return f"{1e3 * step:.3g}\u00a0ms"

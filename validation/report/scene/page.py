@@ -12,8 +12,9 @@ from validation.advice.plain import Line
 from validation.report.blocks import Blocks, Callout, Listing, TableColumn, table
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing
+from validation.runs.numbers import stated_text
 from validation.scenes import features
-from validation.scenes.keys import described, stated, value_text
+from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
@@ -58,7 +59,7 @@ class SceneDescription:
     @classmethod
     def of(cls, scene: Scene) -> SceneDescription:
         """Return the description of a scene with its sweep."""
-        varied = {key: [*map(value_text, values)] for key, values in scene.sweep.items() if key != "mode"}
+        varied = {key: [*map(stated_text, values)] for key, values in scene.sweep.items() if key != "mode"}
         return cls(numbers.cases(scene), len(scene.expand()), varied, scene.run.solvers, len(scene.gate))
 
     @cached_property

@@ -11,10 +11,11 @@ from validation.errors import InputError
 from validation.problems.data import PACK
 from validation.problems.judge import Word
 from validation.report.blocks import Heading
-from validation.report.chapters.judged import JudgedAnswer, per_cent
+from validation.report.chapters.judged import JudgedAnswer
 from validation.report.chapters.judged import page as page_of_answer
 from validation.report.render import html
 from validation.runs.files import atomic_path
+from validation.runs.numbers import error_percent
 from validation.runs.text import visible
 
 PAGE = "judged.html"
@@ -68,7 +69,7 @@ def badge(judged: JudgedAnswer) -> str:
     label = f"DDA field: {judged.problem.name}"
     verdict = str(judgement.word)
     if judgement.deciding:
-        verdict += f" {per_cent(judgement.deciding.error)}"
+        verdict += f" {error_percent(judgement.deciding.error)}"
     if judgement.withheld:
         verdict += f"; {', '.join(judgement.withheld)} not reported"
     return badge_of(label, verdict, COLORS[judgement.word])

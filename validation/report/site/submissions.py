@@ -28,13 +28,13 @@ from validation.report.blocks import (
     TableColumn,
     table,
 )
-from validation.report.chapters.judged import JudgedAnswer, as_data, page, per_cent
+from validation.report.chapters.judged import JudgedAnswer, as_data, page
 from validation.report.chapters.judged_boxes import JudgedBoxes, data_of_boxes, page_of_boxes
-from validation.report.chapters.text import DASH, short
 from validation.report.render import html
 from validation.report.site.judged import COLORS, badge_of, imprint
 from validation.report.site.places import check_place, write
 from validation.runs.files import atomic_directory
+from validation.runs.numbers import DASH, error_percent, short, significant
 
 VERDICTS = "verdicts.json"  # marks a directory as such a site
 FORMAT = "dda-validation verdicts"
@@ -101,7 +101,7 @@ def _cell(judged: JudgedAnswer | JudgedBoxes) -> AnswerCell:
         number = judged.deciding
         error, allowed = number.shares
         name = judged.question.name
-        return AnswerCell(name, str(judged.word), per_cent(error), _allowed(allowed), number.quantity.name)
+        return AnswerCell(name, str(judged.word), error_percent(error), _allowed(allowed), number.quantity.name)
     judgement = judged.judgement
     deciding = judgement.deciding
     reasons = [f"cause: {judged.cause.sentence}"] if judged.cause is not None else []
@@ -111,15 +111,15 @@ def _cell(judged: JudgedAnswer | JudgedBoxes) -> AnswerCell:
     return AnswerCell(
         judged.problem.name,
         str(judgement.word),
-        per_cent(deciding.error) if deciding else DASH,
-        per_cent(deciding.band) if deciding else DASH,
+        error_percent(deciding.error) if deciding else DASH,
+        error_percent(deciding.band) if deciding else DASH,
         united(deciding.name) if deciding else "",
         "; ".join(reasons),
     )
 
 
 def _allowed(share: float) -> str:
-    return per_cent(share) if share else "0 %"
+    return error_percent(share) if share else "0 %"
 
 
 def summary(sets: Sequence[JudgedSet]) -> Counter[str]:
@@ -187,7 +187,7 @@ def _rounded(value: Any) -> Any:
     """Return a number to a few digits; what is smaller than rounding stands as that."""
     if not isinstance(value, float) or not math.isfinite(value) or value == 0:
         return value
-    return float(f"{math.copysign(max(abs(value), LEAST_ERROR), value):.{DIGITS}g}")
+    return significant(math.copysign(max(abs(value), LEAST_ERROR), value), DIGITS)
 
 
 # ---- the site -------------------------------------------------------------------------------------------------------

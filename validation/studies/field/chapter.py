@@ -8,7 +8,7 @@ from pathlib import Path
 from validation.problems.cause import NOT_EXPLAINED, WOULD_TELL
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.scene import opening
-from validation.report.chapters.text import DASH, short
+from validation.runs.numbers import DASH, short, significant
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.field.marks import (
@@ -135,7 +135,7 @@ def allowed(field: Field, problem: str) -> str:
 def seconds(field: Field, program: ProgramLine) -> str:
     """Return what the answers of a program took together [s], to two digits."""
     times = [cell.seconds for cell in cells_of(field, program) if cell.seconds is not None]
-    return short(float(f"{sum(times):.2g}"), 2) if times else DASH
+    return short(significant(sum(times), 2), 2) if times else DASH
 
 
 def failures(field: Field, installed: Sequence[ProgramLine]) -> Table:
@@ -150,7 +150,7 @@ def _right_until(cell: Cell) -> str:
     """Return in brackets how far an answer is right whose failure is not explained."""
     if cell.cause != NOT_EXPLAINED or cell.within is None:
         return ""
-    return f" ({short(float(f'{cell.within:.3g}'))} s)"
+    return f" ({short(significant(cell.within, 3))} s)"
 
 
 def programs(installed: Sequence[ProgramLine]) -> Table:

@@ -18,6 +18,7 @@ from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array, History
+from validation.runs.numbers import significant
 from validation.runs.row import Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import facts
@@ -429,7 +430,7 @@ def data() -> Mapping[str, Any]:
 
 
 def _short(value: float) -> float | None:
-    return float(f"{value:.5g}") if math.isfinite(value) else None
+    return significant(value, 5) if math.isfinite(value) else None
 
 
 # ---- bands ----------------------------------------------------------------------------------------------------------

@@ -13,9 +13,10 @@ import numpy as np
 from validation.report.blocks import Blocks, FigureBlock, Heading, Paragraph, Table
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, cases_of, groups_by_name
 from validation.report.chapters.described import Description
-from validation.report.chapters.text import DASH, bounded, capital, short
+from validation.report.chapters.text import capital
 from validation.report.figures.charts import ChartLine, ChartPanel
 from validation.report.figures.curves import style_of
+from validation.runs.numbers import DASH, bounded, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 

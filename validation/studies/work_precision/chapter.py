@@ -9,8 +9,8 @@ from pathlib import Path
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.scene import gate_count, opening
-from validation.report.chapters.text import DASH, percent, plain, short
 from validation.report.figures import histories
+from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.studies.work_precision.figure import work_figure

@@ -11,6 +11,7 @@ from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.reading import Foreign
 from validation.gates.gate import Status
 from validation.runs.history import PRESSURE
+from validation.runs.numbers import share_text
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.suite.own_solver import block_data, gates
@@ -89,7 +90,7 @@ def _warnings(results: Sequence[GateReport]) -> Iterator[str]:
 
 def difference(share: float) -> str:
     """Return a relative difference in per cent, in words where it has no number."""
-    return f"{100 * share:.2g} %" if share < LARGEST else "more than can be told"
+    return share_text(share, 2) if share < LARGEST else "more than can be told"
 
 
 # ---- what it tells --------------------------------------------------------------------------------------------------
