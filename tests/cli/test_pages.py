@@ -2,11 +2,11 @@
 
 The numbers are computed apart beside the functions that they come from; here a page is only held to what it was. A page
 that is changed on purpose is written anew by ``python tests/cli/test_pages.py``; a command line
-behind it becomes another page.
+behind it becomes another page. `pages.txt` reads as a terminal does: ``$`` and the command, what it prints, its status
+where that is not 0.
 """
 
 import atexit
-import json
 import re
 import shlex
 import shutil
@@ -19,10 +19,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-PAGES = Path(__file__).with_name("pages.json")
+PAGES = Path(__file__).with_name("pages.txt")
 SECONDS = re.compile(r"[\d.]+(?=(?: s| +)?$)", re.M)  # of `run`, at the end of a line
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-KEPT = json.loads(PAGES.read_text(encoding="utf-8"))  # command line -> status and lines of output and error
+KEPT = dict(page.split("\n", 1) for page in re.split(r"(?:\A|\n)\$ ", PAGES.read_text(encoding="utf-8"))[1:])
 COMMANDS = {name: list(lines) for name, lines in groupby(sorted(KEPT), key=lambda line: line.split()[0])}
 
 
@@ -102,8 +102,8 @@ def desk() -> Path:
     return place
 
 
-def page(line: str) -> list[object]:
-    """Return status, and lines of output and error, of a command line."""
+def page(line: str) -> str:
+    """Return what a command line prints on output and error, and its status where that is not 0."""
     from conftest import typed
 
     with pytest.MonkeyPatch.context() as patch:
@@ -112,19 +112,20 @@ def page(line: str) -> list[object]:
     printed = done.stdout + done.stderr
     if line.startswith("run "):
         printed = SECONDS.sub("0", printed)
-    return [done.returncode, *printed.splitlines()]
+    lines = printed.splitlines() + [f"[exit {done.returncode}]"] * bool(done.returncode)
+    return "".join(f"{line}\n" for line in lines)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_prints_what_it_did(command: str) -> None:
     for line in COMMANDS[command]:
-        printed, kept = ("\n".join(map(str, lines)) for lines in (page(line), KEPT[line]))
+        printed, kept = page(line), KEPT[line]
         assert NUMBER.sub("#", printed) == NUMBER.sub("#", kept), line
-        numbers = [[float(text) for text in NUMBER.findall(lines)] for lines in (printed, kept)]
+        numbers = [[float(text) for text in NUMBER.findall(text)] for text in (printed, kept)]
         assert numbers[0] == pytest.approx(numbers[1], rel=2e-3, abs=1e-9), line
 
 
 if __name__ == "__main__":
     sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
-    pages = {line: page(line) for line in [*KEPT, *sys.argv[1:]]}
-    PAGES.write_text(json.dumps(pages, indent=1) + "\n", encoding="utf-8")
+    pages = [f"$ {line}\n{page(line)}" for line in [*KEPT, *sys.argv[1:]]]
+    PAGES.write_text("\n".join(pages), encoding="utf-8")
