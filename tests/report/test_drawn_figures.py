@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
-from oracles.made_cases import line_in, lines_of, made_case, made_group, made_history, names_at, rules_of
+from oracles.made_cases import line_in, lines_of, made_history, names_at, rules_of
 
 from validation.report.chapters import ledger
 from validation.report.figures import curves, motion
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.runs.results import Row
 from validation.scenes.scene import load_scene
-from validation.studies.paper import chapter as paper
-from validation.studies.paper.chapter import PaperFigure, figure_block
 from validation.studies.work_precision import figure as cost
 from validation.studies.work_precision.points import Point
 
@@ -100,51 +96,6 @@ def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_co
         assert filled.get_xdata()[0] == (rounding if part == "code" else displacement)
         assert round(filled.get_ydata()[0]) == 0  # the second line of the ledger, from above
         assert (None if hollow is None else hollow.get_xdata()[0]) == pressure
-
-
-# ---- the paper's figures ------------------------------------------------------------------------------------------
-
-
-def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last(
-    drawn: dict[str, Figure], tmp_path: Path
-) -> None:
-    steps = np.arange(1, 101)  # at step 50: 1 and 0 mm; at 100: 2 and -2 mm
-    histories = {"dda": made_history(1e-3, steps / 5e4), "bar": made_history(1e-3, 2e-3 - steps / 2.5e4)}
-    rows = {"dda": {"displacement.static": 5e-4, "displacement.settling_step": 30.0}}
-    group = made_group(made_case(load_scene("figures-3-4").expand()[0], rows, histories))
-    figure_block(PaperFigure(3, "s", "displacement", 50, "Caption"), group, tmp_path)
-    (axes,) = drawn["figure-3.svg"].axes
-    assert names_at(axes) == {"dda": (pytest.approx(1.0), color("dda")), "bar": (pytest.approx(0.0), color("bar"))}
-    ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
-    assert all(float(label.get_text()) == tick for tick, label in ticks)
-    for name, history in histories.items():
-        (line,) = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
-        assert np.array_equal(line[0], steps[:50]) and np.allclose(line[1], 1e3 * history.displacement[:50])
-    assert rules_of(axes, to_hex(curves.GREY)) == ([pytest.approx(0.5)], [30.0])
-    low, high = axes.get_ylim()  # of what is drawn: later steps do not count
-    assert -0.2 < low < 0 and 1.96 < high < 2.2
-    assert "30 steps" in [text.get_text() for text in axes.texts]
-
-
-def test_figure_1_draws_radii_solid_and_what_is_printed_dashed() -> None:
-    omega = np.geomspace(0.1, 100, 30)
-    true, printed = np.linspace(1.0, 0.9, 30), np.where(omega > 4, 0.2, np.linspace(1.0, 0.9, 30))
-    data = {"omega": omega, "schemes": {name: {"radius": true - k / 10, "printed": printed - k / 10}
-            for k, name in enumerate(("constant (1/2, 1)", "b", "c", "d"))}}  # fmt: skip
-    (axes,) = chart_figure([paper.radius_panel(data, [(2.0, 0.5), (20.0, 0.7)])]).axes
-    ends = names_at(axes)
-    assert [ends[name][1] for name in "bcd"] == list(paper.SCHEME_COLORS[1:])
-    assert ends["constant (1/2, 1)"][0] == pytest.approx(0.9, abs=0.05)
-    assert ends["constant: √(1+h), as printed"][0] == pytest.approx(0.2, abs=0.05)
-    first = to_hex(paper.SCHEME_COLORS[0])
-    curves_drawn = {line.get_linestyle(): line for line in axes.lines if to_hex(line.get_color()) == first
-                    and line.get_transform() == axes.transData}  # fmt: skip
-    assert np.array_equal(curves_drawn["-"].get_ydata(), true)
-    assert np.array_equal(curves_drawn["--"].get_xdata(), omega[omega > 4])
-    assert np.all(curves_drawn["--"].get_ydata() == 0.2)
-    (points,) = [line for line in axes.lines if line.get_marker() == "o"]
-    assert (list(points.get_xdata()), list(points.get_ydata())) == ([2.0, 20.0], [0.5, 0.7])
-    assert to_hex(points.get_markeredgecolor()) == color("dda")
 
 
 # ---- error against cost -------------------------------------------------------------------------------------------

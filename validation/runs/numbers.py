@@ -160,6 +160,7 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "decade": lambda value, _: _decade(value),  # on an axis
     "digits": lambda error, _: f"{math.floor(min(16.0, max(0.0, -math.log10(max(error, 1e-16)))))}",  # that are right
     "three": lambda value, _: f"{value:.3g}",
+    "measured": lambda value, digits: bounded(value, short(value, digits)),
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
 }

@@ -208,9 +208,16 @@ class Register:
         """Return the rows of the register."""
         return tuple(claim.row() for claim in self.claims)
 
-    def data(self, *fields: str) -> dict[str, Any]:
-        """Return fields of the claims, for the chapter."""
-        return {"claims": [{name: getattr(claim, name) for name in fields} for claim in self.claims]}
+    def words(self) -> dict[str, Any]:
+        """Return what each claim says, why it has its verdict and on which condition, and which are misprints."""
+        return {
+            "statement": {claim.id: f"{claim.says} ({claim.place})" for claim in self.claims},
+            "why": {claim.id: f"{claim.why[:1].upper()}{claim.why[1:]}." for claim in self.claims},
+            "condition": {claim.id: f" Condition: {claim.condition}." for claim in self.claims},
+            "statements": [claim.id for claim in self.claims if claim.id.startswith("C")],
+            "slips": [claim.id for claim in self.claims if claim.id.startswith("S")],
+            "misprints": [claim.id for claim in self.claims if claim.misprint],
+        }
 
 
 def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -58,7 +58,7 @@ class CaseColumn:
         """Return a value as a cell: a number, its word, or a dash where there is none."""
         if value is None or isinstance(value, str):
             return cell(value)
-        number = value * self.factor
+        number = value if self.factor == 1 else value * self.factor  # a count stays one: its zero is no rounding
         if self.decimals is None:
             return FORMS[self.form](number, self.digits)
         return decimal(number, self.decimals)
@@ -140,7 +140,8 @@ class Description:
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
         """Return a panel with these lines; `parts` stand beside or in place of the described ones."""
         described = {"title": "", "x_label": "", "y_label": ""} | self._data["panel"][name] | parts
-        described.pop("lines", None)
+        for query in ("lines", "level_of", "level_factor", "mark_of"):
+            described.pop(query, None)
         for axis in ("x_ticks", "y_ticks"):
             if isinstance(described.get(axis), list):
                 described[axis] = dict(described[axis])

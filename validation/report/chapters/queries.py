@@ -4,7 +4,8 @@ A *line* of the table is a case, one solver of a case, or a derived row. A query
 
     of = ["slope-*"]                names of scenes, or of what owns derived rows, in this order
     scene = "methods-locked-{method}"   or scenes of such names, whose words become expressions; or a list of these
-    where = { "time.delta" = 0.5 }  what must stand in an expression, or in one of a list
+    where = { "time.delta" = 0.5 }  what must stand in an expression, or in one of a list; { data = "x" } is a list
+                                    that the study keeps
     row = "dda at {blocks} blocks"  the derived rows of such names, whose words become expressions
     metric = "piece {piece}"        of these the metrics of such names, a line each: "piece" and "value" are its words
     by = "solver"                   a line for each solver of a case, or for each "gate", with the words of its verdict
@@ -203,6 +204,8 @@ class StudyTable:
 
     def _meets(self, line: Line, where: Mapping[str, Any]) -> bool:
         for expression, wanted in where.items():
+            if isinstance(wanted, dict):
+                wanted = self.data.get(wanted["data"], [])
             if not _is_among(self.value(line, expression), wanted if isinstance(wanted, list) else [wanted]):
                 return False
         return True

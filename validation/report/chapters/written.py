@@ -19,8 +19,8 @@ and ``when``, a list of scenes that must be there. `validation.report.chapters.q
     [text]          paragraphs and captions; ``{name}`` stands for a number or a list
     [number.NAME]   a query, its ``value``, an expression, and how it is written
     [list.NAME]     a query, ``group_by``, the numbers of each line, its ``text``, what joins them
-    [table.NAME]    a query, ``group_by``, columns; caption, notes, dense, ruled
-    [figure.NAME]   panels, file, caption
+    [table.NAME]    a query, ``group_by``, columns, one of which may be a ``list``; caption, notes, dense, ruled
+    [figure.NAME]   panels, file, caption; or ``each``, a figure of the histories of a scene with a panel a case
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
     [picture.NAME]  file, caption, height in mm; ``scenes``, the title of each
     [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
@@ -169,16 +169,18 @@ class WrittenChapter:
         if value is None or (isinstance(value, str) and value not in column.get("words", {})):
             return value
         text = _written(column, value)
-        return text if text == number.get("zero_text") else number.get("pattern", "{}").format(text)
+        is_whole = text == number.get("zero_text") or _key(value) in column.get("words", {})
+        return text if is_whole else number.get("pattern", "{}").format(text)
 
     def _with_words(self, column: Query) -> Query:
         """Return a column whose words, where it says ``words_of``, are those that the study keeps under that name."""
         return column | {"words": self.table.data.get(column["words_of"], {})} if "words_of" in column else column
 
-    def _list(self, described: Query) -> str | None:
-        """Return the lines of a list as one text: each with its numbers, those that have them all."""
+    def _list(self, described: Query, lines: Sequence[Line] | None = None) -> str | None:
+        """Return the lines of a list, or these, as one text: each with its numbers, those that have them all."""
         texts = []
-        for group in self.table.grouped(self.table.lines(described), described.get("group_by", ())):
+        asked = self.table.lines(described) if lines is None else lines
+        for group in self.table.grouped(asked, described.get("group_by", ())):
             values = {name: self._number(number, group) for name, number in described["numbers"].items()}
             if None not in values.values():
                 texts.append(described["text"].format_map(values))
@@ -210,11 +212,13 @@ class WrittenChapter:
         return [table([_column(column).head for column in columns], rows, caption, **look)]
 
     def _cell(self, column: Query, group: Sequence[Line]) -> str:
+        if "list" in column:
+            return self._list(self.page.described("list", column["list"]), group) or DASH
         column = self._with_words(column)
         value = self.table.picked(group, column)
         text = _written(column, value)
         if value is None:
-            return text
+            return str(column.get("missing", text))
         others = [self._cell(one, group) for one in column.get("also", ())]
         pattern: str = column.get("pattern", "{}")
         return pattern.format(text, *others)
@@ -227,6 +231,9 @@ class WrittenChapter:
 
     def _figure(self, name: str) -> list[FigureBlock]:
         described = self.page.described("figure", name)
+        if "each" in described:
+            figures = (self._figure_of_cases(name, described | entry) for entry in described["each"])
+            return list(itertools.chain.from_iterable(figures))
         panels = []
         for panel_name in described["panels"]:
             panel = self.page.described("panel", panel_name)
@@ -237,6 +244,35 @@ class WrittenChapter:
             return []
         caption = self._caption(described["caption"])
         return [self.page.figure(name, panels, self.directory, described.get("scene", ""), whole_caption=caption)]
+
+    def _figure_of_cases(self, name: str, described: Query) -> list[FigureBlock]:
+        """Return a figure of histories over time steps, with a panel for each case of a scene."""
+        panel_name = described["panel"]
+        panel = self.page.described("panel", panel_name)
+        panels = []
+        for case in self.table.lines({"of": described["of"]}):
+            drawn: list[ChartLine] = []
+            for line in panel["lines"]:
+                where = line.get("where", {}) | {"case": self.table.value(case, "case")}
+                own = {"of": described["of"], "where": where, "x_over": "time.step", "x_end": described["last"] + 0.5}
+                drawn += self._lines(line | own)
+            level = panel["level_factor"] * (self.table.number(case, panel["level_of"]) or 0.0)
+            settled = self.table.number(case, panel["mark_of"]) if "mark_of" in panel else None
+            parts: dict[str, Any] = {
+                "title": self.table.value(case, "label"),
+                "x_range": (0.0, float(described["last"])),
+                "x_ticks": described["x_ticks"],
+                "levels": {"": level},
+                "marks": {} if settled is None else {f"{settled:.0f} steps": settled},
+            }
+            panels.append(self.page.panel(panel_name, drawn, **parts))
+        if not any(panel.lines for panel in panels):
+            return []
+        remarks = [self.page.text("marked")] if any(panel.marks for panel in panels) else []
+        if self.table.lines({"of": described["of"], "where": described["without"]}):
+            remarks.append(self.page.text("without"))
+        values = {key: described[key] for key in ("number", "words")} | {"remarks": "".join(remarks)}
+        return [self.page.figure(name, panels, self.directory, **values)]
 
     def _picture(self, name: str) -> Blocks:
         """Return blocks in the plane as they are cut, of the first case of each scene."""

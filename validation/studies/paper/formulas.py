@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,13 +10,15 @@ from typing import Any
 import numpy as np
 
 from dda.scheme.spectral import spectral_radius
-from validation.engine.finished import Derived
+from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
+from validation.metrics.values import as_number
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
 from validation.studies.paper import open_close, register, slips
-from validation.suite.bands import short
+from validation.suite.bands import cases, short
 from validation.suite.claims import Register, read_claims
 
-CHAPTER_FIELDS = ("id", "place", "says", "why", "condition", "misprint")  # of a claim
 CLAIMS = read_claims(
     Path(__file__).with_name("claims.toml"),
     register.TESTS | open_close.TESTS | slips.TESTS,
@@ -29,6 +32,9 @@ CLAIMS_OF_THE_PAPER = Register(
     "run. Numbers below 1e-12 are written as 0.",
     claims=CLAIMS,
 )
+COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
+OMEGA = (0.1, 100.0)  # w dt from and to which Figure 1 is drawn
+MODES = ("mode1", "contact")
 FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
     "average acceleration (1/4, 1/2)": (0.25, 0.5),
@@ -39,14 +45,22 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 
 
 def data() -> Mapping[str, Any]:
-    """Return the claims, and Figure 1: spectral radius over w dt, and the square root of 1 + h that the paper draws."""
-    omega = np.geomspace(0.1, 100, 241)
-    curves = {}
+    """Return the words of the claims, and Figure 1: spectral radius over w dt, and the root of 1 + h that is printed.
+
+    What is printed departs from the radius where the roots are real; only that part is kept.
+    """
+    omega = np.geomspace(*OMEGA, 241)
+    schemes = []
+    printed_curves = []
     for name, (alpha, delta) in SCHEMES.items():
         printed = np.sqrt(np.abs(1 + (0.5 - delta) * omega**2 / (1 + alpha * omega**2)))
         radius = spectral_radius(omega, alpha, delta, 1.0)
-        curves[name] = {"radius": short(radius, 6), "printed": short(printed, 6)}
-    return {"omega": short(omega, 6), "schemes": curves} | CLAIMS_OF_THE_PAPER.data(*CHAPTER_FIELDS)
+        departs = np.abs(printed - radius) > 1e-6
+        schemes.append({"name": name, "omega": short(omega, 6), "radius": short(radius, 6)})
+        if departs.any():
+            curve = {"omega": short(omega[departs], 6), "radius": short(printed[departs], 6)}
+            printed_curves.append({"name": name, "scheme": name.split(" (")[0]} | curve)
+    return {"schemes": schemes, "printed": printed_curves} | CLAIMS_OF_THE_PAPER.words()
 
 
 def gates() -> tuple[Gate, ...]:
@@ -55,5 +69,30 @@ def gates() -> tuple[Gate, ...]:
 
 
 def rows() -> tuple[Derived, ...]:
-    """Return the rows of the claims."""
-    return CLAIMS_OF_THE_PAPER.rows()
+    """Return the rows of the claims, and what Figures 1 and 3 to 9 draw beside histories and metrics."""
+    of_figures = (_period(case) for case in cases(*FIGURES))
+    of_map = (_angles(case) for case in cases("damping-map"))
+    return (*CLAIMS_OF_THE_PAPER.rows(), *of_figures, *of_map)
+
+
+def _period(case: Scene) -> Derived:
+    """Return the row of the steps in a period of the bar, and whether the continuum is a curve with so few."""
+
+    def compute(finished: Finished) -> Mapping[str, Value]:
+        frequency = as_number(finished.rows[case.name, "bar"].metrics["mode1.frequency"])
+        steps = 2 * math.pi / (frequency * case.time.step)
+        return {"steps": steps, "continuum": "curve" if steps >= COARSE else "none"}
+
+    return Derived(case.name, "period", ((case.name, "bar"),), compute, ("mode1.frequency",))
+
+
+def _angles(case: Scene) -> Derived:
+    """Return the row of w dt of both modes of the block, as far as Figure 1 reaches."""
+
+    def compute(finished: Finished) -> Mapping[str, Value]:
+        metrics = finished.rows[case.name, "dda"].metrics
+        frequencies = {mode: metrics.get(f"{mode}.frequency") for mode in MODES}
+        angles = {mode: w * case.time.step for mode, w in frequencies.items() if isinstance(w, float)}
+        return {mode: angle for mode, angle in angles.items() if OMEGA[0] <= angle <= OMEGA[1]}
+
+    return Derived(case.name, "w dt", ((case.name, "dda"),), compute, tuple(f"{mode}.frequency" for mode in MODES))
