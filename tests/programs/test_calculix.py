@@ -54,8 +54,8 @@ def test_rows_with_three_digits_of_an_exponent_are_read():
 def test_a_column_is_cut_at_layers_joints_and_heights():
     column = column_scene(joint=[{"height": 6.0, "stiffness": 1e9}]).column
     parts = parts_of(column)
-    assert [part.bottom for part in parts] == [0.0, 3.5, 6.0, 8.5]
-    assert [part.spring for part in parts] == [None, None, 1e9, None]
+    assert [part.stretch.bottom for part in parts] == [0.0, 3.5, 6.0, 8.5]
+    assert [part.stretch.spring for part in parts] == [None, None, 1e9, None]
     assert parts[1].levels[0] == parts[0].levels[-1] and parts[2].levels[0] == parts[1].levels[-1] + 1
 
 

@@ -23,11 +23,8 @@ COLUMNS = {"displacement", "contact_pressure", "horizontal_displacement", "rotat
 
 def _rectangle(block: BlockSection) -> tuple[float, float]:
     """Return width and height of an upright rectangle that stands on its base edge [m]."""
-    (x0, y0), (x1, y1) = block.edge(block.base)
-    (x2, y2), (x3, y3) = block.edge(block.top)
-    upright = len(block.outline) == 4 and x0 == x3 < x1 == x2 and y0 == y1 < y2 == y3
-    refuse(not upright, "the outline is no upright rectangle on its base, and the element is one")
-    return x1 - x0, y2 - y1
+    refuse(block.rectangle is None, "the outline is no upright rectangle on its base, and the element is one")
+    return block.rectangle or (0.0, 0.0)
 
 
 def _constants(block: BlockSection) -> list[str]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.calculix_deck import Deck, amplitude, node, number, refuse, row
+from peers.columns import NEAR, Stretch, stretches
 
 if TYPE_CHECKING:
     from peers.calculix_deck import Array
@@ -19,21 +19,16 @@ if TYPE_CHECKING:
 
 ELEMENTS = 60  # shared among the parts of a column by the time that a wave takes through them
 FEWEST = 2  # elements of a part, whose three levels give the stress at its ends
-NEAR = 1e-9  # of the height, within which two levels are one
 SECTION = ((0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0))  # m, of 1 m2: x and z of the nodes of a level
 COLUMNS = ("displacement", "contact_pressure", "displacement_", "stress_")
 
 
 @dataclass(frozen=True)
 class Part:
-    """A stretch of a layer without joints or observed heights inside."""
+    """A stretch of a column and the numbers of its levels from below."""
 
-    bottom: float  # [m]
-    top: float  # [m]
-    layer: int  # from the base upwards
-    modulus: float  # of the motion [Pa]
-    levels: tuple[int, ...]  # numbers of its levels from below
-    spring: float | None  # Pa/m, of a joint below it
+    stretch: Stretch
+    levels: tuple[int, ...]
 
 
 def check_column(scene: Scene) -> ColumnSection:
@@ -53,27 +48,14 @@ def check_column(scene: Scene) -> ColumnSection:
 
 def parts_of(column: ColumnSection) -> list[Part]:
     """Cut a column at its layers, joints and observed heights."""
-    tops = np.cumsum([layer.thickness for layer in column.layer])
-    springs = {joint.height: joint.stiffness for joint in column.springs}
-    near = NEAR * column.height
-    cuts: list[float] = []
-    for level in sorted([0.0, *tops.tolist(), *springs, *column.heights]):
-        if not cuts or level > cuts[-1] + near:
-            cuts.append(float(level))
-    which = [int(np.searchsorted(tops, (a + b) / 2)) for a, b in itertools.pairwise(cuts)]
-    layers = [column.layer[k] for k in which]
-    moduli = [column.modulus(layer) for layer in layers]
-    pairs = list(itertools.pairwise(cuts))
-    slowness = [math.sqrt(layer.density / m) for layer, m in zip(layers, moduli, strict=True)]
-    times = [(b - a) * s for (a, b), s in zip(pairs, slowness, strict=True)]
+    cut = stretches(column, column.heights)
+    passing = sum(stretch.passing for stretch in cut)
     parts: list[Part] = []
     last = 0
-    for (a, b), k, m, time in zip(pairs, which, moduli, times, strict=True):
-        spring = next((s for height, s in springs.items() if abs(height - a) <= near), None)
-        first = last + 1 if spring is not None or not parts else last
-        count = max(FEWEST, round(ELEMENTS * time / sum(times)))
-        last = first + count
-        parts.append(Part(a, b, k, m, tuple(range(first, last + 1)), spring))
+    for stretch in cut:
+        first = last + 1 if stretch.spring is not None or not parts else last
+        last = first + max(FEWEST, round(ELEMENTS * stretch.passing / passing))
+        parts.append(Part(stretch, tuple(range(first, last + 1))))
     return parts
 
 
@@ -89,7 +71,7 @@ def column_deck(scene: Scene, sub: int) -> Deck:
     parts, dof = parts_of(column), 2 if column.motion == "pressure" else 1
     levels = [level for part in parts for level in part.levels]
     deck = Deck(t.step, t.steps, sub, printed=[_nodes(level)[0] for level in sorted(set(levels))])
-    _stack(column, parts, deck)
+    _stack(parts, deck)
     instants = t.step / sub * np.arange(t.steps * sub + 1)
     drive = motion_at(scene, instants)
     deck.model += ["*BOUNDARY", *(f"STACK,{fixed},{fixed}" for fixed in (1, 2, 3) if fixed != dof)]
@@ -100,21 +82,20 @@ def column_deck(scene: Scene, sub: int) -> Deck:
     return deck
 
 
-def _stack(column: ColumnSection, parts: list[Part], deck: Deck) -> None:
+def _stack(parts: list[Part], deck: Deck) -> None:
     """Add nodes, elements and materials."""
     deck.model += ["*NODE,NSET=STACK"]
-    placed = {
-        level: height
-        for part in parts
-        for level, height in zip(part.levels, np.linspace(part.bottom, part.top, len(part.levels)), strict=True)
-    }
+    placed: dict[int, float] = {}
+    for part in parts:
+        ends = part.stretch.bottom, part.stretch.top
+        placed |= zip(part.levels, np.linspace(*ends, len(part.levels)), strict=True)
     for level, height in placed.items():
         deck.model += [node(n, x, height, z) for n, (x, z) in zip(_nodes(level), SECTION, strict=True)]
     for number_, part in enumerate(parts):
         deck.model += [f"*ELEMENT,TYPE=C3D8,ELSET=PART{number_}"]
         for low, high in itertools.pairwise(part.levels):
             deck.model += [",".join(map(str, [low, *_nodes(low), *_nodes(high)]))]
-        layer = column.layer[part.layer]
+        layer = part.stretch.layer
         deck.model += [f"*MATERIAL,NAME=ROCK{number_}", "*ELASTIC", row(layer.young, layer.poisson)]
         deck.model += ["*DENSITY", number(layer.density), f"*SOLID SECTION,ELSET=PART{number_},MATERIAL=ROCK{number_}"]
     deck.model += ["*ELSET,ELSET=ALL", *(f"PART{k}" for k in range(len(parts)))]
@@ -127,17 +108,17 @@ def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instan
     shift = (0.0, -1.0) if dof == 2 else (-1.0, 0.0)
     deck.model += [node(n, x + shift[0], shift[1], z) for n, (x, z) in zip(_nodes(0), SECTION, strict=True)]
     for k, part in enumerate(parts):
-        if part.spring is not None:
+        if part.stretch.spring is not None:
             below = _nodes(parts[k - 1].levels[-1] if k else 0)
             deck.model += [f"*ELEMENT,TYPE=SPRING2,ELSET=JOINT{k}"]
             for upper, lower in zip(_nodes(part.levels[0]), below, strict=True):
                 element += 1
                 deck.model += [f"{element},{upper},{lower}"]
-            deck.model += [f"*SPRING,ELSET=JOINT{k}", f"{dof},{dof}", number(part.spring / 4)]
+            deck.model += [f"*SPRING,ELSET=JOINT{k}", f"{dof},{dof}", number(part.stretch.spring / 4)]
     still = [f"FEET,{fixed},{fixed}" for fixed in (1, 2, 3)]
     if column.impedance is not None:
         _transmit(column.impedance, lowest, element, deck, dof, instants, drive)
-    elif parts[0].spring is not None:
+    elif parts[0].stretch.spring is not None:
         still.pop(dof - 1)
         deck.model += amplitude("FOOT", instants, drive.displacement)
         deck.loads += ["*BOUNDARY,AMPLITUDE=FOOT", f"FEET,{dof},{dof},1."]
@@ -175,12 +156,12 @@ def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
     parts, t = parts_of(column), scene.time
     u = found[:, :, 1 if column.motion == "pressure" else 0]
     drive = motion_at(scene, t.step * np.arange(1, t.steps + 1))
-    if column.impedance is None and parts[0].spring is None:  # seen from the base
+    if column.impedance is None and parts[0].stretch.spring is None:  # seen from the base
         u = u + drive.displacement[:, None]
     first = parts[0].levels[0]
     columns = {"displacement": u[:, -1], "contact_pressure": _stress(parts[0], u, first, below=False)}
     for k, height in enumerate(column.heights, start=1):
-        part = next(p for p in parts if p.top >= height - NEAR * column.height)
+        part = next(p for p in parts if p.stretch.top >= height - NEAR * column.height)
         below = height > NEAR * column.height
         columns[f"displacement_{k}"] = u[:, part.levels[-1 if below else 0] - first]
         columns[f"stress_{k}"] = _stress(part, u, first, below)
@@ -189,8 +170,8 @@ def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
 
 def _stress(part: Part, u: Array, first: int, below: bool) -> Array:
     """Return the stress at the upper or lower end of a part from its three levels there [Pa], compression positive."""
-    h = (part.top - part.bottom) / (len(part.levels) - 1)
+    h = part.stretch.length / (len(part.levels) - 1)
     a, b, c = (part.levels[k] - first for k in ((-1, -2, -3) if below else (0, 1, 2)))
     slope = (3 * u[:, a] - 4 * u[:, b] + u[:, c]) / (2 * h)
-    found: Array = part.modulus * (-slope if below else slope)
+    found: Array = part.stretch.modulus * (-slope if below else slope)
     return found

@@ -41,12 +41,9 @@ TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
 
 def sizes(scene: Scene) -> tuple[float, float]:
     """Return width and height of an upright rectangle on its lower edge [m]; other outlines are refused."""
-    points, ends = np.asarray(scene.block.outline), (scene.block.base, scene.block.top)
-    low, high = points.min(axis=0), points.max(axis=0)
-    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
-    other = points.shape != (4, 2) or ends != (0, 2) or not np.array_equal(points, corners)
-    refuse("the block is no upright rectangle on its lower edge, and its mass matrix not diagonal", where=other)
-    return float(high[0] - low[0]), float(high[1] - low[1])
+    size = scene.block.rectangle
+    refuse("the block is no upright rectangle on its lower edge, and its mass matrix not diagonal", where=size is None)
+    return size or (0.0, 0.0)
 
 
 def loads(scene: Scene) -> tuple[float, float, float]:

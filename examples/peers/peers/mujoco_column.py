@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
+from peers.columns import NEAR, Stretch, stretches
 from peers.mujoco_model import MOST, Columns, March, Network, Spring, parts, refuse
 from validation.runs.history import Array
 from validation.scenes.column import ColumnSection
@@ -16,8 +15,6 @@ from validation.scenes.scene import Scene
 
 CELLS, MOST_CELLS = 8, 2000  # cells in what a wave passes in a step, and all masses of a column
 RESOLVED = 0.7  # w dt of RK4
-NEAR = 1e-9  # of a column's height: what counts as one height
-Segment = tuple[float, float, float, float, float]  # ends [m], density, modulus, length of a cell [m]
 
 
 class Chain:
@@ -34,17 +31,22 @@ class Chain:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        self.column, self.joints = _column(scene), _joints(scene)
+        self.column = _column(scene)
+        cut = stretches(self.column)
         self.masses, self.heights, self.springs = list[float](), list[float](), list[Spring]()
         self.ground, self.carried = 0.0, 0.0
-        self._stand()
-        for segment in _segments(scene, self.joints, default=default):
-            self._cross(segment[0])
-            self._pile(segment)
+        self._stand(cut[0].spring)
+        for number, one in enumerate(cut):
+            if number and one.spring is not None:  # the next mass stands at the same height
+                self._link(one.spring)
+                self.masses.append(0.0)
+                self.heights.append(self.heights[-1])
+            passed = math.sqrt(one.modulus / one.layer.density) * scene.time.step
+            self._pile(one, one.layer.thickness / one.layer.blocks if default else passed / CELLS)
 
-    def _stand(self) -> None:
+    def _stand(self, foot: float | None) -> None:
         """Place a mass on the springs, or on the dampers, of a base that is not rigid."""
-        foot, impedance = self._joint(0.0), self.column.impedance
+        impedance = self.column.impedance
         if foot is not None:
             self.ground = foot
             self.springs.append(Spring({"0": 1.0}, foot))
@@ -55,24 +57,12 @@ class Chain:
         self.masses.append(0.0)
         self.heights.append(0.0)
 
-    def _joint(self, level: float) -> float | None:
-        near = [k for height, k in self.joints.items() if abs(height - level) <= NEAR * self.column.height]
-        return near[0] if near else None
-
-    def _cross(self, level: float) -> None:
-        """Go over a joint, if there is one above the base: the next mass stands at the same height."""
-        stiffness = self._joint(level)
-        if stiffness is not None and level > 0:
-            self._link(stiffness)
-            self.masses.append(0.0)
-            self.heights.append(self.heights[-1])
-
-    def _pile(self, segment: Segment) -> None:
+    def _pile(self, one: Stretch, cell: float) -> None:
         """Set cells upon each other."""
-        low, high, density, modulus, cell = segment
-        count = max(math.ceil((high - low) / cell * (1 - NEAR)), 1)
+        low, length = one.bottom, one.length
+        count = max(math.ceil(length / cell * (1 - NEAR)), 1)
         refuse(f"it would take more than {MOST_CELLS} masses", where=len(self.masses) + count > MOST_CELLS)
-        half, stiffness = density * (high - low) / count / 2, modulus * count / (high - low)
+        half, stiffness = one.layer.density * length / count / 2, one.modulus * count / length
         for number in range(count):
             if self.masses:
                 self.masses[-1] += half
@@ -81,7 +71,7 @@ class Chain:
                 self.ground, self.carried = stiffness, half
                 self.springs.append(Spring({"0": 1.0}, stiffness))
             self.masses.append(half)
-            self.heights.append(low + (high - low) * (number + 1) / count)
+            self.heights.append(low + length * (number + 1) / count)
 
     def _link(self, stiffness: float) -> None:
         upper = len(self.masses)
@@ -97,33 +87,16 @@ class Chain:
 
 
 def _column(scene: Scene) -> ColumnSection:
-    assert scene.column is not None
-    return scene.column
-
-
-def _joints(scene: Scene) -> dict[float, float]:
-    """Return the joints, heights to stiffnesses, springs of the base included; what a chain has not is refused."""
-    c = _column(scene)
+    """Return the column of a scene; one with joints that a chain has not is refused."""
+    c = scene.column
+    assert c is not None
     heights = sorted(spring.height for spring in c.springs)
     near = NEAR * c.height
     refuse("a joint on the top carries nothing", where=any(height >= c.height - near for height in heights))
     below = c.base == "transmitting" and any(height <= near for height in heights)
     refuse("a joint between column and transmitting base has no mass below it", where=below)
     refuse("two joints at one height", where=any(np.diff(heights) <= near))
-    return {spring.height: spring.stiffness for spring in c.springs}
-
-
-def _segments(scene: Scene, joints: dict[float, float], *, default: bool) -> Iterator[Segment]:
-    """Yield what lies between layers' faces and joints; by default a cell is a block of DDA."""
-    c, level = _column(scene), 0.0
-    for layer in c.layer:
-        end, modulus, near = level + layer.thickness, c.modulus(layer), NEAR * c.height
-        passed = math.sqrt(modulus / layer.density) * scene.time.step
-        cell = layer.thickness / layer.blocks if default else passed / CELLS
-        ends = [level, *sorted(height for height in joints if level + near < height < end - near), end]
-        for low, high in itertools.pairwise(ends):
-            yield low, high, layer.density, modulus, cell
-        level = end
+    return c
 
 
 def column(scene: Scene, *, default: bool) -> Columns:

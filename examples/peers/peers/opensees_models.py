@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from peers.columns import NEAR, Stretch, stretches
 from validation.runs.history import Array
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
@@ -30,7 +30,6 @@ GROUND = 10  # added to a node: what it stands on
 SHARES = {LEFT: 0.25, RIGHT: 0.25, TOP: 0.5}  # of the centroid
 SPRINGS = {LEFT: 4, RIGHT: 5}  # elements below the ends of the base
 GLUED = 1e9  # coefficient of friction of a corner that never slips
-NEAR = 1e-9  # of a column's height, within which two levels are one
 FAR = 1_000_000  # from here on are the numbers of springs and held nodes of a column
 
 Look = Callable[[], dict[str, float]]  # the columns of a history at this instant
@@ -156,55 +155,33 @@ def _turned(scene: Scene, at: dict[int, Array], moved: dict[int, Array]) -> floa
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a column between two levels at which its matter or its joints change.
+    """A stretch of a column and the trusses in it."""
 
-    Attributes
-    ----------
-    bottom, top
-        Levels [m].
-    density
-        [kg/m3].
-    modulus
-        Of the wave [Pa].
-    elements
-        Trusses in it.
-    """
-
-    bottom: float
-    top: float
-    density: float
-    modulus: float
+    stretch: Stretch
     elements: int
 
     @property
     def levels(self) -> Array:
         """Where its nodes are [m]."""
-        return np.linspace(self.bottom, self.top, self.elements + 1)
+        return np.linspace(self.stretch.bottom, self.stretch.top, self.elements + 1)
 
 
 def parts(scene: Scene, plan: Plan) -> list[Part]:
     """Return the parts of a column from the base upwards."""
     found: list[Part] = []
-    bottom, inner = 0.0, scene.time.step / plan.count
-    joints = [joint.height for joint in scene.column.springs]
-    for layer in scene.column.layer:
-        top, modulus = bottom + layer.thickness, scene.column.modulus(layer)
-        near = NEAR * scene.column.height
-        cuts = [bottom, *sorted(j for j in joints if bottom + near < j < top - near), top]
-        for one, next_one in pairwise(cuts):
-            length = layer.thickness / layer.blocks
-            if plan.chosen:
-                length = min(length, math.sqrt(2 * modulus / layer.density) * inner)
-            count = math.ceil((next_one - one) / length * (1 - NEAR))
-            found.append(Part(one, next_one, layer.density, modulus, max(1, count)))
-        bottom = top
+    inner = scene.time.step / plan.count
+    for one in stretches(scene.column):
+        length = one.layer.thickness / one.layer.blocks
+        if plan.chosen:
+            length = min(length, math.sqrt(2 * one.modulus / one.layer.density) * inner)
+        found.append(Part(one, max(1, math.ceil(one.length / length * (1 - NEAR)))))
     return found
 
 
 def column(ops: Any, scene: Scene, plan: Plan) -> Look:
     """Build the column of a scene; return how it is looked at."""
     ops.model("basic", "-ndm", 1, "-ndf", 1)
-    levels, nodes = _trusses(ops, scene, parts(scene, plan), consistent=plan.chosen)
+    levels, nodes = _trusses(ops, parts(scene, plan), consistent=plan.chosen)
     foot = _foot(ops, scene, nodes[0])
     inner = scene.time.step / plan.count
     instants = inner * np.arange(scene.time.steps * plan.count + 2)
@@ -230,20 +207,18 @@ def column(ops: Any, scene: Scene, plan: Plan) -> Look:
     return look
 
 
-def _trusses(ops: Any, scene: Scene, made_of: list[Part], consistent: bool) -> tuple[Array, list[int]]:
+def _trusses(ops: Any, made_of: list[Part], consistent: bool) -> tuple[Array, list[int]]:
     """Stack trusses, with springs where the column has joints; return levels [m] and nodes from the base upwards."""
-    joints = {joint.height: joint.stiffness for joint in scene.column.springs if joint.height > 0}
-    near = NEAR * scene.column.height
     levels, nodes = [0.0], [1]
     ops.node(1, 0.0)
     for number, part in enumerate(made_of, start=1):
-        ops.uniaxialMaterial("Elastic", number, part.modulus)
-        stiffness = [k for height, k in joints.items() if abs(height - part.bottom) <= near and part.bottom > 0]
-        if stiffness:
-            _tie(ops, nodes[-1], _node(ops, levels, nodes, part.bottom), stiffness[0], 0.0)
+        ops.uniaxialMaterial("Elastic", number, part.stretch.modulus)
+        spring = part.stretch.spring
+        if spring is not None and number > 1:
+            _tie(ops, nodes[-1], _node(ops, levels, nodes, part.stretch.bottom), spring, 0.0)
         for level in part.levels[1:]:
             below, above = nodes[-1], _node(ops, levels, nodes, float(level))
-            mass = ("-rho", part.density, *(("-cMass", 1) if consistent else ()))
+            mass = ("-rho", part.stretch.layer.density, *(("-cMass", 1) if consistent else ()))
             ops.element("Truss", above, below, above, 1.0, number, *mass)
     return np.array(levels), nodes
 

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-NEAR = 1e-9  # of the column's height, and of an element
+from peers.columns import NEAR, Stretch, stretches
+
 SHORTEST = 0.1  # rad of the pulse's highest frequency in a step, settings for accuracy
 LEAST, MOST = 4, 20_000  # steps in one of the scene's, and of a run, that settings for accuracy choose
 ELEMENTS = 200  # that settings for accuracy may choose; a dense matrix is solved in each step
@@ -99,23 +100,18 @@ def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, lis
     """
     if c.glue is not None:
         raise NotImplementedError("column.glue: springs between DDA's blocks, and the column here has none")
-    joints = {joint.height: joint.stiffness for joint in c.springs}
-    if max(joints, default=0.0) > c.height * (1 - NEAR):
+    if max((joint.height for joint in c.springs), default=0.0) > c.height * (1 - NEAR):
         raise NotImplementedError("column.joint: one at the top joins nothing")
     if travel is not None:
         travel = max(travel, passing(c) / ELEMENTS)
     elements: list[Element] = []
     parts: list[tuple[int, float, float]] = []  # lower node, a sixth of the mass, stiffness
-    low = 0.0
-    for layer in c.layer:
-        inside = (z for z in sorted(joints) if low + NEAR * c.height < z < low + layer.thickness - NEAR * c.height)
-        for z0, z1 in itertools.pairwise([low, *inside, low + layer.thickness]):
-            parts += [(len(parts), 0.0, joints[z]) for z in joints if abs(z - z0) <= NEAR * c.height]
-            ends = np.linspace(z0, z1, _count(c, layer, z1 - z0, travel) + 1).tolist()
-            for a, b in itertools.pairwise(ends):
-                elements.append((len(parts), a, b))
-                parts.append((len(parts), layer.density * (b - a) / 6, c.modulus(layer) / (b - a)))
-        low += layer.thickness
+    for one in stretches(c):
+        if one.spring is not None:
+            parts.append((len(parts), 0.0, one.spring))
+        for a, b in itertools.pairwise(np.linspace(one.bottom, one.top, _count(one, travel) + 1).tolist()):
+            elements.append((len(parts), a, b))
+            parts.append((len(parts), one.layer.density * (b - a) / 6, one.modulus / (b - a)))
     M, K = np.zeros((len(parts) + 1,) * 2), np.zeros((len(parts) + 1,) * 2)
     for node, mass, stiffness in parts:
         M[node : node + 2, node : node + 2] += mass * np.array([[2.0, 1.0], [1.0, 2.0]])
@@ -123,8 +119,8 @@ def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, lis
     return M, K, elements
 
 
-def _count(c: Any, layer: Any, length: float, travel: float | None) -> int:
-    """Return the number of elements of a part of a layer."""
+def _count(one: Stretch, travel: float | None) -> int:
+    """Return the number of elements of a stretch."""
     if travel is None:
-        return max(1, math.ceil(layer.blocks * length / layer.thickness - NEAR * layer.blocks))
-    return max(1, math.ceil(length * math.sqrt(layer.density / c.modulus(layer)) / travel))
+        return max(1, math.ceil(one.layer.blocks * one.length / one.layer.thickness - NEAR * one.layer.blocks))
+    return max(1, math.ceil(one.passing / travel))

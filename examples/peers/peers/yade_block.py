@@ -18,7 +18,7 @@ for half of it; two rotors, turned by it against each other, add what is missing
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -46,7 +46,7 @@ def block(scene: Scene, solver: Yade) -> dict[str, Array]:
     if len(model.bodies) == 1:
         columns |= {"displacement": y[:, 0], "horizontal_displacement": x[:, 0], "rotation": turn[:, 0] - turn[0, 0]}
     else:
-        feet, (a, h) = min(2, len(model.bodies) - 1), sizes(scene)
+        feet, (a, h) = min(2, len(model.bodies) - 1), scene.block.rectangle
         low_x, low_y = x[:, :feet].mean(axis=1), y[:, :feet].mean(axis=1)
         tipped = (y[:, feet - 1] - y[:, 0]) / a
         columns["displacement"] = (low_y + 3 * y[:, -1]) / 4
@@ -59,7 +59,7 @@ def refuse(scene: Scene) -> None:
     """Refuse what the bodies cannot carry, by the name of its field."""
     b, c, load = scene.block, scene.contact, scene.load
     updated = scene.run.geometry == "updated"
-    if sizes(scene) is None:
+    if scene.block.rectangle is None:
         raise NotImplementedError("block.vertices: the block is no upright rectangle on its lower edge")
     if b.subdivide is not None:
         raise NotImplementedError("block.subdivide: sub-blocks of one strain each cannot be made of rigid bodies")
@@ -77,18 +77,9 @@ def refuse(scene: Scene) -> None:
         raise NotImplementedError("block.young: the block deforms under its weight, and one that turns is rigid here")
 
 
-def sizes(scene: Scene) -> Any:
-    """Return width and height of an upright rectangle on its lower edge [m], None for another outline."""
-    points = np.asarray(scene.block.outline)
-    if len(points) != 4 or (scene.block.base, scene.block.top) != (0, 2):
-        return None
-    (width, height), corners = points[2] - points[0], [(0, 0), (1, 0), (1, 1), (0, 1)]
-    return (width, height) if np.array_equal(points - points[0], np.multiply(corners, (width, height))) else None
-
-
 def is_rigid(scene: Scene) -> bool:
     """Whether a block is one rigid body: it turns, or its own ratio is nothing beside that of the contact."""
-    (width, height), c = sizes(scene), scene.contact
+    (width, height), c = scene.block.rectangle, scene.contact
     ratio = scene.block.young * width / height / (2 * max(c.stiffness, c.shear))
     return scene.run.geometry == "updated" or ratio >= RIGID
 
@@ -112,7 +103,7 @@ def gravity_of(scene: Scene) -> tuple[float, float]:
 
 def top_load(scene: Scene) -> tuple[tuple[float, float], float]:
     """Return the force on the top edge [N] and its moment about the middle of that edge [N m]."""
-    load, (width, _) = scene.load, sizes(scene)
+    load, (width, _) = scene.load, scene.block.rectangle
     push = load.pressure * (width - 2 * abs(load.eccentricity))
     return (load.traction * width, -push), -push * load.eccentricity
 
@@ -125,7 +116,7 @@ def leans(scene: Scene) -> bool:
 
 def two_bodies(scene: Scene) -> Model:
     """Return the block of one strain under a centred load as two bodies, see the head of the module."""
-    (a, h), b, ((_, down), _) = sizes(scene), scene.block, top_load(scene)
+    (a, h), b, ((_, down), _) = scene.block.rectangle, scene.block, top_load(scene)
     sole, stiff = wide(scene), 9 * a / (4 * h) * b.young
     low = (Point((0.0, h / 3), h / 3, touches=False), *(Point((x, sole), sole) for x in (-a / 2, a / 2)))
     high = (Point((0.0, 0.0), h / 3, touches=False),)
@@ -136,7 +127,7 @@ def two_bodies(scene: Scene) -> Model:
 
 def linkage(scene: Scene) -> Model:
     """Return the block of one strain as an upper body, two feet and two rotors, see the head of the module."""
-    (a, h), b, ((along, down), torque) = sizes(scene), scene.block, top_load(scene)
+    (a, h), b, ((along, down), torque) = scene.block.rectangle, scene.block, top_load(scene)
     m, arm, out = b.mass, a / 4, a / 8
     push = {"force": (-along / 4, -down / 4), "torque": torque / 2}
     feet = [
@@ -159,7 +150,7 @@ def linkage(scene: Scene) -> Model:
 
 def foot(scene: Scene, side: int, arm: float, out: float) -> tuple[Point, ...]:
     """Return the points of the left (-1) or right (1) foot: to upper body, other foot, floor and rotors."""
-    (a, h), sole = sizes(scene), wide(scene)
+    (a, h), sole = scene.block.rectangle, wide(scene)
     return (
         Point((-side * a / 2, h / 3), h / 3, touches=False),
         Point((0.0, 0.0), a / 2, touches=False),
@@ -175,7 +166,7 @@ def rotor(way: int, arm: float, out: float) -> tuple[Point, ...]:
 
 def one_body(scene: Scene) -> Model:
     """Return a rigid block; one that turns stands on small spheres at its corners, else on wide ones above them."""
-    (a, h), b, (force, torque) = sizes(scene), scene.block, top_load(scene)
+    (a, h), b, (force, torque) = scene.block.rectangle, scene.block, top_load(scene)
     inertia, moment = b.mass * (a**2 + h**2) / 12, torque - force[0] * h / 2
     if scene.run.geometry != "updated":
         sole = wide(scene)
@@ -192,7 +183,7 @@ def one_body(scene: Scene) -> Model:
 
 def wide(scene: Scene) -> float:
     """Return the radius of the spheres that a block stands on which does not turn: more than they go in [m]."""
-    return float(max(sizes(scene)[1] / 4, deepest(scene)))
+    return float(max(scene.block.rectangle[1] / 4, deepest(scene)))
 
 
 def deepest(scene: Scene) -> float:
@@ -200,7 +191,7 @@ def deepest(scene: Scene) -> float:
 
     The mass falls by the gap and by what the tilt has lifted it, and lands with all its energy on one spring.
     """
-    (a, h), b, p = sizes(scene), scene.block, scene.contact.stiffness
+    (a, h), b, p = scene.block.rectangle, scene.block, scene.contact.stiffness
     tilt = abs(math.radians(b.tilt))
     lifted = max(0.0, (a * math.sin(tilt) + h * math.cos(tilt) - h) / 2)
     weight = b.mass * abs(scene.load.gravity) + (abs(scene.load.pressure) + abs(scene.load.traction)) * a

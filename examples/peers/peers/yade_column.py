@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from peers.columns import NEAR, stretches
 from peers.yade_bodies import Body, Bond, Drive, Model, Point
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 MOST_PARTICLES = 2000
-NEAR = 1e-9  # of the column's height, within which two levels are one
 
 
 def column(scene: Scene, solver: Yade) -> dict[str, Array]:
@@ -63,25 +63,20 @@ def lattice(scene: Scene) -> Lattice:
     apart, and where two cells meet else, they are one particle.
     """
     c = scene.column
-    y, heights, masses, springs = 0.0, [0.0], [0.0], []
-    joints = {joint.height: joint.stiffness for joint in c.springs}
-    tops = np.cumsum([layer.thickness for layer in c.layer])
-    levels = np.unique([*tops, *(height for height in joints if height > 0)])
-    levels = levels[np.append(True, np.diff(levels) > NEAR * c.height)]
-    for top in levels:
-        layer = c.layer[min(int(np.searchsorted(tops, top - NEAR * c.height)), len(c.layer) - 1)]
-        for height in [height for height in joints if abs(height - y) <= NEAR * c.height]:
-            springs.append(joints[height])
+    heights, masses, springs = [0.0], [0.0], []
+    for one in stretches(c):
+        y = one.bottom
+        if one.spring is not None:
+            springs.append(one.spring)
             heights.append(y + NEAR * c.height)
             masses.append(0.0)
-        speed = math.sqrt(c.modulus(layer) / layer.density)
-        cells = max(8, math.ceil((top - y) / (speed * shortest(scene))))
-        size = (top - y) / cells
-        masses[-1] += layer.density * size / 2
-        masses += [layer.density * size] * (cells - 1) + [layer.density * size / 2]
-        springs += [c.modulus(layer) / size] * cells
+        speed = math.sqrt(one.modulus / one.layer.density)
+        cells = max(8, math.ceil(one.length / (speed * shortest(scene))))
+        size = one.length / cells
+        masses[-1] += one.layer.density * size / 2
+        masses += [one.layer.density * size] * (cells - 1) + [one.layer.density * size / 2]
+        springs += [one.modulus / size] * cells
         heights += [y + size * (n + 1) for n in range(cells)]
-        y = float(top)
     if len(masses) > MOST_PARTICLES:
         raise NotImplementedError(f"the pulse would need {len(masses)} particles, more than {MOST_PARTICLES}")
     return Lattice(np.array(heights), np.array(masses), np.array(springs))
