@@ -18,7 +18,7 @@ from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
-from validation.report.chapters.scene import conclusion, history_block
+from validation.report.chapters.scene import conclusion, history_block, lead_figure
 from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
@@ -166,8 +166,9 @@ def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure
     bar = made_history(0.002, np.linspace(-0.02, -0.01, 100))
     histories = {"dda": made_history(0.002, np.linspace(-0.025, -0.01, 100)), "fem": bar, "bar": bar}
     group = made_group(made_case(PAPER, {}, histories))
-    caption = history_block(group, ["displacement"], tmp_path, apart=True).caption
-    top, below = drawn["scene-history.svg"].axes
+    (block,) = lead_figure(group, tmp_path)
+    caption = block.caption
+    top, below = drawn["scene-lead.svg"].axes
     assert "|Δ|: from bar" in caption and below.get_ylabel() == "|Δ| / largest"
     assert set(names_at(below)) == {"dda"} and set(names_at(top)) == {"dda", "fem, bar"}
 

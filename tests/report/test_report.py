@@ -13,16 +13,7 @@ from oracles.made_cases import kept_study, made_row
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report.appendix.pages import appendix
-from validation.report.blocks import (
-    Callout,
-    FigureBlock,
-    Heading,
-    Listing,
-    PageBreak,
-    Paragraph,
-    Table,
-    TableColumn,
-)
+from validation.report.blocks import Beside, Callout, FigureBlock, Heading, PageBreak, Table, TableColumn, figures_of
 from validation.report.book import build, ordered_studies, write_figures
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import gates as chapters_gates
@@ -192,8 +183,8 @@ def test_damping_table_joins_solvers_that_read_alike_and_tells_what_is_undefined
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
     paths = write_figures(small, tmp_path / "new" / "out", ["mine"])
     assert sorted(p.name for p in paths) == [
-        "my-scene-1-history.png",
-        "my-scene-1-history.svg",
+        *("my-scene-1-drawing.png", "my-scene-1-drawing.svg", "my-scene-1-history.png", "my-scene-1-history.svg"),
+        *("my-scene-1-lead.png", "my-scene-1-lead.svg"),
     ]
     assert {p.read_bytes()[:4] for p in paths} == {b"\x89PNG", b"<?xm"}
 
@@ -243,7 +234,8 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     imprint, *others = first
     assert "article 7480937" in imprint.text
     assert others == []  # the page of the scene follows
-    assert [type(block) for block in page[:5]] == [Heading, Paragraph, Listing, Table, Callout]
+    assert [type(block) for block in page[:3]] == [Heading, Beside, Callout]
+    assert [figure.file for figure in figures_of(page)] == ["figures-3-4-drawing.svg"]
 
 
 def bound(value):

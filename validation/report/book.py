@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Blocks, Callout, FigureBlock, Heading
+from validation.report.blocks import Blocks, Callout, Heading, figures_of
 from validation.report.chapters.registry import chapter_of
 from validation.report.names import Readable, page_name, unescaped
 from validation.report.render.pdf import png_of, write_document
@@ -146,8 +146,7 @@ def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = No
         raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
     paths: list[Path] = []
     for study in studies:
-        for block in _chapter(results, study, out):
-            if isinstance(block, FigureBlock):
-                svg = out / block.file
-                paths += [svg, png_of(svg)]
+        for figure in figures_of(_chapter(results, study, out)):
+            svg = out / figure.file
+            paths += [svg, png_of(svg)]
     return paths
