@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ from validation.report.scene.differences import difference_table
 from validation.report.scene.page import SceneDescription
 from validation.runs.case_name import CaseName
 from validation.runs.columns import rank
-from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -71,7 +70,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
 
 def scene_page(group: CaseGroup, directory: Path) -> Blocks:
     """Return the page of a scene: drawing and finding, the case that shows it best, alarms, all cases, numbers."""
-    _, finding, *section = scene_section(group, directory)
+    _, finding, *section = scene_section(group, directory, () if _is_shown_whole(group) else None)
     drawing = histories.saved(scene_figure(group.cases[0].scene), directory, f"{group.slug}-drawing.svg", "")
     return [
         Heading(group.title),
@@ -272,7 +271,7 @@ def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
     panels: dict[str, HistoryPanel] = {}
     for case in group.cases if columns else ():
         window = min(free_window(case, columns[0]), _settling_time([case], columns, ()))
-        panel = _panel(case, columns, window, (), _finer(case, group.cases))
+        panel = _panel(case, columns, window, ())
         if any(history.time.size >= FEWEST for history in panel.histories.values()):
             panels[case.name] = panel
     if not panels:
@@ -295,6 +294,15 @@ def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
     sentences += [*_on_one([panel], columns), *_reading([panel], columns, apart=True)]
     figure = motion.history_figure([replace(panel, title="")], *columns, apart=True, height=LEAD_ROW)
     return [histories.saved(figure, directory, f"{group.slug}-lead.svg", " ".join(sentences), group.name)]
+
+
+def _is_shown_whole(group: CaseGroup) -> bool:
+    """Whether the figure that opens the page of a scene shows all: one case, its columns and steps."""
+    columns = _columns(group)
+    case, *others = group.cases
+    if others or not 0 < len(columns) <= LEAD_COLUMNS:
+        return False
+    return free_window(case, columns[0]) >= min(_ends([case]), default=0.0)
 
 
 def _judged(panel: HistoryPanel) -> str | None:
@@ -346,7 +354,7 @@ def history_block(
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
     settled = _settling_time(cases, columns, without)
-    panels = [_panel(case, columns, min(window, settled), without, _finer(case, group.cases)) for case in cases]
+    panels = [_panel(case, columns, min(window, settled), without) for case in cases]
     panels = [panel for panel in panels if panel.histories]  # the steps of the others are longer than that time
     sentences = []
     if len(panels) < len(group.cases):
@@ -411,33 +419,8 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool = False)
     return sentences
 
 
-def _finer(case: CaseResults, cases: Sequence[CaseResults]) -> dict[str, History]:
-    """Return the exact solutions of a case at the most instants that a case of the same motion has.
-
-    They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
-    zigzag.
-    """
-    finer: dict[str, History] = {}
-    for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
-        if solver not in case.histories:
-            continue
-        same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
-        finest = min(same, key=lambda other: other.scene.time.step)
-        if finest.scene.time.step < case.scene.time.step:
-            finer[solver] = finest.histories[solver]
-    return finer
-
-
-def _motion_of(case: CaseResults) -> dict[str, Any]:
-    """Return the definition of a case without its steps."""
-    definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
-    time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
-    return definition | {"time": time}
-
-
-def _panel(
-    case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
-) -> HistoryPanel:
+def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str]) -> HistoryPanel:
+    """Return the histories of a case up to a time [s]; an exact motion is drawn at the instants between the steps."""
     drawn = {}
     for solver, history in case.histories.items():
         shown = history.until(window)
@@ -451,6 +434,6 @@ def _panel(
         numbers = [value for value in values if value is not None]
         if numbers:
             static[column] = numbers[0]
-    finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
+    finer = {solver: history.between for solver, history in drawn.items() if history.between is not None}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn, of_boxes=case.scene.rigid is not None)
+    return HistoryPanel(title, drawn, static, reference, finer=finer, of_boxes=case.scene.rigid is not None)
