@@ -184,7 +184,7 @@ def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
     paths = write_figures(small, tmp_path / "new" / "out", ["mine"])
     assert sorted(p.name for p in paths) == [
         *("my-scene-1-drawing.png", "my-scene-1-drawing.svg", "my-scene-1-history.png", "my-scene-1-history.svg"),
-        *("my-scene-1-lead.png", "my-scene-1-lead.svg"),
+        *("my-scene-1-lead.png", "my-scene-1-lead.svg", "my-scene-1-slide.png", "my-scene-1-slide.svg"),
     ]
     assert {p.read_bytes()[:4] for p in paths} == {b"\x89PNG", b"<?xm"}
 

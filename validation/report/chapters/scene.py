@@ -29,6 +29,7 @@ from validation.report.chapters.text import (
     span,
 )
 from validation.report.figures import histories, motion
+from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.differences import difference_table
@@ -262,12 +263,32 @@ def _columns(group: CaseGroup) -> list[str]:
 
 
 def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
-    """Draw the case and the window that show what the solvers differ by; nothing where no history was kept.
+    """Draw the case and the window that show what the solvers differ by; nothing where no history was kept."""
+    columns = _columns(group)[:LEAD_COLUMNS]
+    panel, sentences = lead_panel(group, columns)
+    if panel is None:
+        return []
+    sentences += [*_on_one([panel], columns), *_reading([panel], columns, apart=True)]
+    figure = motion.history_figure([replace(panel, title="")], *columns, apart=True, height=LEAD_ROW)
+    return [histories.saved(figure, directory, f"{group.slug}-lead.svg", " ".join(sentences), group.name)]
+
+
+def slide_figure(group: CaseGroup) -> Figure | None:
+    """Return the figure that opens the page of a scene for a slide, under the title of the scene."""
+    columns = _columns(group)[:LEAD_COLUMNS]
+    panel, _ = lead_panel(group, columns)
+    if panel is None:
+        return None
+    title = ": ".join(filter(None, (group.title, panel.title)))
+    return motion.history_figure([replace(panel, title=title)], *columns, apart=True, slide=True)
+
+
+def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel | None, list[str]]:
+    """Return the case and the window that show what the solvers differ by, and what they show in words.
 
     The window is that of `free_window`; the case is that in which, over it, the judged solver and its reference differ
     by a share nearest to `VISIBLE`: further apart their lines have no more to do with one another, closer they are one.
     """
-    columns = _columns(group)[:LEAD_COLUMNS]
     panels: dict[str, HistoryPanel] = {}
     for case in group.cases if columns else ():
         window = min(free_window(case, columns[0]), _settling_time([case], columns, ()))
@@ -275,7 +296,7 @@ def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
         if any(history.time.size >= FEWEST for history in panel.histories.values()):
             panels[case.name] = panel
     if not panels:
-        return []
+        return None, []
     shares = {name: lead_difference(panel, columns[0]) for name, panel in panels.items()}
     distances = {name: abs(math.log(share / VISIBLE)) for name, share in shares.items() if share}
     telling = min(distances, key=distances.__getitem__, default=next(iter(panels)))
@@ -291,9 +312,7 @@ def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
             f"Over these {short(span, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
             "(relative L2)."
         )
-    sentences += [*_on_one([panel], columns), *_reading([panel], columns, apart=True)]
-    figure = motion.history_figure([replace(panel, title="")], *columns, apart=True, height=LEAD_ROW)
-    return [histories.saved(figure, directory, f"{group.slug}-lead.svg", " ".join(sentences), group.name)]
+    return panel, sentences
 
 
 def _is_shown_whole(group: CaseGroup) -> bool:
