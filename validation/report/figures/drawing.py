@@ -42,8 +42,7 @@ class Sketch:
 
     def __init__(self, axes: Axes, bodies: Sequence[ArrayLike], slope: float = 0.0) -> None:
         self.axes = axes
-        angle = math.radians(slope)
-        self._turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        self._turn = _rotation(-math.radians(slope))
         self._drawn: list[Array] = []
         corners = np.vstack([np.asarray(body, dtype=float) for body in bodies])
         self.low, self.high = corners.min(axis=0), corners.max(axis=0)
@@ -53,7 +52,7 @@ class Sketch:
             self.polygon(body, facecolor=FACE, edgecolor="black", lw=0.35)
 
     def _placed(self, points: ArrayLike) -> Array:
-        placed: Array = np.asarray(points, dtype=float) @ self._turn.T
+        placed: Array = np.asarray(points, dtype=float) @ self._turn
         self._drawn.append(placed)
         return placed
 
@@ -91,13 +90,15 @@ class Sketch:
         self.polygon((start, end, end + band, start + band), facecolor="none", edgecolor=GREY, hatch="////", lw=0)
         self.line([start, end], 1.2)
 
-    def ground(self, level: float, moves: bool = False) -> None:
-        """Draw the ground below the body, with a double arrow where it moves."""
-        beside = 0.12 * self.size
-        self.hatched([(self.low[0] - beside, level), (self.high[0] + beside, level)])
+    def ground(self, depth: float = 0.0, base: ArrayLike | None = None, moves: bool = False) -> None:
+        """Draw the ground so deep below a base, y = 0 without one, with a double arrow where it moves."""
+        left, right = ((self.low[0], 0.0), (self.high[0], 0.0)) if base is None else np.asarray(base)
+        beyond = 0.12 * self.size * np.subtract(right, left) / math.dist(left, right)
+        below = np.array([0.0, -depth])
+        self.hatched([left + below - beyond, right + below + beyond])
         if moves:
-            way = (LONGEST * self.size, 0.0)
-            self.arrow((self.middle[0] - way[0] / 2, level - 2.2 * GROUND * self.size), way, head="<|-|>")
+            way = np.array([LONGEST * self.size, 0.0])
+            self.arrow((np.add(left, right) - way) / 2 + below - (0.0, 2.2 * GROUND * self.size), way, head="<|-|>")
 
     def fit(self) -> None:
         """Set the limits about what is drawn."""
@@ -107,6 +108,11 @@ class Sketch:
         self.axes.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)
         self.axes.set_aspect("equal")
         self.axes.set_axis_off()
+
+
+def _rotation(angle: float) -> Array:
+    """Return the matrix that turns points, a row each, counter-clockwise [rad]."""
+    return np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
 
 
 def scene_figure(scene: Scene) -> Figure:
@@ -156,9 +162,7 @@ def _block(axes: Axes, scene: Scene) -> None:
     """Draw a block on its springs, or above them, with the loads on its top."""
     block, load, contact = scene.block, scene.load, scene.contact
     pivot = np.array(block.outline[0])
-    angle = math.radians(block.tilt)
-    tilt = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])  # of rows
-    outline = (np.array(block.outline) - pivot) @ tilt + pivot
+    outline = (np.array(block.outline) - pivot) @ _rotation(math.radians(block.tilt)) + pivot
     sketch = Sketch(axes, [outline], load.slope)
     for cut in _cuts(outline, block.subdivide, block.pattern):
         sketch.line(cut, 0.35)
@@ -168,7 +172,7 @@ def _block(axes: Axes, scene: Scene) -> None:
     for corner in corners:
         if length:
             sketch.spring((corner[0], corner[1] - gap))
-    sketch.ground(min(y for _, y in corners) - length - gap, load.base_motion is not None)
+    sketch.ground(length + gap, corners, load.base_motion is not None)
     arrow = LONGEST * sketch.size
     left, right = block.edge(block.top)
     words = _quantity(load.pressure, "Pa")
@@ -176,8 +180,9 @@ def _block(axes: Axes, scene: Scene) -> None:
         sketch.arrow(place + np.array([0.0, arrow]), (0.0, -arrow), words)
         words = ""
     if load.traction:
-        start = min(left[0], right[0])
-        sketch.arrow((start, max(left[1], right[1]) + 0.3 * arrow), (2 * arrow, 0.0), _quantity(load.traction, "Pa"))
+        above = 1.6 * arrow if load.pressure else 0.3 * arrow
+        start = (min(left[0], right[0]), max(left[1], right[1]) + above)
+        sketch.arrow(start, (2 * arrow, 0.0), _quantity(load.traction, "Pa"))
     if load.gravity:  # which turns with the ground
         slope = math.radians(load.slope)
         sketch.arrow(sketch.middle, (arrow * math.sin(slope), -arrow * math.cos(slope)), "g")
@@ -187,21 +192,19 @@ def _block(axes: Axes, scene: Scene) -> None:
     sketch.fit()
 
 
-def _cuts(outline: Array, subdivide: tuple[int, int] | None, pattern: str) -> list[ArrayLike]:
-    """Return the lines along which a quadrilateral is cut into sub-blocks."""
+def _cuts(outline: Array, subdivide: tuple[int, int] | None, pattern: str) -> list[Array]:
+    """Return the lines along which a quadrilateral is cut into sub-blocks, its own edges among them."""
     if subdivide is None:
         return []
+    across, up = (np.linspace(0.0, 1.0, count + 1) for count in subdivide)
+    s = across[:, None, None]
+    t = up[None, :, None]
     a, b, c, d = outline
-
-    def place(s: float, t: float) -> Array:
-        point: Array = (1 - t) * ((1 - s) * a + s * b) + t * ((1 - s) * d + s * c)
-        return point
-
-    across, up = subdivide
-    cuts: list[ArrayLike] = [[place(i / across, 0), place(i / across, 1)] for i in range(1, across)]
-    cuts += [[place(0, j / up), place(1, j / up)] for j in range(1, up)]
-    for i, j in itertools.product(range(across), range(up)) if pattern == "triangles" else ():
-        cuts.append([place(i / across, j / up), place((i + 1) / across, (j + 1) / up)])
+    grid = (1 - t) * ((1 - s) * a + s * b) + t * ((1 - s) * d + s * c)
+    cuts = [*grid, *grid.swapaxes(0, 1)]
+    if pattern == "triangles":
+        diagonals = np.stack([grid[:-1, :-1], grid[1:, 1:]], axis=2)
+        cuts += [*diagonals.reshape(-1, 2, 2)]
     return cuts
 
 
@@ -223,12 +226,12 @@ def _column(axes: Axes, scene: Scene) -> None:
     if column.base == "springs":
         sketch.spring((-0.7 * half, 0.0))
         sketch.spring((0.7 * half, 0.0))
-        sketch.ground(-SPRING * sketch.size)
+        sketch.ground(SPRING * sketch.size)
     elif column.base == "transmitting":
         deep = -1.5 * SPRING * sketch.size
         sketch.polygon([(-2 * half, 0.0), (2 * half, 0.0), (2 * half, deep), (-2 * half, deep)], facecolor="#e8e8e4")
     elif column.base == "rigid":
-        sketch.ground(0.0)
+        sketch.ground()
     arrow = LONGEST * sketch.size
     if excitation is not None:
         top = excitation.at == "top"
@@ -250,11 +253,10 @@ def _boxes(axes: Axes, scene: Scene) -> None:
         return
     bodies = []
     for box, (x, y, angle) in zip(section.box, section.starts, strict=True):
-        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])  # of rows
         corners = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * (box.width / 2, box.height / 2)
-        bodies.append(corners @ turn + (x, y))
+        bodies.append(corners @ _rotation(angle) + (x, y))
     sketch = Sketch(axes, bodies, section.slope)
-    sketch.ground(0.0, section.base_amplitude != 0)
+    sketch.ground(moves=section.base_amplitude != 0)
     for box, (x, y, _) in zip(section.box, section.starts, strict=True):
         speed = math.hypot(*box.velocity)
         if speed:
