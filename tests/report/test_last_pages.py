@@ -40,7 +40,8 @@ def test_gates_have_a_line_for_each_reason() -> None:
     own.append(verdict("e", 0.25, study="limits", reference_kind="other code"))
     _, table = gate_table([*own, verdict("f", 9.0, verdict="FAIL")])
     assert table.rows == (  # type: ignore[union-attr]
-        ("core: 6 passed",), ("3", "m@0.2s of a: so [exact]"), ("3", "B, C, 1 more of b, c, 1 more: else [exact]"),
+        ("core: 6 passed",), ("3", "m up to 0.2\u00a0s of a: so [exact]"),
+        ("3", "B, C, 1 more of b, c, 1 more: else [exact]"),
         ("limits: 1 passed",), ("1", "m of e: so [other code]"),
     )  # fmt: skip
     assert gate_table([verdict("c", 9.0, verdict="FAIL")]) == []

@@ -22,9 +22,11 @@ from pypdf import PdfReader
 
 from validation.engine import run_study
 from validation.errors import InputError
+from validation.metrics.catalogue import CATALOGUE, words_of
 from validation.report import blocks as kinds
 from validation.report.blocks import Block, Callout, Heading, Link, Links, Listing, Paragraph, Points, table
 from validation.report.book import build
+from validation.report.chapters.gates import measured
 from validation.report.render import pdf, terminal
 from validation.report.render.html import page, readable
 from validation.report.site import pages
@@ -125,7 +127,7 @@ def test_each_gate_is_in_the_table_of_its_study_and_scene(site: Path, results: R
         (verdict,) = results.verdicts(study)
         for name in (f"study-{file}.html", f"scene-{file}.html"):
             text = html.unescape((site / name).read_text(encoding="utf-8"))
-            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and verdict["id"] in text
+            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and measured(verdict) in text
 
 
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
@@ -184,6 +186,13 @@ def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_pa
     first = PdfReader(build(results, tmp_path / "r.pdf")).pages[0].extract_text()
     assert "After @feng2017" in first and "cannot be drawn" not in first
     assert pages.build(results, tmp_path / "site").exists()
+
+
+def test_no_page_of_the_report_names_a_quantity_by_its_id(results: Results, tmp_path: Path) -> None:
+    report = PdfReader(build(results, tmp_path / "r.pdf", [FAILING], gates=True))
+    text = " ".join(page.extract_text() for page in report.pages).replace("\u200b", "")
+    assert " ".join(text.split()).count(words_of("displacement.l2")) == 1  # of the gate that fails
+    assert not [name for name in CATALOGUE if name in text]
 
 
 def test_the_first_page_of_an_own_scene_is_about_it(results: Results, tmp_path: Path) -> None:

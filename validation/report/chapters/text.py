@@ -19,7 +19,6 @@ DASH = "–"
 AS_STATED = "as stated"  # label of a case without swept values
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MEANINGS = (
-    ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
     ("alias", "alias", "the frequency lies beyond π/Δt, and samples every Δt show another."),
     ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
 )
