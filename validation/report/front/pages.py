@@ -37,7 +37,6 @@ def front_pages(
         imprint,
         *first_page(groups, paper, verdicts, directory),
         *([PageBreak(), *failures] if failures else []),
-        PageBreak(),
         *decisions(groups, paper, directory),
         PageBreak(),
     ]
