@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from pypdf import PdfReader
 
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Paragraph, table
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
 from validation.report.figures.histories import save
 from validation.report.render.pdf import kept_with_next, typeset
 from validation.suite.folders import study_folders, study_names
@@ -54,6 +54,14 @@ def test_no_title_is_the_last_line_of_a_page(pages: list[str]) -> None:
     ends = [text.strip().splitlines()[-2] for text in pages]  # above the number of the page
     assert len(ends) > len(CASES)
     assert not [line for line in ends if line.startswith(("Chapter", "Lead", "Sources", "Rule", "Figure"))]
+
+
+@pytest.mark.parametrize("cited", [False, True])
+def test_sources_have_a_title_only_where_some_are_cited(tmp_path: Path, cited: bool) -> None:
+    text = "A scheme @newmark1959." if cited else "A scheme."
+    (tmp_path / "made.pdf").write_bytes(typeset(tmp_path, [Paragraph(text), References()]))
+    (page,) = PdfReader(tmp_path / "made.pdf").pages
+    assert ("References" in page.extract_text()) is cited
 
 
 def test_what_leads_to_a_figure_or_opens_a_chapter_is_kept_with_it(tmp_path: Path) -> None:

@@ -14,7 +14,17 @@ from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.metrics.catalogue import words_of
 from validation.report.appendix.pages import appendix
-from validation.report.blocks import Beside, Callout, FigureBlock, Heading, PageBreak, Table, TableColumn, figures_of
+from validation.report.blocks import (
+    Beside,
+    Callout,
+    FigureBlock,
+    Heading,
+    PageBreak,
+    Paragraph,
+    Table,
+    TableColumn,
+    figures_of,
+)
 from validation.report.book import build, ordered_studies, write_figures
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import gates as chapters_gates
@@ -236,9 +246,9 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     assert said[0] == f"dda: overflow. {Outcome.OVERFLOW.sentence} step 7; too long"
     assert said[1].startswith("bar: refused.")
     imprint, *others = first
-    assert "article 7480937" in imprint.text
+    assert "dda-validation" in imprint.text and "article 7480937" not in imprint.text  # whose model is another
     assert others == []  # the page of the scene follows
-    assert [type(block) for block in page[:3]] == [Heading, Beside, Callout]
+    assert [type(block) for block in page[:4]] == [Heading, Paragraph, Beside, Callout]
     assert [figure.file for figure in figures_of(page)] == ["figures-3-4-drawing.svg"]
 
 

@@ -17,6 +17,7 @@ from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
+from validation.report.chapters.summary import scene_summary
 from validation.report.chapters.text import (
     AS_STATED,
     bounded,
@@ -61,7 +62,10 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
     if len(groups) == 1:
-        return scene_page(groups[0], directory)
+        _, finding, *section = scene_section(groups[0], directory)
+        summary = scene_summary(groups[0], directory)
+        lead = lead_figure(groups[0], directory)
+        return [Heading(groups[0].title), finding, *summary, *lead, *section, *budget_blocks(groups[0], directory)]
     columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
     blocks = opening(manifest)
     for group, drawn in zip(groups, columns, strict=True):

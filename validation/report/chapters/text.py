@@ -83,6 +83,14 @@ def percent(value: float) -> str:
     return f"{short(100 * value, 3)}\u00a0%" if value == 0 or value >= 1e-4 else power(value)
 
 
+def some(names: Iterable[str], most: int) -> str:
+    """Return the first few of some names, each once, and how many more there are."""
+    distinct = list(dict.fromkeys(names))
+    more = len(distinct) - most
+    first = ", ".join(distinct[:most])
+    return f"{first}, {more} more" if more > 0 else first
+
+
 def span(values: Sequence[float]) -> str:
     """Return the range of fractions, ``0.26 % to 9.0 %``; one value where they read alike."""
     low = percent(min(values))

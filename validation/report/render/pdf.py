@@ -76,15 +76,18 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
 
     shutil.copyfile(TEMPLATE, root / "report.typ")
     shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
+    content = [
+        as_data(block, lambda text: unescaped(text, marked)) | {"kept": kept}
+        for block, kept in zip(blocks, kept_with_next(blocks), strict=True)
+    ]
+    if CITED not in json.dumps(content, ensure_ascii=False):  # a list of no sources would be its title alone
+        content = [block for block in content if block["block"] != References.__name__]
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
         "subtitle": "Cross-validation of blocks on contact springs",
         "keys": list(references()) if References() in blocks else [],
         "cited": CITED,
-        "blocks": [
-            as_data(block, lambda text: unescaped(text, marked)) | {"kept": kept}
-            for block, kept in zip(blocks, kept_with_next(blocks), strict=True)
-        ],
+        "blocks": content,
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
     try:
