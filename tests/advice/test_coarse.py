@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms, removal_of
 from validation.cli.app import app
+from validation.report.chapters.alarms import alarm_lines
 from validation.report.front.groups import groups_of_studies
-from validation.report.front.pages import alarm_lines
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import typed
+from conftest import refused, typed
 from faults import seams
+from matplotlib.image import imread
 from oracles.shi_dda import Program, run, write_measured_point
 
 from validation import load_scene, solve
@@ -249,12 +250,15 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     path = tmp_path / "theirs.csv"
     path.write_text("t;uy\n" + "\n".join(f"{t:.7g};{u:.7g}" for t, u in table))
     arguments = ["compare", "figures-3-4", path, "--set", "time.step=0.002", "--columns", "time=t,displacement=uy"]
-    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", "--out", tmp_path / "a.pdf")
+    written = ("--out", tmp_path / "a.pdf", "--figure", tmp_path / "f.png")
+    done = typed(*arguments, "--scale", "time=1e-3,displacement=-1e-3", *written)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
         "Same model, same scheme: constant acceleration (alpha = 0.5, delta = 1, gg = 1); the"
     )
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF-")
+    assert imread(tmp_path / "f.png").shape[:2] == (1080, 1920)  # a slide
+    assert "--figure: must end in .svg, .pdf, .png" in refused(*arguments, "--figure", "f.txt")
     slipped = typed(*arguments, "--json")
     assert slipped.returncode == 1  # it departs
     answer = json.loads(slipped.stdout)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from validation.engine.finished import Finished
 from validation.engine.judge import compare, evaluate
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
+from validation.errors import InputError
 from validation.gates.gate import Gate, judge
 from validation.metrics import growth
 from validation.metrics import poles as pencil
@@ -267,3 +269,35 @@ def test_a_verdict_carries_the_alarms_of_its_case_and_of_its_whole_scene(scene: 
     )  # fmt: skip
     told = {verdict["scene"]: verdict["alarms"] for verdict in Results(tmp_path).verdicts()}
     assert told == {first.name: ["of all", "of one"], second.name: ["of all"]}
+
+
+# ---- between the steps --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("values", [{}, {"time.gg": 0.9}, {"time.gg_rate": 30.0}], ids=str)
+def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(
+    values: dict[str, float], tmp_path: Path
+) -> None:
+    """At 10 ms for 0.2 s the first mode turns eleven times; a discount per step must not become one per instant."""
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "time.steps": 20} | values)
+    results = Results(tmp_path)
+    run_study(Study("s", "S", "", [scene], ("dda", "continuum")), results)
+    kept = {row.solver: results.history(key) for key, row in results.rows().items()}
+    exact = kept["continuum"]
+    assert kept["dda"].between is None and len(exact.time) == 20
+    parts = measure.INSTANTS_OF_STEP
+    np.testing.assert_allclose(exact.between.time[parts - 1 :: parts], exact.time, rtol=1e-12)
+    for name, column in exact.columns.items():
+        scale = np.abs(column).max()
+        # rounding: of the instants, and of a root of gg that is raised to its power again
+        np.testing.assert_allclose(exact.between.columns[name][parts - 1 :: parts], column, atol=1e-11 * scale)
+    assert exact.until(0.05).between.time[-1] == pytest.approx(0.05)
+
+
+def test_damage_between_the_steps_is_refused(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    history = made_history(0.1, [1.0, 2.0])
+    broken = replace(history, between=made_history(0.05, [1.0, np.nan, 2.0, 3.0]))
+    results.append(made_row("continuum"), broken)
+    with pytest.raises(InputError, match="between the steps: displacement must hold one finite number a step"):
+        results.history("s continuum")

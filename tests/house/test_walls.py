@@ -202,6 +202,7 @@ HEAVY = [  # what it does not, and the extra that does
     (["report", "--results", "results", "--site", "site"], "report"),
     (["report", "--results", "results", "--figures", "figures"], "report"),
     (["compare", "figures-3-4", "history.csv", "--out", "page.pdf"], "report"),
+    (["compare", "figures-3-4", "history.csv", "--figure", "figure.svg"], "report"),
     (["response", *CASE, "--figure", "response.svg"], "report"),
     (["judge", "answer", "--out", "page"], "report"),
     (["judge", "answer", "--site", "site"], "report"),

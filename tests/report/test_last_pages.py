@@ -18,7 +18,7 @@ from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
-from validation.report.chapters.scene import conclusion, history_block
+from validation.report.chapters.scene import conclusion, history_block, lead_figure
 from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel, style_of
 from validation.runs.results import Results
@@ -40,7 +40,8 @@ def test_gates_have_a_line_for_each_reason() -> None:
     own.append(verdict("e", 0.25, study="limits", reference_kind="other code"))
     _, table = gate_table([*own, verdict("f", 9.0, verdict="FAIL")])
     assert table.rows == (  # type: ignore[union-attr]
-        ("core: 6 passed",), ("3", "m@0.2s of a: so [exact]"), ("3", "B, C, 1 more of b, c, 1 more: else [exact]"),
+        ("core: 6 passed",), ("3", "m up to 0.2\u00a0s of a: so [exact]"),
+        ("3", "B, C, 1 more of b, c, 1 more: else [exact]"),
         ("limits: 1 passed",), ("1", "m of e: so [other code]"),
     )  # fmt: skip
     assert gate_table([verdict("c", 9.0, verdict="FAIL")]) == []
@@ -125,15 +126,9 @@ def test_a_figure_ends_when_all_lines_have_long_settled(drawn: dict[str, Figure]
     assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
 
 
-def exact_cases(*steps: float) -> list[Any]:
-    """Return cases of one exact vibration of 18 ms at several steps, beside a line that is stepped."""
-    cases = []
-    for step in steps:
-        time = step * np.arange(1, round(0.2 / step) + 1)
-        own = made_history(step, -0.01 * (1 - np.cos(345.0 * time)))
-        scene = PAPER.with_values({"time.step": step, "time.steps": len(time)}, label=True)
-        cases.append(made_case(scene, {}, {"dda": made_history(step, -0.02 * time), "continuum": own}))
-    return cases
+def exact_history(step: float) -> Any:
+    """Return an exact vibration of 18 ms."""
+    return made_history(step, -0.01 * (1 - np.cos(345.0 * step * np.arange(1, round(0.2 / step) + 1))))
 
 
 def exact_line(axes: Any) -> tuple[Any, str]:
@@ -142,23 +137,20 @@ def exact_line(axes: Any) -> tuple[Any, str]:
     return np.asarray(line.get_xdata()), line.get_linestyle()
 
 
-def test_an_exact_solution_is_no_zigzag_where_few_instants_show_it(drawn: dict[str, Figure], tmp_path: Any) -> None:
-    """At 10 ms it is drawn from the case of 1 ms, which has the same motion; alone, as dots."""
-    caption = history_block(made_group(*exact_cases(1e-2, 1e-3)), ["displacement"], tmp_path).caption
-    for axes in drawn["scene-history.svg"].axes[:2]:
-        instants, style = exact_line(axes)
-        assert (instants.size, style) == (200, "-")
-    assert "Dots" not in caption
-    drawn.clear()
-    caption = history_block(made_group(*exact_cases(1e-2)), ["displacement"], tmp_path).caption
+@pytest.mark.parametrize(("between", "look"), [(1e-3, (200, "-")), (None, (20, "None"))], ids=["between", "alone"])
+def test_an_exact_solution_is_no_zigzag_where_few_steps_show_it(
+    between: float | None, look: tuple[int, str], drawn: dict[str, Figure], tmp_path: Any
+) -> None:
+    """At 10 ms it is drawn from what is kept between the steps; without it, as dots."""
+    finer = exact_history(between) if between else None
+    exact = replace(exact_history(1e-2), between=finer)
+    stepped = made_history(1e-2, np.linspace(-0.02, -0.01, 20))
+    caption = history_block(
+        made_group(made_case(PAPER, {}, {"dda": stepped, "continuum": exact})), ["displacement"], tmp_path
+    ).caption
     instants, style = exact_line(drawn["scene-history.svg"].axes[0])
-    assert (instants.size, style) == (20, "None")
-    assert "Dots: continuum at the steps, too few to be joined." in caption
-    drawn.clear()
-    other = exact_cases(1e-2)[0]
-    other = replace(other, scene=other.scene.with_values({"load.pressure": 1e6}), name="other")
-    history_block(made_group(other, *exact_cases(1e-3)), ["displacement"], tmp_path)
-    assert exact_line(drawn["scene-history.svg"].axes[0])[0].size == 20  # of another motion
+    assert (instants.size, style) == look
+    assert ("Dots: continuum at the steps, too few to be joined." in caption) == (between is None)
 
 
 def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure], tmp_path: Any) -> None:
@@ -166,8 +158,9 @@ def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure
     bar = made_history(0.002, np.linspace(-0.02, -0.01, 100))
     histories = {"dda": made_history(0.002, np.linspace(-0.025, -0.01, 100)), "fem": bar, "bar": bar}
     group = made_group(made_case(PAPER, {}, histories))
-    caption = history_block(group, ["displacement"], tmp_path, apart=True).caption
-    top, below = drawn["scene-history.svg"].axes
+    (block,) = lead_figure(group, tmp_path)
+    caption = block.caption
+    top, below = drawn["scene-lead.svg"].axes
     assert "|Δ|: from bar" in caption and below.get_ylabel() == "|Δ| / largest"
     assert set(names_at(below)) == {"dda"} and set(names_at(top)) == {"dda", "fem, bar"}
 

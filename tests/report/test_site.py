@@ -22,9 +22,11 @@ from pypdf import PdfReader
 
 from validation.engine import run_study
 from validation.errors import InputError
+from validation.metrics.catalogue import CATALOGUE, words_of
 from validation.report import blocks as kinds
 from validation.report.blocks import Block, Callout, Heading, Link, Links, Listing, Paragraph, Points, table
 from validation.report.book import build
+from validation.report.chapters.gates import measured
 from validation.report.render import pdf, terminal
 from validation.report.render.html import page, readable
 from validation.report.site import pages
@@ -73,15 +75,39 @@ def texts(place: Path) -> dict[str, str]:
     return {str(path.relative_to(place)): path.read_text(encoding="utf-8") for path in files}
 
 
+def check_links(files: dict[str, str]) -> None:
+    """Every address of every page, pictures included, is a file of the site or of the documentation around it."""
+    for name, text in files.items():
+        for address in re.findall(r'(?:href|src)="([^"#]+)', text) if name.endswith(".html") else ():
+            assert address in files or address in ("data:,", "../index.html"), (name, address)
+
+
 def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site: Path) -> None:
     files = texts(site)
     names = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index", "references"}
     assert {f"{name}.html" for name in (*names, "calculators")} == {name for name in files if name.endswith(".html")}
-    for name, text in files.items():
-        for address in re.findall(r'(?:href|src)="([^"#]+)', text) if name.endswith(".html") else ():
-            assert address in files or address in ("data:,", "../index.html"), (name, address)
+    check_links(files)
+    pictures = re.findall(r'<img src="([^"]+)"', files["index.html"])
+    scenes = ["scene-fail---ing/fail---ing-lead.svg", "scene-passing/passing-lead.svg"]
+    studies = [picture.replace("scene-", "study-") for picture in scenes]
+    assert sorted(pictures) == sorted(scenes + studies)
     assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
     assert "FAIL" in files["index.html"] and "because of h / c" in files["index.html"]
+
+
+def test_the_decisions_come_first_where_the_paper_s_block_was_run(tmp_path: Path) -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
+    history = History(0.002 * np.arange(1, 5), {"displacement": np.full(4, -0.01)})
+    results = Results(tmp_path / "r")
+    kept_study(results, [(scene, made_row("dda", {"displacement.static": -0.01}, scene.name), history)])
+    pages.build(results, tmp_path / "site")
+    files = texts(tmp_path / "site")
+    check_links(files)
+    index = files["index.html"]
+    cards = re.findall(r'href="decisions.html#([^"]+)"><img src="decisions/decision-(\w+).svg"', index)
+    assert [picture for _, picture in cards] == ["step", "springs", "discount"]
+    assert all(f'id="{place}"' in files["decisions.html"] for place, _ in cards)
+    assert index.index(cards[-1][0]) < index.index("study-made.html")
 
 
 def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site: Path, results: Results) -> None:
@@ -101,7 +127,7 @@ def test_each_gate_is_in_the_table_of_its_study_and_scene(site: Path, results: R
         (verdict,) = results.verdicts(study)
         for name in (f"study-{file}.html", f"scene-{file}.html"):
             text = html.unescape((site / name).read_text(encoding="utf-8"))
-            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and verdict["id"] in text
+            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and measured(verdict) in text
 
 
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
@@ -162,10 +188,18 @@ def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_pa
     assert pages.build(results, tmp_path / "site").exists()
 
 
+def test_no_page_of_the_report_names_a_quantity_by_its_id(results: Results, tmp_path: Path) -> None:
+    report = PdfReader(build(results, tmp_path / "r.pdf", [FAILING], gates=True))
+    text = " ".join(page.extract_text() for page in report.pages).replace("\u200b", "")
+    assert " ".join(text.split()).count(words_of("displacement.l2")) == 1  # of the gate that fails
+    assert not [name for name in CATALOGUE if name in text]
+
+
 def test_the_first_page_of_an_own_scene_is_about_it(results: Results, tmp_path: Path) -> None:
     first = PdfReader(build(results, tmp_path / "r.pdf", ["passing"])).pages[0].extract_text()
     words = " ".join(first.split())
-    assert "2 m wide, 2 m high" in words and "solvers dda, bar" in words and "dda | bar" in words
+    for part in ("Time step.", "Springs.", "Discount.", "a = 2 m", "bar (reference)", "What not to trust"):
+        assert part in words, part
 
 
 # ---- renderers ------------------------------------------------------------------------------------------------------

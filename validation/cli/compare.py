@@ -40,6 +40,12 @@ def compare(
         Path | None,
         typer.Option("--out", help="Write a one-page report.", metavar="FILE.pdf", callback=writable_pdf),
     ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw both histories and their difference, as wide as a slide.", metavar="FILE.svg|.pdf|.png"
+        ),
+    ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -53,8 +59,10 @@ def compare(
     """
     from validation.diagnosis.judgement import compare as judge
     from validation.diagnosis.reading import parse_columns, parse_scale, read
+    from validation.runs.files import check_ending
     from validation.scenes.features import refuse_bonded_column
 
+    check_ending(figure, "--figure")
     case = one_case(scene, assignments)
     refuse_bonded_column(case, "compare")  # before its file is taken for a wrong one
     foreign = read(history, parse_columns(columns), parse_scale(scale))
@@ -64,6 +72,11 @@ def compare(
         from validation.report.chapters.compare import write_page
 
         write_page(case, history.name, answer, report)
+    if figure is not None:
+        from validation.report.chapters.compare import answer_figure
+        from validation.report.figures.response import save_as
+
+        save_as(answer_figure(case, answer, slide=True), figure)
     if as_json:
         echo_json(answer.as_dict())
     else:

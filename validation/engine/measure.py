@@ -30,6 +30,8 @@ from validation.solvers.contract import EXACT_IN_TIME, NotReported, Prepared, So
 from validation.solvers.soundness import checked
 
 Part = TypeVar("Part")
+INSTANTS = 4000  # at most, at which an exact motion is kept beside its steps
+INSTANTS_OF_STEP = 20  # at most, in one of them
 
 
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
@@ -88,13 +90,32 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         provenance=origin.of_row(solver),
     )
     row.line()  # what cannot be kept is found here
-    return row, _requested_columns(run.history, scene) if run.outcome in WITH_HISTORY else None
+    if run.history is None or run.outcome not in WITH_HISTORY:
+        return row, None
+    return row, replace(_requested_columns(run.history, scene), between=_between(solver, case))
 
 
-def _requested_columns(history: History | None, scene: Scene) -> History | None:
-    """Return a history with the columns that the scene asks for and no others, which nobody has checked."""
-    if history is None:
+def _between(solver: Solver, case: Case) -> History | None:
+    """Return an exact motion at more instants than few steps show it at, None where it is stepped or there are enough.
+
+    A discount per step is taken as one per part of it, so that the rate remains.
+    """
+    time = case.scene.time
+    parts = min(INSTANTS_OF_STEP, INSTANTS // time.steps)
+    if solver.role not in EXACT_IN_TIME or parts < 2:
         return None
+    values = {"time.step": time.step / parts, "time.steps": time.steps * parts}
+    if time.gg_rate is None and time.discount != 1:
+        values["time.gg"] = time.discount ** (1 / parts)
+    scene = case.scene.with_values(values)
+    run = checked(attempt(solver, scene, case.full)[1], scene)
+    if run.history is None or run.outcome is not Outcome.COMPLETED:
+        return None
+    return _requested_columns(run.history, scene)
+
+
+def _requested_columns(history: History, scene: Scene) -> History:
+    """Return a history with the columns that the scene asks for and no others, which nobody has checked."""
     return History(history.time, {name: x for name, x in history.columns.items() if name in scene.run.columns})
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from validation.metrics import columns, contact, growth, modes, pairs
 from validation.metrics.measurable import Measurable
 from validation.metrics.pairs import Pairing
-from validation.metrics.values import finite
+from validation.metrics.values import UNDEFINED, finite
 from validation.runs.history import History
 from validation.runs.row import Value
 
@@ -33,11 +33,13 @@ class Metric:
     """One metric: a function of a `Measurable`, or of a `Pairing` where it needs a reference."""
 
     id: str
+    words: str  # what a person reads instead of the id
     unit: str  # "1" for a ratio
     says: str
     needs: frozenset[str]  # among history, static, modes, diagnostics, switches, contact, reference
     function: Callable[[Any], Value]
     measure: str = "history"  # the part of a study's `measures` that asks for it
+    undefined: str = UNDEFINED  # why it has no value where it has none, "not settled"
 
     @property
     def linear(self) -> bool:
@@ -67,6 +69,18 @@ KIND = ALL.pop("stability.kind")  # a word, which no gate can bound
 PAIRS = {name: metric for name, metric in ALL.items() if REFERENCE in metric.needs}
 SOLO = {name: metric for name, metric in ALL.items() if name not in PAIRS}
 CATALOGUE = SOLO | PAIRS
+
+
+def words_of(metric: str) -> str:
+    """Return what a person reads instead of the id of a metric; one that is not in the catalogue goes by its name."""
+    entry = ALL.get(metric)
+    return metric if entry is None else entry.words
+
+
+def in_words(metric: str, value: Value) -> Value:
+    """Return the value of a metric, where it is undefined why: "not settled", "never opens"."""
+    entry = ALL.get(metric)
+    return entry.undefined if entry is not None and value == UNDEFINED else value
 
 
 def is_count(metric: str) -> bool:

@@ -158,12 +158,13 @@ class Listing:
 
 @dataclass(frozen=True)
 class Link:
-    """A page that others lead to: its file, its name, what is on it, and the file of a picture."""
+    """A page that others lead to: its file, its name, what is on it, the file of a picture, and the pages below it."""
 
     target: str
     title: str
     text: str = ""
     image: str = ""
+    below: tuple[Link, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -181,6 +182,18 @@ class References:
 Block = Heading | Paragraph | Table | FigureBlock | Callout | PageBreak | Points | Beside | Listing | Links | References
 Blocks = list[Block]
 Chapter = Callable[["Results", "Manifest", Path], Blocks]
+
+
+def figures_of(blocks: Iterable[Block]) -> list[FigureBlock]:
+    """Return the figures among blocks, those that stand beside a text last."""
+    figures: list[FigureBlock] = []
+    beside: list[FigureBlock] = []
+    for block in blocks:
+        if isinstance(block, FigureBlock):
+            figures.append(block)
+        elif isinstance(block, Beside):
+            beside += figures_of((*block.left, *block.right))
+    return figures + beside
 
 
 def as_data(block: Block, text: Callable[[str], str]) -> dict[str, Any]:

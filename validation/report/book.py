@@ -7,8 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Blocks, Callout, FigureBlock, Heading
+from validation.report.blocks import Blocks, Callout, Heading, figures_of
+from validation.report.chapters.data import case_groups
 from validation.report.chapters.registry import chapter_of
+from validation.report.chapters.scene import slide_figure
+from validation.report.figures.response import save_as
 from validation.report.names import Readable, page_name, unescaped
 from validation.report.render.pdf import png_of, write_document
 from validation.runs.results import Results
@@ -131,7 +134,12 @@ def _damage_named(results: Results, what: str) -> Iterator[None]:
 
 
 def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = None) -> list[Path]:
-    """Write the figures of the chapters to a directory as SVG and PNG and return their paths.
+    """Write the figures of the chapters, and one for a slide of each scene, to a directory as SVG and PNG.
+
+    Returns
+    -------
+    list of Path
+        The files.
 
     Raises
     ------
@@ -146,8 +154,11 @@ def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = No
         raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
     paths: list[Path] = []
     for study in studies:
-        for block in _chapter(results, study, out):
-            if isinstance(block, FigureBlock):
-                svg = out / block.file
-                paths += [svg, png_of(svg)]
+        for block in figures_of(_chapter(results, study, out)):
+            svg = out / block.file
+            paths += [svg, png_of(svg)]
+        for group in case_groups(results, results.manifest(study)):
+            figure = slide_figure(group)
+            if figure is not None:
+                paths += [save_as(figure, out / f"{group.slug}-slide{ending}") for ending in (".svg", ".png")]
     return paths

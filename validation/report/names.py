@@ -66,7 +66,8 @@ class Readable(Results):
         history = super().history(key)
         if history is None:
             return None
-        return History(history.time, {escaped(name): values for name, values in history.columns.items()})
+        columns = {escaped(name): values for name, values in history.columns.items()}
+        return History(history.time, columns, history.between)  # an exact motion has no columns of a user's
 
 
 def _change(study: str) -> Callable[[str], str]:

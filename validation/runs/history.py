@@ -25,10 +25,13 @@ class History:
         Times of the steps [s], shape (steps,).
     columns
         Column name to values, each of shape (steps,): displacement [m], contact_pressure [Pa], others.
+    between
+        The same columns at more instants, of a motion that no time step enters; None of one that is stepped.
     """
 
     time: Array
     columns: Mapping[str, Array]
+    between: History | None = None
 
     @property
     def displacement(self) -> Array:
@@ -43,4 +46,5 @@ class History:
     def until(self, duration: float) -> History:
         """Return the part up to a time [s]; the last step may exceed it by rounding only."""
         keep = self.time <= duration * (1 + 1e-9)
-        return History(self.time[keep], {name: values[keep] for name, values in self.columns.items()})
+        columns = {name: values[keep] for name, values in self.columns.items()}
+        return History(self.time[keep], columns, self.between and self.between.until(duration))

@@ -154,6 +154,7 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "short": short,
     "percent": lambda value, _: f"{'−' * (value < 0)}{percent(abs(value))}",
     "power": lambda value, _: bounded(value, power(value)),
+    "share": lambda value, digits: short(value, digits) if abs(value) > 1e-10 else "0",  # of what is rounding none
     "g": lambda value, _: f"{value:g}",
     "brief": lambda value, _: _brief(value),
     "signed": lambda value, _: _signed(value),

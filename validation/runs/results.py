@@ -30,6 +30,7 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 ADVICE = "delete it and run again"
+BETWEEN = "between/"  # before the names of columns at more instants than the steps
 LARGEST_HEADER = 4096  # bytes before a column's numbers; numpy writes 128
 WITH_HISTORY = (Outcome.COMPLETED, Outcome.UNSTABLE)  # outcomes whose history is kept
 _parsed = functools.lru_cache(maxsize=4096)(Row.parse)  # of a growing file only the new lines
@@ -91,6 +92,9 @@ class Results:
 
     def _save_history(self, key: str, history: History) -> None:
         columns = {"time": history.time, **history.columns}
+        if history.between is not None:
+            columns[f"{BETWEEN}time"] = history.between.time
+            columns |= {f"{BETWEEN}{name}": values for name, values in history.between.columns.items()}
 
         def write(stream: IO[bytes]) -> None:  # np.savez means other things by its options from version to version
             with zipfile.ZipFile(stream, "w") as archive:
@@ -112,11 +116,12 @@ class Results:
         path = self._history_file(key)
         if not path.exists():
             return None
-        owner, columns = _read_columns(path)
-        defect = "belongs to another case" if owner != key else _defect(columns)
+        owner, columns, between = _read_columns(path)
+        defect = "belongs to another case" if owner != key else _defect(columns, between)
         if defect:
             raise InputError(defect, source=path, advice=ADVICE)
-        return History(columns.pop("time"), columns)
+        finer = History(between.pop("time"), between) if between else None
+        return History(columns.pop("time"), columns, finer)
 
     def sound(self, row: Row, steps: int, columns: Iterable[str]) -> bool:
         """Whether a row's kept history is there, its own, finite, of so many steps and with all these columns.
@@ -131,10 +136,10 @@ class Results:
             return True
         if not path.exists():
             return False
-        owner, columns_of_file = _read_columns(path)
+        owner, columns_of_file, between = _read_columns(path)
         return (
             owner == row.key
-            and _defect(columns_of_file) is None
+            and _defect(columns_of_file, between) is None
             and len(columns_of_file["time"]) == steps
             and {*columns} <= {*columns_of_file}
         )
@@ -282,20 +287,24 @@ def _archive(path: Path) -> Iterator[zipfile.ZipFile]:
         raise InputError("cannot be read as a history", source=path, advice=ADVICE) from None
 
 
-def _read_columns(path: Path) -> tuple[str, dict[str, Array]]:
-    """Return the key that a history was kept under, and its columns."""
+def _read_columns(path: Path) -> tuple[str, dict[str, Array], dict[str, Array]]:
+    """Return the key that a history was kept under, its columns, and those at more instants."""
     with _archive(path) as archive:
-        columns = {}
-        for name in archive.namelist():
-            with archive.open(name) as file:
-                columns[name.removesuffix(".npy")] = np.lib.format.read_array(file, allow_pickle=False)
-        return archive.comment.decode(errors="replace"), columns
+        columns: dict[str, Array] = {}
+        between: dict[str, Array] = {}
+        for member in archive.namelist():
+            name = member.removesuffix(".npy")
+            place = between if name.startswith(BETWEEN) else columns
+            with archive.open(member) as file:
+                place[name.removeprefix(BETWEEN)] = np.lib.format.read_array(file, allow_pickle=False)
+        return archive.comment.decode(errors="replace"), columns, between
 
 
 def _check_shape(path: Path, row: Row) -> None:
     """Refuse a kept history that has not the columns and steps of its row, from the archive's directory alone."""
     with _archive(path) as archive:
-        sizes = {member.filename.removesuffix(".npy"): member.file_size for member in archive.infolist()}
+        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
+    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
     content = 8 * row.steps  # bytes of a column of doubles
     if {*sizes} != {"time", *row.columns}:
         raise InputError("has not the columns of its row", source=path, advice=ADVICE)
@@ -303,10 +312,12 @@ def _check_shape(path: Path, row: Row) -> None:
         raise InputError("has not the steps of its row", source=path, advice=ADVICE)
 
 
-def _defect(columns: dict[str, Array]) -> str | None:
-    """Say what a history lacks: times, or one finite number a time in every column."""
+def _defect(columns: dict[str, Array], between: dict[str, Array]) -> str | None:
+    """Say what a history lacks, at its steps or between them: times, or one finite number a time in every column."""
     if "time" not in columns:
         return "holds no column time"
+    if between and (defect := _defect(between, {})):
+        return f"between the steps: {defect}"
     for name, values in columns.items():
         if values.dtype != np.float64 or values.shape != (len(columns["time"]),) or not np.isfinite(values).all():
             return f"{name} must hold one finite number a step"

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from validation.report.blocks import Blocks, Heading, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.gates import measured
+from validation.report.chapters.text import some
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
 
@@ -24,19 +23,11 @@ def gate_table(verdicts: Verdicts) -> Blocks:
     for study, passed_by_reason in passed_by_study.items():
         rows.append((f"{study}: {sum(map(len, passed_by_reason.values()))} passed",))
         for reason, passed in passed_by_reason.items():
-            scenes = _some(scene_of(v["scene"]) for v in passed)
-            rows.append((str(len(passed)), f"{_some(map(measured, passed))} of {scenes}: {reason}"))
+            scenes = some((scene_of(v["scene"]) for v in passed), MOST_NAMES)
+            rows.append((str(len(passed)), f"{some(map(measured, passed), MOST_NAMES)} of {scenes}: {reason}"))
     titles = (TableColumn("Gates", "decimal"), TableColumn("Metrics and scenes: why the band is what it is", "fill"))
     caption = (
         "Gates that passed, a line for each reason of a band, with the kind of reference in brackets; the gallery and "
         "verdicts.json list each gate with its value and its band."
     )
     return [Heading("Gates", 2), table(titles, rows, caption, ruled=False, dense=True)] if rows else []
-
-
-def _some(names: Iterable[str]) -> str:
-    """Return the first few of some names, each once, and how many more there are."""
-    distinct = list(dict.fromkeys(names))
-    more = len(distinct) - MOST_NAMES
-    first = ", ".join(distinct[:MOST_NAMES])
-    return f"{first}, {more} more" if more > 0 else first

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validation.report.appendix.alarms import alarm_table
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.glossary import glossary
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Blocks, Heading, References
+from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import Groups, Verdicts
 from validation.runs.results import Results
 
@@ -17,10 +17,11 @@ def appendix(
     results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str], gates: bool = False
 ) -> Blocks:
     """Return words, alarms, parameters, provenance and references, and the gates that passed if they are asked for."""
+    alarms: Blocks = [*alarm_lines(groups)] if len(groups) > 1 else []  # of one scene on its own page
     return [
         Heading("Appendix"),
         *glossary(),
-        *alarm_table(groups),
+        *([Heading("Alarms", 2), *alarms] if alarms else []),
         *parameter_table(groups),
         *provenance(results, studies),
         *(gate_table(verdicts) if gates else ()),

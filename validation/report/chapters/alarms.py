@@ -6,18 +6,25 @@ from itertools import chain
 
 from validation.report.blocks import Callout
 from validation.report.chapters.data import Groups
+from validation.report.chapters.text import some
+from validation.runs.case_name import scene_of
 from validation.runs.records import AlarmRecord
+
+MOST_NAMES = 6  # of scenes in a line
 
 
 def alarm_lines(groups: Groups) -> list[Callout]:
-    """Return each kind of alarm with the cases that raised it, and the sentence of the first."""
+    """Return each kind of alarm with the number of its cases, scenes if several, and the sentence of the first."""
     raised: dict[str, list[AlarmRecord]] = {}
     for alarm in chain.from_iterable(group.alarms for group in groups.values()):
         raised.setdefault(alarm["kind"], []).append(alarm)
     lines = []
     for kind, records in raised.items():
         first = records[0]
-        cases = len({record["scene"] for record in records})
+        names = [record["scene"] for record in records]
+        cases = len(set(names))
         number = f" in {cases} cases" if cases > 1 else ""
-        lines.append(Callout(f"Alarm{number}, {kind}: {first['scene']}: {first['sentence']}.", "warn"))
+        scenes = list(map(scene_of, names))
+        where = f" of {some(scenes, MOST_NAMES)}" if len(set(scenes)) > 1 else ""
+        lines.append(Callout(f"Alarm{number}{where}, {kind}: {first['scene']}: {first['sentence']}.", "warn"))
     return lines

@@ -11,6 +11,7 @@ from validation.diagnosis.sentences import told_lines
 from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.text import parameters
 from validation.report.figures import histories, motion
+from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel
 from validation.report.render.pdf import write_document
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
@@ -32,8 +33,8 @@ def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
     return write_document(out, lambda directory: page(scene, source, answer, directory))
 
 
-def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence[Block]:
-    """Return the blocks of the page; its figure is written to a directory."""
+def answer_figure(scene: Scene, answer: Answer, slide: bool = False) -> Figure:
+    """Draw the file, DDA on the scene and the best explanation; below, what they leave of the file's displacement."""
     histories_by_name = {}
     for name, (time, values) in answer.curves.items():
         pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
@@ -46,6 +47,11 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         {},
         next(iter(answer.curves)),
     )
+    return motion.history_figure([panel], *drawn, apart=True, slide=slide)
+
+
+def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence[Block]:
+    """Return the blocks of the page; its figure is written to a directory."""
     caption = (
         "The file, DDA on the scene allowing for what is no error, and the best explanation; below, what they leave of "
         "the file's displacement."
@@ -55,7 +61,7 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         Heading(f"{source} beside {scene.name}"),
         Callout(answer.sentence, "warn") if answer.departure else Paragraph(answer.sentence, "lead"),
         Paragraph(parameters(scene, set()), "small"),
-        histories.saved(motion.history_figure([panel], *drawn, apart=True), directory, FIGURE, caption),
+        histories.saved(answer_figure(scene, answer), directory, FIGURE, caption),
         *_facts(answer),
         *_evidence(answer),
         *([_ranking(answer)] if answer.ranking else []),

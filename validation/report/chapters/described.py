@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from validation.metrics.catalogue import in_words
 from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import cell
@@ -57,7 +58,7 @@ class CaseColumn:
     def text(self, value: Value) -> str:
         """Return a value as a cell: a number, its word, or a dash where there is none."""
         if value is None or isinstance(value, str):
-            return cell(value)
+            return cell(in_words(self.of.rpartition(" ")[2], value))
         number = value if self.factor == 1 else value * self.factor  # a count stays one: its zero is no rounding
         if self.decimals is None:
             return FORMS[self.form](number, self.digits)

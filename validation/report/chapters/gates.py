@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.metrics.catalogue import is_count
+from validation.metrics.catalogue import in_words, is_count, words_of
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.text import capital, cell
@@ -18,7 +18,7 @@ def value_cell(value: Value, metric: str = "") -> str:
     """Return the value of a verdict on a metric without needless zeros; a count that is none is 0."""
     if value == 0 and is_count(metric):
         return "0"
-    return bounded(value, short(value)) if isinstance(value, int | float) else cell(value)
+    return bounded(value, short(value)) if isinstance(value, int | float) else cell(in_words(metric, value))
 
 
 def window(v: VerdictRecord) -> str:
@@ -27,8 +27,9 @@ def window(v: VerdictRecord) -> str:
 
 
 def measured(v: VerdictRecord) -> str:
-    """Return the metric of a gate, and its window."""
-    return f"{v['metric']}@{window(v)}" if window(v) else v["metric"]
+    """Return in words what a gate bounds, and its window."""
+    until = f" up to {window(v).removesuffix('s')}\u00a0s" if window(v) else ""
+    return f"{words_of(v['metric'])}{until}"
 
 
 def band(v: VerdictRecord) -> str:
@@ -73,9 +74,10 @@ def gate_table(verdicts: Verdicts) -> Table:
     """Return gates with value and band, those of one reason above it."""
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in verdicts:
-        row = (v["verdict"], v["id"], value_cell(v["value"], v["metric"]), band(v))
+        subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
+        row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band(v))
         rows_by_reason.setdefault(reason(v), []).append(row)
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
-    return table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "id"), "Value", "Band"), lines, ruled=False)
+    return table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "fill"), "Value", "Band"), lines, ruled=False)

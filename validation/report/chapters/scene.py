@@ -5,26 +5,29 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
+from validation.report.blocks import Beside, Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
 from validation.report.chapters.ledger import METRICS, ledger_blocks, parts_of
+from validation.report.chapters.summary import scene_summary
 from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
+from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
+from validation.report.figures.drawing import scene_figure
 from validation.report.scene.differences import difference_table
 from validation.report.scene.page import SceneDescription
 from validation.runs.case_name import CaseName
 from validation.runs.columns import rank
-from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import bounded, percent, plain, power, short
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -37,6 +40,12 @@ from validation.suite.folders import sources_of
 MOST_PANELS = 10
 FEW = 4  # scenes of a study; of more of them a figure holds the first column alone
 CALM = 1.5  # times the time in which the slowest line settles
+PERIODS = 5  # of the first mode, over which the figure that opens a page shows a free vibration
+VISIBLE = 0.1  # relative difference that is seen on a page, while the motions are still seen to be the same one
+FEWEST = 3  # steps that make a line
+LEAD_COLUMNS = 2  # that this figure holds
+DRAWING_SHARE = 0.38  # of the width of a page
+LEAD_ROW = 30.0  # mm, height of a column in it
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
 
@@ -44,7 +53,10 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
     if len(groups) == 1:
-        return scene_page(groups[0], directory)
+        _, finding, *section = scene_section(groups[0], directory)
+        summary = scene_summary(groups[0], directory)
+        lead = lead_figure(groups[0], directory)
+        return [Heading(groups[0].title), finding, *summary, *lead, *section, *budget_blocks(groups[0], directory)]
     columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
     blocks = opening(manifest)
     for group, drawn in zip(groups, columns, strict=True):
@@ -53,15 +65,16 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
 
 
 def scene_page(group: CaseGroup, directory: Path) -> Blocks:
-    """Return the page of a scene: its model, what its solvers differ by, its alarms, its histories and numbers."""
-    _, conclusion, *section = scene_section(group, directory, apart=True)
+    """Return the page of a scene: drawing and finding, the case that shows it best, alarms, all cases, numbers."""
+    _, finding, *section = scene_section(group, directory, () if _is_shown_whole(group) else None)
+    drawing = histories.saved(scene_figure(group.cases[0].scene), directory, f"{group.slug}-drawing.svg", "")
     return [
         Heading(group.title),
-        conclusion,
-        *description(group).model(),
+        Beside((drawing,), (finding, description(group).facts()), DRAWING_SHARE),
+        *lead_figure(group, directory),
         *alarm_lines({group.name: group}),
-        *difference_blocks(group),
         *section,
+        *difference_blocks(group),
         *budget_blocks(group, directory),
     ]
 
@@ -100,7 +113,6 @@ def scene_section(
     group: CaseGroup,
     directory: Path,
     columns: Sequence[str] | None = None,
-    apart: bool = False,
     without: Sequence[str] = (),
 ) -> Blocks:
     """Return the section of one scene: its finding in words, the figure that shows it, the numbers that matter.
@@ -113,15 +125,13 @@ def scene_section(
         Where the figure is written.
     columns
         Columns of histories that the figure holds, all by default.
-    apart
-        Whether the figure holds how far the solvers are apart as well.
     without
         Solvers that are left out of the figure.
     """
     blocks: Blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
-        blocks.append(history_block(group, drawn_columns, directory, apart, without))
+        blocks.append(history_block(group, drawn_columns, directory, without))
     scene = group.cases[0].scene
     if features.linear(scene) and scene.kind == "block":
         table = damping_table(group)
@@ -247,8 +257,110 @@ def _columns(group: CaseGroup) -> list[str]:
     return sorted(names, key=lambda name: (rank(name), name))
 
 
+def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
+    """Draw the case and the window that show what the solvers differ by; nothing where no history was kept."""
+    columns = _columns(group)[:LEAD_COLUMNS]
+    panel, sentences = lead_panel(group, columns)
+    if panel is None:
+        return []
+    sentences += [*_on_one([panel], columns), *_reading([panel], columns, apart=True)]
+    figure = motion.history_figure([replace(panel, title="")], *columns, apart=True, height=LEAD_ROW)
+    return [histories.saved(figure, directory, f"{group.slug}-lead.svg", " ".join(sentences), group.name)]
+
+
+def slide_figure(group: CaseGroup) -> Figure | None:
+    """Return the figure that opens the page of a scene for a slide, under the title of the scene."""
+    columns = _columns(group)[:LEAD_COLUMNS]
+    panel, _ = lead_panel(group, columns)
+    if panel is None:
+        return None
+    title = ": ".join(filter(None, (group.title, panel.title)))
+    return motion.history_figure([replace(panel, title=title)], *columns, apart=True, slide=True)
+
+
+def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel | None, list[str]]:
+    """Return the case and the window that show what the solvers differ by, and what they show in words.
+
+    The window is that of `free_window`; the case is that in which, over it, the judged solver and its reference differ
+    by a share nearest to `VISIBLE`: further apart their lines have no more to do with one another, closer they are one.
+    """
+    panels: dict[str, HistoryPanel] = {}
+    for case in group.cases if columns else ():
+        window = min(free_window(case, columns[0]), _settling_time([case], columns, ()))
+        panel = _panel(case, columns, window, ())
+        if any(history.time.size >= FEWEST for history in panel.histories.values()):
+            panels[case.name] = panel
+    if not panels:
+        return None, []
+    shares = {name: lead_difference(panel, columns[0]) for name, panel in panels.items()}
+    distances = {name: abs(math.log(share / VISIBLE)) for name, share in shares.items() if share}
+    telling = min(distances, key=distances.__getitem__, default=next(iter(panels)))
+    panel = panels[telling]
+    sentences = []
+    if len(group.cases) > 1:
+        sentences.append(f"{panel.title}, of {len(group.cases)} cases the one that shows most.")
+    share = shares[telling]
+    if share:
+        span = max(float(history.time[-1]) for history in panel.histories.values())
+        name = columns[0].replace("_", " ")
+        sentences.append(
+            f"Over these {short(span, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
+            "(relative L2)."
+        )
+    return panel, sentences
+
+
+def _is_shown_whole(group: CaseGroup) -> bool:
+    """Whether the figure that opens the page of a scene shows all: one case, its columns and steps."""
+    columns = _columns(group)
+    case, *others = group.cases
+    if others or not 0 < len(columns) <= LEAD_COLUMNS:
+        return False
+    return free_window(case, columns[0]) >= min(_ends([case]), default=0.0)
+
+
+def _judged(panel: HistoryPanel) -> str | None:
+    """Return the solver of a panel that is judged: DDA, or the first beside the reference."""
+    solvers = [name for name in panel.histories if name != panel.reference]
+    return next((name for name in by_role(Role.JUDGED) if name in solvers), next(iter(solvers), None))
+
+
+def lead_difference(panel: HistoryPanel, column: str) -> float | None:
+    """Return the relative L2 difference that a panel shows between its judged solver and its reference."""
+    one = panel.histories.get(_judged(panel) or "")
+    base = panel.histories.get(panel.reference or "")
+    if one is None or base is None or one.time.size != base.time.size:
+        return None
+    if column not in one.columns or column not in base.columns:
+        return None
+    size = float(np.linalg.norm(base.columns[column]))
+    with np.errstate(all="ignore"):  # a run that blew up differs by infinity
+        off = float(np.linalg.norm(one.columns[column] - base.columns[column]))
+    return off / size if size > 0 and 0 < off < math.inf else None
+
+
+def free_window(case: CaseResults, column: str) -> float:
+    """Return over which time [s] a case is shown: the first periods of a vibration, or all of a motion that is driven.
+
+    Where no solver knows the frequency of the first mode, a period is what a history swings in.
+    """
+    end = min(_ends([case]), default=0.0)
+    load = case.scene.stated_load
+    if case.scene.stated_input is not None or (load is not None and load.base_motion is not None):
+        return end
+    frequencies = [case.number(solver, "mode1.frequency") for solver in case.rows]
+    known = [frequency for frequency in frequencies if frequency]
+    if known:
+        return min(end, PERIODS * 2 * math.pi / min(known))
+    for history in case.histories.values():
+        crossings = motion.swings(history, column) if column in history.columns else 0
+        if crossings > 2 * PERIODS:
+            return end * 2 * PERIODS / crossings
+    return end
+
+
 def history_block(
-    group: CaseGroup, columns: Sequence[str], directory: Path, apart: bool = False, without: Sequence[str] = ()
+    group: CaseGroup, columns: Sequence[str], directory: Path, without: Sequence[str] = ()
 ) -> FigureBlock:
     """Draw columns of a scene's cases over the time that all of them run, and return the figure with its caption."""
     evenly_spaced = np.linspace(0, len(group.cases) - 1, MOST_PANELS)
@@ -256,7 +368,7 @@ def history_block(
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
     settled = _settling_time(cases, columns, without)
-    panels = [_panel(case, columns, min(window, settled), without, _finer(case, group.cases)) for case in cases]
+    panels = [_panel(case, columns, min(window, settled), without) for case in cases]
     panels = [panel for panel in panels if panel.histories]  # the steps of the others are longer than that time
     sentences = []
     if len(panels) < len(group.cases):
@@ -266,8 +378,8 @@ def history_block(
         sentences.append(f"The first {plain(window, 2)} s; all have settled to 1\u00a0% by then.")
     elif max(ends, default=0.0) > window * 1.001:
         sentences.append(f"The first {plain(window, 3)} s, the time that all cases run.")
-    sentences += [*_on_one(panels, columns), *_reading(panels, columns, apart)]
-    figure = motion.history_figure(panels, *columns, apart=apart)
+    sentences += [*_on_one(panels, columns), *_reading(panels, columns)]
+    figure = motion.history_figure(panels, *columns)
     return histories.saved(figure, directory, f"{group.slug}-history.svg", " ".join(sentences), group.name)
 
 
@@ -289,7 +401,7 @@ def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without
                 step = case.number(solver, f"{_PREFIX.get(column, column)}.settling_step")
                 if step is None:
                     return math.inf
-                latest = max(latest, step * case.scene.time.step)
+                latest = max(latest, max(step, FEWEST) * case.scene.time.step)
     return CALM * latest
 
 
@@ -301,7 +413,7 @@ def _on_one(panels: HistoryPanels, columns: Sequence[str]) -> list[str]:
     return [f"{', '.join(parts)}."] if parts else []
 
 
-def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list[str]:
+def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool = False) -> list[str]:
     """Say how the figure is read, as far as it is not written on it."""
     sentences = []
     if start := motion.start_of(panels, columns[0]):
@@ -321,33 +433,8 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool) -> list
     return sentences
 
 
-def _finer(case: CaseResults, cases: Sequence[CaseResults]) -> dict[str, History]:
-    """Return the exact solutions of a case at the most instants that a case of the same motion has.
-
-    They do not depend on the step: cases that differ in it alone have one exact motion, which few instants show as a
-    zigzag.
-    """
-    finer: dict[str, History] = {}
-    for solver in (*by_role(Role.TRUTH), *by_role(Role.LIMIT)):
-        if solver not in case.histories:
-            continue
-        same = [other for other in cases if solver in other.histories and _motion_of(other) == _motion_of(case)]
-        finest = min(same, key=lambda other: other.scene.time.step)
-        if finest.scene.time.step < case.scene.time.step:
-            finer[solver] = finest.histories[solver]
-    return finer
-
-
-def _motion_of(case: CaseResults) -> dict[str, Any]:
-    """Return the definition of a case without its steps."""
-    definition = {name: table for name, table in case.scene.definition().items() if name not in ("name", "title")}
-    time = {key: value for key, value in definition["time"].items() if key not in ("step", "steps")}
-    return definition | {"time": time}
-
-
-def _panel(
-    case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str], finer: Mapping[str, History]
-) -> HistoryPanel:
+def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Sequence[str]) -> HistoryPanel:
+    """Return the histories of a case up to a time [s]; an exact motion is drawn at the instants between the steps."""
     drawn = {}
     for solver, history in case.histories.items():
         shown = history.until(window)
@@ -361,6 +448,6 @@ def _panel(
         numbers = [value for value in values if value is not None]
         if numbers:
             static[column] = numbers[0]
-    finer_drawn = {solver: history.until(window) for solver, history in finer.items() if solver in drawn}
+    finer = {solver: history.between for solver, history in drawn.items() if history.between is not None}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer_drawn, of_boxes=case.scene.rigid is not None)
+    return HistoryPanel(title, drawn, static, reference, finer=finer, of_boxes=case.scene.rigid is not None)

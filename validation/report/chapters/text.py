@@ -17,7 +17,6 @@ from validation.scenes.scene import Scene
 
 AS_STATED = "as stated"  # label of a case without swept values
 _MEANINGS = (
-    ("undefined", "undef.", "undefined, the metric has no meaning for this run."),
     ("alias", "alias", "the frequency lies beyond π/Δt, and samples every Δt show another."),
     ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
 )
@@ -40,6 +39,14 @@ NO_DATA = {  # edges of a polygon, the cut of which the blocks are counted, and 
 def capital(text: str) -> str:
     """Return a sentence with a capital letter."""
     return text[:1].upper() + text[1:]
+
+
+def some(names: Iterable[str], most: int) -> str:
+    """Return the first few of some names, each once, and how many more there are."""
+    distinct = list(dict.fromkeys(names))
+    more = len(distinct) - most
+    first = ", ".join(distinct[:most])
+    return f"{first}, {more} more" if more > 0 else first
 
 
 def span(values: Sequence[float]) -> str:

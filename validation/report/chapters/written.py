@@ -45,8 +45,8 @@ from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.queries import Line, Query, StudyTable
 from validation.report.chapters.scene import gate_count, history_block, opening, outcomes, scene_section
 from validation.report.chapters.text import capital
-from validation.report.figures.blocks import blocks_figure
 from validation.report.figures.charts import ChartLine
+from validation.report.figures.drawing import blocks_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array

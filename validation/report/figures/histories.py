@@ -25,6 +25,7 @@ HOUSE_STYLE = mpl.rc_params_from_file(str(Path(__file__).with_name("house.mplsty
 EndLabel = tuple[float, str, str]  # value at the end of a line, its name, its colour
 P = TypeVar("P", bound=Any)  # a dataclass with a title
 WIDTH = 166.0  # mm, text width of the report
+SLIDE = (136.0, 76.5)  # mm, width and height of a figure for a slide of 16 to 9, on which its letters have 13 pt
 LABEL_GAP = 3.0  # mm between the names of two lines
 LETTER = 1.5  # mm, width of a letter of a name, amply
 COLUMN_GAP = 4.0  # mm between two panels
@@ -110,13 +111,13 @@ def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> No
 
 
 def small_multiples(
-    panels: Sequence[P], columns: int, margins: Margins, rows: Sequence[tuple[float, float]]
+    panels: Sequence[P], columns: int, margins: Margins, rows: Sequence[tuple[float, float]], width: float = WIDTH
 ) -> tuple[Figure, list[tuple[Sequence[P], list[list[Axes]]]]]:
     """Return a figure of titled panels in bands, and for each band its panels and its rows of axes.
 
     Titles are broken so that they stay above their panel; bands and margin grow by the lines that this takes.
     """
-    across = (WIDTH - margins.left - margins.right) / columns - COLUMN_GAP
+    across = (width - margins.left - margins.right) / columns - COLUMN_GAP
     titles = []
     for panel in panels:
         # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
@@ -126,7 +127,7 @@ def small_multiples(
     titled = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
     row_heights = [*rows[:-1], (rows[-1][0], rows[-1][1] + extra)]
     bands = [titled[i : i + columns] for i in range(0, len(titled), columns)]
-    figure, grid = axes_grid(row_heights * len(bands), columns, replace(margins, top=margins.top + extra))
+    figure, grid = axes_grid(row_heights * len(bands), columns, replace(margins, top=margins.top + extra), width)
     return figure, [(band, grid[len(rows) * i : len(rows) * (i + 1)]) for i, band in enumerate(bands)]
 
 

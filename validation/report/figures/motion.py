@@ -29,6 +29,8 @@ from validation.report.figures.curves import (
 )
 from validation.report.figures.histories import (
     LETTER,
+    SLIDE,
+    WIDTH,
     Margins,
     house_style,
     label_ends,
@@ -42,6 +44,7 @@ from validation.runs.history import Array, History
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
 
+ROW = 20.0  # mm, height of a column
 TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
 SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
 START = 24  # swings that the start shows
@@ -51,12 +54,14 @@ FLOOR = 1e-9  # of the static value; smaller differences are not drawn
 Twins = Mapping[str, Mapping[str, float]]  # a drawn line -> the lines on it, and how far off they are at most
 
 
-def history_figure(panels: HistoryPanels, *columns: str, apart: bool = False) -> Figure:
-    """Draw columns of all solvers, one panel a case; if `apart`, the first one's differences from the reference below.
+def history_figure(
+    panels: HistoryPanels, *columns: str, apart: bool = False, height: float = ROW, slide: bool = False
+) -> Figure:
+    """Draw columns of all solvers, one panel a case, each column so many mm high, or all of them to fill a slide.
 
-    Differences are divided by the static value (by the reference's largest value where there is none) and shown
-    as the largest magnitude in each fortieth of the time, on a logarithmic axis; those of lines that lie on one another
-    are left out.
+    If `apart`, the first column's differences from the reference stand below. They are divided by the static value (by
+    the reference's largest value where there is none) and shown as the largest magnitude in each fortieth of the time,
+    on a logarithmic axis; those of lines that lie on one another are left out.
     """
     on_one = twins(panels, columns)
     drawn = [_with_lines(panel, on_one) for panel in panels]
@@ -64,12 +69,21 @@ def history_figure(panels: HistoryPanels, *columns: str, apart: bool = False) ->
     apart = apart and any(differences(panel, columns[0]) for panel in drawn)
     names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
     room = max(14.0, 5.0 + LETTER * max(map(len, names.values()), default=0))
-    rows = [(20.0, 3.0)] * len(columns) + [(14.0, 3.0)] * apart
+    margins = Margins(left=15.0, right=room)
+    below = [(14.0, 3.0)] * apart
+    gap = 3.0
     if span is not None:  # whose own times stand below the rows above
-        rows[len(columns) - 1 : len(columns)] = [(20.0, 7.0), (16.0, 7.0 if apart else 3.0)]
+        gap = 7.0
+        below.insert(0, (16.0, 7.0 if apart else 3.0))
+    if slide:
+        rest = [(0.0, 3.0)] * (len(columns) - 1) + [(0.0, gap), *below]
+        room_for_columns = SLIDE[1] - margins.top - margins.bottom - sum(map(sum, rest)) + rest[-1][1]
+        height = room_for_columns / len(columns)
+    rows = [*[(height, 3.0)] * (len(columns) - 1), (height, gap), *below]
     rows[-1] = (rows[-1][0], 13.0)
+    width = SLIDE[0] if slide else WIDTH
     with house_style():
-        figure, bands = small_multiples(drawn, _columns(len(panels)), Margins(left=15.0, right=room), rows)
+        figure, bands = small_multiples(drawn, _columns(len(panels)), margins, rows, width)
         for band, lines in bands:
             for row, column in zip(lines, columns, strict=False):
                 _history_row(row, band, column, common_range(drawn, column))

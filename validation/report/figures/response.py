@@ -22,7 +22,7 @@ COLORS = ("#d55e00", "#0072b2", "#009e73")
 DASHED = (4.0, 1.6)
 BETWEEN = 12.0  # two panels [mm]: the powers of ten of the right one stand there
 HALF_TURNS = {-np.pi: "−π", 0.0: "0", np.pi: "π"}
-DOTS = 200  # an inch, of PNG files
+PIXELS = 1920  # across a PNG file: those of a slide
 UNDATED: dict[str, dict[str, None]] = {".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
 
@@ -80,6 +80,8 @@ def save_as(figure: Figure, path: Path) -> Path:
     with house_style():
         write_atomically(
             path,
-            lambda stream: figure.savefig(stream, format=ending[1:], dpi=DOTS, metadata=UNDATED[ending]),
+            lambda stream: figure.savefig(
+                stream, format=ending[1:], dpi=PIXELS / figure.get_figwidth(), metadata=UNDATED[ending]
+            ),
         )
     return path

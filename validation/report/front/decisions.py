@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Callout, Heading, Paragraph, Table
+from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.data import CaseResults, Groups
 from validation.report.chapters.described import Description
 from validation.report.figures import histories
@@ -37,7 +37,7 @@ def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     """Return the three pages."""
     blocks: Blocks = []
     for page in (step_page, spring_page, discount_page):
-        blocks += page(groups, paper, directory)
+        blocks += [PageBreak(), *page(groups, paper, directory)]
     return blocks
 
 
@@ -158,7 +158,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     return [
         Heading("Decision 2: which spring stiffness?", 2),
         _rule(spring_rule(groups, base), "damping my-block.toml --set contact.stiffness=1e10"),
-        histories.saved(chart_figure([deflection, ringing], 34.0), directory, "decision-springs.svg", caption),
+        histories.saved(chart_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
         Paragraph(PAGE.text("ringing")),
     ]

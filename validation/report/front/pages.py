@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from validation.report.blocks import Blocks, PageBreak, Paragraph
-from validation.report.chapters.alarms import alarm_lines
+from validation.report.blocks import Blocks, Heading, PageBreak, Paragraph
 from validation.report.chapters.data import Groups, Verdicts
 from validation.report.chapters.gates import not_passed
+from validation.report.chapters.summary import overview
 from validation.report.front.decisions import decisions
 from validation.report.front.first import first_page, verdict_line
 from validation.report.front.groups import paper_scene
@@ -24,20 +24,19 @@ def front_pages(
     provenances: Sequence[Mapping[str, Any]] = (),
 ) -> Blocks:
     """Return the pages that are read first; of results without the paper's block, what they are and their verdicts."""
-    imprint = Paragraph(f"The model is that of {PAPER}. {identity(provenances)}.", "small")
     paper = paper_scene(groups)
+    model = "" if paper is None else f"The model is that of {PAPER}. "
+    imprint = Paragraph(f"{model}{identity(provenances)}.", "small")
     failures = not_passed(verdicts)
     if paper is None:
         judged = [verdict_line(verdicts)] if verdicts else []
         if len(groups) == 1:  # whose page begins here, with its alarms
             return [imprint, *judged, *failures]
-        what = f"{len(groups)} scene{'s' * (len(groups) != 1)} of {', '.join(studies)}: one chapter a study."
-        return [imprint, Paragraph(what, "lead"), *judged, *alarm_lines(groups), *failures, PageBreak()]
+        return [imprint, Heading("Scenes"), overview(groups), *judged, *failures]
     return [
         imprint,
         *first_page(groups, paper, verdicts, directory),
         *([PageBreak(), *failures] if failures else []),
-        PageBreak(),
         *decisions(groups, paper, directory),
         PageBreak(),
     ]

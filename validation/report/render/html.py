@@ -69,14 +69,19 @@ def page(
     anchors: set[str] = set()
     for block in data:
         if block["block"] == "Heading":
-            anchor = re.sub(r"\W+", "-", block["text"]).strip("-").lower()
-            block["anchor"] = "" if anchor in anchors else anchor
-            anchors.add(anchor)
+            place = anchor(block["text"])
+            block["anchor"] = "" if place in anchors else place
+            anchors.add(place)
     environment = _environment(package)
     return environment.get_template(template).render(
         title=title, blocks=data, file=file, name=name, menu=menu, imprint=readable(imprint), figure=figure,
         scenes=scenes, style=STYLE, script=SCRIPT, sources=references(), **values,
     )  # fmt: skip
+
+
+def anchor(heading: str) -> str:
+    """Return where on its page the first heading with a text stands."""
+    return re.sub(r"\W+", "-", heading).strip("-").lower()
 
 
 def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:

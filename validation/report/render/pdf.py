@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 import tempfile
@@ -9,7 +10,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.report.blocks import Block, References, as_data
+from validation.report.blocks import (
+    Beside,
+    Block,
+    FigureBlock,
+    Heading,
+    PageBreak,
+    Paragraph,
+    References,
+    Table,
+    as_data,
+)
 from validation.report.names import unescaped
 from validation.report.references import BIBLIOGRAPHY, CITED, marked, references
 from validation.runs.files import write_atomically
@@ -37,18 +48,46 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
     return out
 
 
+def kept_with_next(blocks: Sequence[Block]) -> list[bool]:
+    """Return which blocks stay on the page on which the next one begins.
+
+    Paragraphs and rules that lead to a figure or a table do, and a figure before its table; so does all that opens a
+    chapter before its first figure, table or section. Headings always do.
+    """
+    is_lead = [isinstance(block, Paragraph) or getattr(block, "tone", "") == "rule" for block in blocks]
+    kept = [False] * len(blocks)
+    is_opening = False
+    for place, (block, following) in enumerate(itertools.pairwise(blocks)):
+        kept[place] = is_opening and is_lead[place] and not isinstance(following, PageBreak)
+        is_opening = kept[place] or (isinstance(block, Heading) and block.level == 1)
+    for place in reversed(range(len(blocks) - 1)):
+        following = blocks[place + 1]
+        if is_lead[place]:
+            leads_on = is_lead[place + 1] and kept[place + 1]
+            kept[place] |= leads_on or isinstance(following, FigureBlock | Table | Beside)
+        elif isinstance(blocks[place], FigureBlock):
+            kept[place] = isinstance(following, Table)
+    return kept
+
+
 def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
     """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
     import typst
 
     shutil.copyfile(TEMPLATE, root / "report.typ")
     shutil.copyfile(BIBLIOGRAPHY, root / BIBLIOGRAPHY.name)
+    content = [
+        as_data(block, lambda text: unescaped(text, marked)) | {"kept": kept}
+        for block, kept in zip(blocks, kept_with_next(blocks), strict=True)
+    ]
+    if CITED not in json.dumps(content, ensure_ascii=False):  # a list of no sources would be its title alone
+        content = [block for block in content if block["block"] != References.__name__]
     data = {
         "title": "Discontinuous Deformation Analysis against finite elements",
-        "subtitle": "Cross-validation on the two-block model",
+        "subtitle": "Cross-validation of blocks on contact springs",
         "keys": list(references()) if References() in blocks else [],
         "cited": CITED,
-        "blocks": [as_data(block, lambda text: unescaped(text, marked)) for block in blocks],
+        "blocks": content,
     }
     (root / "report.json").write_text(json.dumps(data, allow_nan=False), encoding="utf-8")
     try:

@@ -1,4 +1,4 @@
-"""The model of a scene, drawn in text with its parameters beside it."""
+"""The model of a scene, drawn in text with its parameters beside it, and these words alone."""
 
 from __future__ import annotations
 
@@ -20,24 +20,44 @@ NARROWEST = 5  # the same of a tall block
 BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
 # keys of a column whose contacts open or slip
 OF_CONTACTS = {"law", "stiffness", "gap", "strength", "friction", "gravity", "settled", "solve_limit"}
+Rows = list[tuple[str, str]]  # lines of the drawing, and the words beside each
 
 
 def drawing(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield the model of a scene, drawn in text."""
+    across, rows = _rows_of(scene, width)
+    for art, words in rows:
+        yield (art.ljust(across + BESIDE) + words).rstrip()
+
+
+def model_words(scene: Scene) -> list[str]:
+    """Return what stands beside the drawing: loads, sizes, materials, contacts."""
+    return [words for _, words in _rows_of(scene, None)[1] if words]
+
+
+def _rows_of(scene: Scene, width: int | None) -> tuple[int, Rows]:
+    """Return how many characters the body is wide, and the drawing's lines with their words."""
     if scene.rigid is not None:
-        return boxes(scene.rigid)
+        return INSIDE, list(boxes(scene.rigid))
     if scene.plane is not None:
         return plane_blocks(scene.plane)
-    return column(scene) if scene.column is not None else block(scene, width)
+    if scene.column is not None:
+        return INSIDE, list(column(scene))
+    return block(scene, width)
 
 
-def block(scene: Scene, width: int | None) -> Iterator[str]:
-    """Yield a block on its springs, to scale as far as characters go, with its parameters beside it."""
+def _across(slenderness: float) -> int:
+    """Return the characters of a body's width; a tall one has fewer."""
+    return INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+
+
+def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
+    """Return a block on its springs, to scale as far as characters go, with its parameters beside it."""
     b = scene.block
     wide, high = np.ptp(b.outline, axis=0)
     slenderness = wide / high
-    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
-    rows = _rows(across, slenderness)
+    across = _across(slenderness)
+    height = _height(across, slenderness)
     shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
     cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
     start = {f"starts at {b.velocity:g} m/s": b.velocity, f"tilted by {b.tilt:g} deg": b.tilt}
@@ -48,16 +68,12 @@ def block(scene: Scene, width: int | None) -> Iterator[str]:
         *filter(None, [", ".join(words for words, value in start.items() if value)]),
     ]
     *above, last = textwrap.wrap(_loads(scene), (width or 1000) - across - BESIDE, break_on_hyphens=False)
-    yield from (" " * (across + BESIDE) + text for text in above)
+    rows: Rows = [("", text) for text in above]
     mark = ">" if scene.load.traction else ""
     if scene.load.pressure:
         mark = "v"
     arrows = " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
-    yield f"  {arrows.ljust(across + 2)}   {last}"
-    yield f"  +{'-' * across}+"
-    for text in (*beside, *[""] * (rows - len(beside))):
-        yield f"  |{' ' * across}|   {text}".rstrip()
-    yield f"  +{'-' * across}+"
+    rows += [(f"  {arrows}", last), *_box_rows(across, height, beside)]
     c = scene.contact
     springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
     if c.shear_stiffness is not None:
@@ -66,11 +82,18 @@ def block(scene: Scene, width: int | None) -> Iterator[str]:
     if c.friction is not None:
         holds += f", friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
     foot = "z" if c.law == "locked" else "x"
-    yield f"  {foot}{' ' * across}{foot}   {springs}"
-    yield f" {'=' * (across + 4)}  {holds}"
+    rows += [(f"  {foot}{' ' * across}{foot}", springs), (f" {'=' * (across + 4)}", holds)]
+    return across, rows
 
 
-def _rows(across: int, slenderness: float) -> int:
+def _box_rows(across: int, height: int, beside: list[str]) -> Rows:
+    """Return a box of so many characters and rows, with words beside its first rows."""
+    edge = (f"  +{'-' * across}+", "")
+    inside = [(f"  |{' ' * across}|", text) for text in (*beside, *[""] * (height - len(beside)))]
+    return [edge, *inside, edge]
+
+
+def _height(across: int, slenderness: float) -> int:
     """Return the rows of a body's inside; a row is as high as two columns are wide."""
     return min(max(3, round(across / slenderness / 2)), INSIDE // 2)
 
@@ -84,7 +107,7 @@ def _loads(scene: Scene) -> str:
     return ", ".join(loads) or "no load"
 
 
-def column(scene: Scene) -> Iterator[str]:
+def column(scene: Scene) -> Iterator[tuple[str, str]]:
     """Yield the layers of a column from the top down, and what it stands on."""
     layered_column = scene.column
     if layered_column is None:
@@ -100,32 +123,32 @@ def column(scene: Scene) -> Iterator[str]:
         signal = f"{excitation.shape}, {excitation.pressure or 0:g} Pa"
     driven_end = None if excitation is None else excitation.at
     top = f"{signal} on the top, {layered_column.motion} waves" if driven_end == "top" else "free top"
-    yield f"  +{'-' * INSIDE}+   {top}"
+    yield f"  +{'-' * INSIDE}+", top
     for layer in reversed(layered_column.layer):
         cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
         velocity = f", v = {layer.velocity:g} m/s" if layer.velocity else ""
         material = "rigid" if math.isinf(layer.young) else f"E = {layer.young:g} Pa, mu = {layer.poisson:g}"
-        yield f"  |{cut}|   rho = {layer.density:g} kg/m3, {material}{velocity}"
-        yield f"  +{'-' * INSIDE}+"
+        yield f"  |{cut}|", f"rho = {layer.density:g} kg/m3, {material}{velocity}"
+        yield f"  +{'-' * INSIDE}+", ""
     for joint in layered_column.joint:
         numbers = [described(name, value, key) for name, value, key in stated(joint) if name != "height"]
-        yield f"{' ' * (INSIDE + 7)}joint at {joint.height:g} m, {', '.join(numbers)}"
+        yield "", f"joint at {joint.height:g} m, {', '.join(numbers)}"
     if layered_column.glue is not None:
-        yield f"{' ' * (INSIDE + 7)}blocks glued by {layered_column.glue:g} Pa/m"
+        yield "", f"blocks glued by {layered_column.glue:g} Pa/m"
     # the keys of contacts that open or slip and have no joint of their own
     words = [described(name, value, key) for name, value, key in stated(layered_column) if name in OF_CONTACTS]
     if layered_column.law != "bonded" and words:
-        yield f"{' ' * (INSIDE + 7)}contacts: {', '.join(words)}"
+        yield "", f"contacts: {', '.join(words)}"
     base_motion = f", {signal}, {layered_column.motion} waves" if driven_end == "base" else ""
-    yield f" {'=' * (INSIDE + 4)}  {layered_column.base} base{base_motion}"
+    yield f" {'=' * (INSIDE + 4)}", f"{layered_column.base} base{base_motion}"
 
 
-def plane_blocks(plane: PlaneSection) -> Iterator[str]:
-    """Yield the outline of blocks in the plane with what they are beside it."""
+def plane_blocks(plane: PlaneSection) -> tuple[int, Rows]:
+    """Return the outline of blocks in the plane with what they are beside it."""
     corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
     wide, high = np.ptp(corners, axis=0)
     slenderness = wide / high
-    across = INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
+    across = _across(slenderness)
     cut = f"{len(plane.polygons)} blocks"
     if plane.subdivide is not None:
         cut = f"cut into {plane.subdivide[0]} x {plane.subdivide[1]} {plane.pattern}"
@@ -142,18 +165,14 @@ def plane_blocks(plane: PlaneSection) -> Iterator[str]:
         beside.append(f"gravity {', '.join(f'{part:g}' for part in plane.gravity)} m/s2")
     for load in plane.load:
         beside.append(f"traction {', '.join(f'{part:g}' for part in load.traction)} Pa along {_segment(load.edge)}")
-    rows = max(_rows(across, slenderness), len(beside))
-    yield f"  +{'-' * across}+"
-    for text in (*beside, *[""] * (rows - len(beside))):
-        yield f"  |{' ' * across}|   {text}".rstrip()
-    yield f"  +{'-' * across}+"
+    return across, _box_rows(across, _height(across, slenderness), beside)
 
 
 def _segment(edge: Segment) -> str:
     return " to ".join(f"({x:g}, {y:g})" for x, y in edge)
 
 
-def boxes(section: RigidSection) -> Iterator[str]:
+def boxes(section: RigidSection) -> Iterator[tuple[str, str]]:
     """Yield rigid boxes on each other from the top down, equal neighbours as one, and the ground."""
     left = min(box.x - box.width / 2 for box in section.box)
     right = max(box.x + box.width / 2 for box in section.box)
@@ -165,15 +184,16 @@ def boxes(section: RigidSection) -> Iterator[str]:
         across = max(NARROWEST, round(characters_per_metre * box.width))
         shift = min(INSIDE - across, round(characters_per_metre * (box.x - box.width / 2 - left)))
         beside = _box(box, last - first + 1)
-        rows = max(len(beside), _rows(across, box.width / box.height) if len(section.box) == 1 else 1)
+        rows = max(len(beside), _height(across, box.width / box.height) if len(section.box) == 1 else 1)
         margin = " " * (2 + shift)
-        yield f"{margin}+{'-' * across}+"
+        edge = f"{margin}+{'-' * across}+"
+        yield edge, ""
         for row in range(rows):
             label = f"{first}" if first == last else f"{first}-{last}"
             inside = (label if row == rows // 2 else "").center(across)
             words = beside[row] if row < len(beside) else ""
-            yield (f"{margin}|{inside}|".ljust(INSIDE + BESIDE) + words).rstrip()
-        yield f"{margin}+{'-' * across}+"
+            yield f"{margin}|{inside}|", words
+        yield edge, ""
     slope = "level ground"
     if section.slope:
         slope = f"slope of {abs(section.slope):g} deg, down to the {'right' if section.slope > 0 else 'left'}"
@@ -181,12 +201,11 @@ def boxes(section: RigidSection) -> Iterator[str]:
     springs = "rigid or as a program has them"
     if section.stiffness is not None:
         springs = f"{section.stiffness:g} N/m below box 1"
-    yield f" {'=' * (INSIDE + 4)}  contacts: {contacts}, restitution {section.restitution:g}, {springs}"
-    margin = " " * (INSIDE + BESIDE)
-    yield f"{margin}{slope}, g = {section.gravity:g} m/s2"
+    yield f" {'=' * (INSIDE + 4)}", f"contacts: {contacts}, restitution {section.restitution:g}, {springs}"
+    yield "", f"{slope}, g = {section.gravity:g} m/s2"
     if section.base_amplitude:
         motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
-        yield f"{margin}ground moved by A (1 - cos 2 pi f t), {motion}"
+        yield "", f"ground moved by A (1 - cos 2 pi f t), {motion}"
 
 
 def _box(box: BoxSection, count: int) -> list[str]:

@@ -9,9 +9,9 @@ from functools import cached_property
 from typing import Any
 
 from validation.advice.plain import Line
-from validation.report.blocks import Blocks, Callout, Listing, TableColumn, table
+from validation.report.blocks import Blocks, Callout, Listing, Table, TableColumn, table
 from validation.report.scene import numbers
-from validation.report.scene.drawing import drawing
+from validation.report.scene.drawing import drawing, model_words
 from validation.runs.numbers import stated_text
 from validation.scenes import features
 from validation.scenes.keys import described, stated
@@ -75,12 +75,10 @@ class SceneDescription:
             counts.update(numbers.remarks(case, case_numbers))
         return counts
 
-    def model(self, width: int | None = None) -> Blocks:
-        """Return the drawing, whose lines have a width, and what is run."""
-        return [
-            Listing("\n".join(drawing(self.cases[0], width))),
-            table(("", TableColumn("", "fill")), list(self._facts()), ruled=False),
-        ]
+    def facts(self) -> Table:
+        """Return the model in words and what is run, for a page that draws it."""
+        words = model_words(self.cases[0])
+        return _fact_table([("model", words[0]), *(("", line) for line in words[1:]), *self._facts()])
 
     def blocks(self, width: int | None = None) -> Blocks:
         """Return the model, the numbers with their range over the cases, and the limits that some lie beyond."""
@@ -94,7 +92,8 @@ class SceneDescription:
             ends = dict.fromkeys((f"{low:.4g}", f"{high:.4g}"))
             rows.append((name, " .. ".join(ends), number.unit, number.says))
         return [
-            *self.model(width),
+            Listing("\n".join(drawing(self.cases[0], width))),
+            _fact_table(list(self._facts())),
             table(("", TableColumn("value"), "", TableColumn("what it is", "fill")), rows, caption, ruled=False),
             *(
                 Callout(f"{text} (in {count} of {sample} cases)" if sample > 1 else text, "warn")
@@ -122,6 +121,10 @@ class SceneDescription:
         yield "solvers", f"{', '.join(self.solvers)}{case_count}"
         if self.gates:
             yield "gates", f"{self.gates} in the scene"
+
+
+def _fact_table(facts: Sequence[Line]) -> Table:
+    return table(("", TableColumn("", "fill")), facts, ruled=False)
 
 
 def _stepping(first: Scene) -> Iterator[Line]:

@@ -1,17 +1,23 @@
-"""The site of results: chapters, a page for each scene, calculators; written under a temporary name as a whole."""
+"""The site of results: the three decisions, chapters, a page for each scene, calculators; written as a whole.
+
+The first page shows each of them by a picture that its own page has, each study with its scenes below it.
+"""
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from validation.report.blocks import Blocks, Heading, Link, Links, Paragraph, References
+from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
-from validation.report.chapters.data import CaseGroup, case_groups
+from validation.report.chapters.data import CaseGroup, case_groups, spoken_of
 from validation.report.chapters.gates import gate_list, not_passed
 from validation.report.chapters.scene import scene_page
+from validation.report.front.decisions import discount_page, spring_page, step_page
 from validation.report.front.first import verdict_line
+from validation.report.front.groups import groups_of_studies, paper_scene
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
@@ -23,6 +29,7 @@ from validation.runs.results import Results
 NAME = "DDA validation"
 MARK = html.REFERENCES  # the page that marks a directory as such a site
 CALCULATORS = "calculators.html"
+DECISIONS = "decisions.html"
 SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
 Progress = Callable[[int, int, str], None]
 
@@ -84,13 +91,12 @@ class Site:
         self._verdicts = [v for v in results.verdicts() if v["study"] in self._manifests]
         self._imprint = identity(manifest.get("provenance") or {} for manifest in self._manifests.values())
         self._study_pages = page_names("study", studies)
-        titles: dict[str, str] = {}
+        names: dict[str, None] = {}
         for manifest in self._manifests.values():
-            for group in case_groups(results, manifest, drawn=False):
-                titles.setdefault(group.name, group.title)
-        self._scene_titles = titles
-        self._scene_pages = page_names("scene", list(titles))
-        self._written: set[str] = set()
+            names |= dict.fromkeys(scene_of(case["scene"]) for case in spoken_of(manifest))
+        self._scene_pages = page_names("scene", list(names))
+        self._studies: list[Link] = []
+        self._scenes: dict[str, Link] = {}
 
     def _write(self, file: str, title: str, blocks: Blocks, **values: object) -> None:
         menu = [("index.html", "Results"), (CALCULATORS, "Calculators"), (html.REFERENCES, "References")]
@@ -106,40 +112,59 @@ class Site:
     def write_study(self, study: str) -> None:
         """Write the chapter of a study, and the pages of the scenes that no study before it has."""
         page = self._study_pages[study]
-        directory = self._place / page.removesuffix(".html")
-        directory.mkdir()
         groups = case_groups(self._results, self._results.whole(study, histories=True))
-        scenes = [Link(self._scene_pages[group.name], group.name, group.title) for group in groups]
-        blocks = [
-            *chapter_blocks(self._results, study, directory),
-            Heading("Scenes", 2),
-            Links(tuple(scenes)),
-            *gate_list([verdict for verdict in self._verdicts if verdict["study"] == study]),
-        ]
-        self._write(page, self._title(study), blocks, scenes=self._scene_pages)
         for group in groups:
-            if group.name not in self._written:
-                self._written.add(group.name)
-                self._write_scene(group)
+            if group.name not in self._scenes:
+                self._scenes[group.name] = self._write_scene(group)
+        scenes = tuple(self._scenes[group.name] for group in groups)
+        chapter = chapter_blocks(self._results, study, self._directory(page))
+        gates = gate_list([verdict for verdict in self._verdicts if verdict["study"] == study])
+        self._write(
+            page,
+            self._title(study),
+            [*chapter, Heading("Scenes", 2), Links(scenes), *gates],
+            scenes=self._scene_pages,
+        )
+        picture = picture_of(page, chapter) or next((scene.image for scene in scenes), "")
+        purpose = self._manifests[study].get("purpose", "")
+        self._studies.append(Link(page, self._title(study), purpose, picture, scenes))
 
-    def _write_scene(self, group: CaseGroup) -> None:
+    def _write_scene(self, group: CaseGroup) -> Link:
         page = self._scene_pages[group.name]
+        verdicts = [verdict for verdict in self._verdicts if scene_of(verdict["scene"]) == group.name]
+        blocks = scene_page(group, self._directory(page))
+        self._write(page, f"{group.name}: {group.title}", [*blocks, *gate_list(verdicts)])
+        return Link(page, group.title, group.name, picture_of(page, blocks))
+
+    def _directory(self, page: str) -> Path:
+        """Make the directory of a page's figures."""
         directory = self._place / page.removesuffix(".html")
         directory.mkdir()
-        verdicts = [verdict for verdict in self._verdicts if scene_of(verdict["scene"]) == group.name]
-        blocks = [*scene_page(group, directory), *gate_list(verdicts)]
-        self._write(page, f"{group.name}: {group.title}", blocks)
+        return directory
+
+    def _write_decisions(self) -> Blocks:
+        """Write the page of the three decisions and return what leads there; nothing without the paper's block."""
+        groups = groups_of_studies(self._results, self.studies)
+        paper = paper_scene(groups)
+        if paper is None:
+            return []
+        directory = self._directory(DECISIONS)
+        decisions = [decide(groups, paper, directory) for decide in (step_page, spring_page, discount_page)]
+        title = "Three decisions"
+        self._write(DECISIONS, title, [Heading(title), *itertools.chain.from_iterable(decisions)])
+        links = []
+        for blocks in decisions:
+            question = next(block.text for block in blocks if isinstance(block, Heading))
+            rule = next(block.text for block in blocks if isinstance(block, Callout))
+            place = f"{DECISIONS}#{html.anchor(question)}"
+            links.append(Link(place, question, rule.removeprefix("Rule. "), picture_of(DECISIONS, blocks)))
+        return [Heading(title, 2), Links(tuple(links))]
 
     def _title(self, study: str) -> str:
         return self._manifests[study].get("title") or study
 
     def write_other_pages(self) -> None:
         """Write the first page, the calculators, the sources and what all pages share."""
-        studies = [
-            Link(page, self._title(study), self._manifests[study].get("purpose", ""))
-            for study, page in self._study_pages.items()
-        ]
-        scenes = [Link(page, name, self._scene_titles[name]) for name, page in self._scene_pages.items()]
         lead = (
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
@@ -150,10 +175,9 @@ class Site:
             Paragraph(f"The model is that of {PAPER}.", "small"),
             verdict_line(self._verdicts),
             *not_passed(self._verdicts),
+            *self._write_decisions(),
             Heading("Studies", 2),
-            Links(tuple(studies)),
-            Heading("Scenes", 2),
-            Links(tuple(scenes)),
+            Links(tuple(self._studies)),
             Heading("Calculators", 2),
             Links((Link(CALCULATORS, "Damping of a step, and the step for a damping"),)),
         ]
@@ -167,6 +191,12 @@ class Site:
             write(self._place / name, html.static(name))
         for name in SCRIPTS:
             write(self._place / name, Path(__file__).with_name(name).read_text("utf-8"))
+
+
+def picture_of(page: str, blocks: Blocks) -> str:
+    """Return the address of the first figure of a page; nothing where it has none."""
+    figures = figures_of(blocks)
+    return f"{page.removesuffix('.html')}/{figures[0].file}" if figures else ""
 
 
 def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:

@@ -1,0 +1,79 @@
+"""Pages of the PDF: what belongs together stands together, whatever is above it."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+from pypdf import PdfReader
+
+from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
+from validation.report.figures.histories import save
+from validation.report.render.pdf import kept_with_next, typeset
+from validation.suite.folders import study_folders, study_names
+
+LINES = 46  # of text that fill a page
+CASES = range(2, LINES, 3)  # lines above a chapter, so that it begins at each height of a page
+
+
+def chapter(name: int) -> list[Block]:
+    """Return a chapter whose parts have names of their own."""
+    rows = [(f"row {name}.{row}", "1") for row in range(8)]
+    return [
+        Heading(f"Chapter {name}"),
+        Paragraph(f"Lead {name}.", "lead"),
+        Paragraph(f"Sources {name}.", "small"),
+        Callout(f"Rule {name}.", "rule"),
+        FigureBlock("figure.svg", f"Figure {name}."),
+        table(["Case", "Number"], rows, f"Table {name}."),
+    ]
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    root = tmp_path_factory.mktemp("pdf")
+    save(Figure(figsize=(4.0, 2.0)), root / "figure.svg")
+    blocks: list[Block] = []
+    for lines in CASES:
+        blocks += [PageBreak(), *(Paragraph(f"Above {lines}.") for _ in range(lines)), *chapter(lines)]
+    (root / "made.pdf").write_bytes(typeset(root, blocks))
+    return [page.extract_text() for page in PdfReader(root / "made.pdf").pages]
+
+
+def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages: list[str]) -> None:
+    for name in CASES:
+        (own,) = [text for text in pages if f"\nLead {name}." in text]
+        parts = (f"Chapter {name}", f"Sources {name}.", f"Rule {name}.", f"Figure {name}.", f"Table {name}.")
+        missing = [part for part in (*parts, f"row {name}.0", f"row {name}.7") if part not in own]
+        assert not missing, (name, missing)
+
+
+def test_no_title_is_the_last_line_of_a_page(pages: list[str]) -> None:
+    ends = [text.strip().splitlines()[-2] for text in pages]  # above the number of the page
+    assert len(ends) > len(CASES)
+    assert not [line for line in ends if line.startswith(("Chapter", "Lead", "Sources", "Rule", "Figure"))]
+
+
+@pytest.mark.parametrize("cited", [False, True])
+def test_sources_have_a_title_only_where_some_are_cited(tmp_path: Path, cited: bool) -> None:
+    text = "A scheme @newmark1959." if cited else "A scheme."
+    (tmp_path / "made.pdf").write_bytes(typeset(tmp_path, [Paragraph(text), References()]))
+    (page,) = PdfReader(tmp_path / "made.pdf").pages
+    assert ("References" in page.extract_text()) is cited
+
+
+def test_what_leads_to_a_figure_or_opens_a_chapter_is_kept_with_it(tmp_path: Path) -> None:
+    first, second = chapter(1), chapter(2)
+    assert kept_with_next(first) == [False, True, True, True, True, False]  # of headings the template knows
+    loose = [Heading("Part", 2), Paragraph("a"), Callout("Alarm.", "warn"), first[4], Paragraph("b"), PageBreak()]
+    assert kept_with_next([*loose, *second[:1], PageBreak()]) == [False] * 8
+    assert kept_with_next([Paragraph("a"), Paragraph("b"), first[5]]) == [True, True, False]
+
+
+def test_every_heat_map_has_a_heading() -> None:
+    for name in study_names():
+        path = study_folders()[name].path / "chapter.toml"
+        parts = tomllib.loads(path.read_text("utf-8")).get("parts", []) if path.exists() else []
+        assert not [part for part in parts if "maps" in part and not {"heading", "heading_of"} & set(part)], name
