@@ -15,7 +15,7 @@ PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q
 .PHONY: report report-all field gallery test test-all gates lint portable docs bench mutants dist clean
 
 report: $(REPORT)  ## the core study, error against run time, and their PDF, written also when gates fail
-	@$(BIN)/dda-validate run core stiff-contact limits stability-small work-precision; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
+	@$(BIN)/dda-validate run core stiff-contact limits stability-small cost; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status
 
 report-all: $(REPORT)  ## every study and one PDF
 	@$(BIN)/dda-validate run all; status=$$?; $(BIN)/dda-validate report --out reports/report.pdf && exit $$status

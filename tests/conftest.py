@@ -56,7 +56,7 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
 # tests of its own, columns of many switches, three claims of the paper), other numbers of a family whose first ones are
 # short (joints, schemes), and a second process of the distributed solver.
 LONG_GATES = re.compile(
-    r"(slope-quake-exact|subblocks-locking|work-precision|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
+    r"(slope-quake-exact|subblocks-locking|cost-(granite|opening)|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
     r"|columns-(slips|spall|spall-bars|shaken)|columns-joint-0\.(1|5|75|9)"
     r"|methods-(impact|locked|refined)-(?!constant|average|ch-0\.5|tr-bdf2)[\w.-]+"
     r"|methods-\w+-(ch-0|ch-0\.8|bathe-half|bathe-0\.5|implicit-euler|nine-sixteenths))(?=[:\[])"

@@ -48,11 +48,13 @@ def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene: 
     assert rows["bar"].outcome is Outcome.COMPLETED and "not reported: rotation" in rows["bar"].notes
 
 
-def test_a_study_of_timings_runs_afresh(scene: Scene, tmp_path: Path) -> None:
+def test_a_study_of_timings_takes_timed_rows_again_and_no_others(scene: Scene, tmp_path: Path) -> None:
     results, seen = Results(tmp_path), []
-    for _ in range(2):
-        run_study(study(scene, timed=True), results, progress=lambda done, total, label: seen.append(label))
+    for timed in (False, True, True):
+        run_study(study(scene, timed=timed), results, progress=lambda done, total, label: seen.append(label))
     assert len(seen) == 4
+    assert [("lines" in row.work, "seconds.spread" in row.metrics) for row in results.rows().values()] == [
+        *([(False, False)] * 2), *([(True, True)] * 2)]  # fmt: skip
 
 
 def test_verdict_files_are_identical_from_run_to_run(scene: Scene, tmp_path: Path) -> None:

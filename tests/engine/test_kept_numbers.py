@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -30,7 +33,6 @@ from validation.runs.modes import Mode
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.registry import get_solver
 
 # ---- windows ------------------------------------------------------------------------------------------------------
 
@@ -238,13 +240,34 @@ def test_what_differs_between_rows_is_told_with_the_number_of_each() -> None:
     assert origin.of_rows(rows[1:2])["commit"] == "now"
 
 
-def test_a_timed_run_keeps_the_least_seconds_of_each_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    timings = iter([{"setup": 3.0, "stepping": 1.0}, {"setup": 1.0, "stepping": 4.0}, {"setup": 2.0, "stepping": 2.0}])
-    monkeypatch.setattr(measure, "attempt", lambda *case: (None, Run(Outcome.COMPLETED, seconds=next(timings))))
+def test_a_timed_run_keeps_the_least_seconds_their_spread_and_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the least run, 3 s of the processor, a quarter steps by the clock; what interrupts it counts nowhere."""
+    clocks = {"process_time": 0.0, "perf_counter": 0.0}
+    runs = iter([(9.0, 9.0, 1.0), (5.0, 5.0, 1.0), (3.0, 40.0, 10.0), (4.0, 4.0, 1.0)])
+
+    def solve(scene: Scene, full: bool) -> Run:
+        processor, clock, stepping = next(runs)
+        clocks["process_time"] += processor
+        clocks["perf_counter"] += clock
+        return Run(Outcome.COMPLETED, seconds={"setup": 0.1, "stepping": stepping})
+
+    fake: Any = SimpleNamespace(**{name: partial(clocks.__getitem__, name) for name in clocks})
+    monkeypatch.setattr(measure, "time", fake)
     case = Case(load_scene("figure-8"), "dda", repeats=3)
-    found = measure._repeated(Run(Outcome.COMPLETED, seconds={"setup": 9.0, "stepping": 9.0}), get_solver("dda"), case)
-    assert found.seconds == {"setup": 1.0, "stepping": 1.0}
-    assert found.notes == ("least seconds of 3 repeats, spread 1 s",)
+    solver: Any = SimpleNamespace(solve=solve)
+    run, spread = measure.timed(Run(Outcome.COMPLETED, work={"steps": 7}), solver, case)
+    assert run.seconds == {"setup": 2.25, "stepping": 0.75} and spread == 2.0
+    assert run.work["steps"] == 7 and run.work["lines"] > 4
+
+
+def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    def loop(count: int) -> None:
+        for _ in range(count):
+            pass
+
+    before = sys.gettrace()
+    few, many = (measure.lines_of(partial(loop, count)) for count in (10, 110))
+    assert many - few == 200 and sys.gettrace() is before
 
 
 def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Scene, tmp_path: Path) -> None:

@@ -154,6 +154,7 @@ BAR_WAVE_NUMBERS = Seam(exact_bar, exact_bar.wave_numbers)
 BAR_HISTORIES = Seam(exact_bar, exact_bar.weighted_response)
 BAR_ROOTS = Seam(exact_bar, exact_bar.roots)
 BAR_STEP = Seam(modal, modal.step_increment)
+BAR_CONTINUUM = Seam(exact_bar.Bar, exact_bar.Bar.continuum)
 BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 
 # The exact motions with contact that opens

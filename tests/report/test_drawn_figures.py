@@ -12,10 +12,6 @@ from oracles.made_cases import line_in, lines_of, made_history, names_at, rules_
 from validation.report.chapters import ledger
 from validation.report.figures import curves, motion
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.runs.results import Row
-from validation.scenes.scene import load_scene
-from validation.studies.work_precision import figure as cost
-from validation.studies.work_precision.points import Point
 
 GREY = "#bbbbbb"
 ENDS = {"dda": -0.004, "fem": -0.010, "bar": -0.016, "continuum": -0.001}  # m; in no order
@@ -112,40 +108,6 @@ def test_work_lines_are_named_at_their_dearest_run_and_points_carry_their_own_no
     assert found["triangles"] == (pytest.approx(0.01), color("triangles"))
     notes = {text.get_text(): text.xy for text in axes.texts if hasattr(text, "xy")}
     assert notes == {"1": (1.0, 0.5), "2": (10.0, 0.1), "8": (20.0, 0.01), "3": (2.0, 0.4)}
-
-
-def point(method: str, step: float, seconds: float, errors: dict[tuple[str, str], float]) -> Point:
-    scene = load_scene("figures-3-4").with_values({"time.step": step})
-    work = {"unknowns": 6, "steps": round(0.1 / step)}
-    row = Row("k", "s", scene.name, method, "completed", {}, work, {"setup": seconds / 4, "stepping": 3 * seconds / 4})
-    return Point(method, scene, row, errors)
-
-
-def test_error_against_cost_has_each_reference_and_each_cost_in_its_own_panel() -> None:
-    bar, whole = ("displacement", "bar"), ("displacement", "continuum")
-    found = [
-        point("dda", 1e-3, 0.2, {bar: 0.03, whole: 0.3}),
-        point("dda", 1e-2, 0.1, {bar: 0.04, whole: 0.5}),
-        point("bar", 1e-3, 0.05, {bar: 1e-11, whole: 0.2}),
-    ]
-    figure = cost.work_figure(found)
-    titles = [axes.get_title(loc="left").split("the ")[-1].rstrip(")") for axes in figure.axes]
-    labels = [axes.get_xlabel() for axes in figure.axes]
-    assert titles == ["bar", "continuum"] * 2 and labels == ["Seconds"] * 2 + ["Unknowns × steps"] * 2
-    assert "everything" in figure.axes[1].get_title(loc="left")
-    shown = []
-    for axes in figure.axes:
-        dots = [line for line in axes.lines if line.get_marker() == "o"]
-        shown.append({(x, y): to_hex(line.get_markerfacecolor()) for line in dots for x, y in line.get_xydata()})
-    orange, black = color("dda"), color("bar")
-    assert shown[0] == {(0.2, 0.03): orange, (0.1, 0.04): orange, (0.05, 1e-11): "#ffffff"}  # hollow: below rounding
-    assert shown[1] == {(0.2, 0.3): orange, (0.1, 0.5): orange, (0.05, 0.2): black}
-    assert shown[3] == {(600.0, 0.3): orange, (60.0, 0.5): orange, (600.0, 0.2): black}
-    levels = [rules_of(axes, to_hex(curves.GREY))[0] for axes in figure.axes[:2]]
-    assert levels == [[0.03], [0.3]]  # DDA at its finest step
-    assert {text.get_text(): to_hex(text.get_color()) for text in figure.texts} == {"dda": orange, "bar": black}
-    grey = [line for line in figure.axes[0].lines if to_hex(line.get_color()) == GREY]
-    assert [list(line.get_xdata()) for line in grey] == [[0.05]]
 
 
 # ---- stiff contacts and extremes ----------------------------------------------------------------------------------

@@ -43,6 +43,7 @@ from validation.cli.app import (
     SummaryOption,
     _progress,
     app,
+    known_scenes,
     known_targets,
     one_case,
     print_warnings,
@@ -101,6 +102,14 @@ def run(
         ),
     ] = None,
     results: ResultsOption = RESULTS,
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            help="Run the study for this scene in place of its own ones: cost.",
+            metavar="SCENE",
+            autocompletion=known_scenes,
+        ),
+    ] = None,
     assignments: SetOption = None,
     full: FullOption = False,
     ranks: RanksOption = 1,
@@ -120,23 +129,29 @@ def run(
     Finished cases are kept: the same command after an interruption continues from there.
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
+    or [bold]dda-validate run cost --scene my-block.toml[/bold]
     """
+    from validation.errors import InputError
     from validation.runs.results import Results
     from validation.scenes.scene import parse_assignment
-    from validation.suite.folders import resolve, study_names
+    from validation.suite.folders import resolve, study_names, study_of_scene
 
     judging = Judging(require or [], summary, baseline, verbose, as_json, quiet)
     before = judging.check()
     promise_rows()
-    studies = resolve(targets or ["core"], dict(map(parse_assignment, assignments or [])))
+    values = dict(map(parse_assignment, assignments or []))
+    names = targets or ["core"]
+    if scene is not None and len(names) != 1:
+        raise InputError("goes with one study", field="--scene", value=" ".join(names))
+    studies = resolve(names, values) if scene is None else [study_of_scene(names[0], scene, values)]
     store = Results(results)
     store.check()
     machine = Machine(full, ranks, jobs or default_jobs(), scheduler)
     for study in studies:
         if study.name not in study_names():  # the suite's own studies are extreme on purpose
-            for scene in study.scenes:
-                if not isinstance(scene, str):
-                    print_warnings(scene)
+            for declared in study.scenes[:1]:  # a user's scene, or the first of those that are made of it
+                if not isinstance(declared, str):
+                    print_warnings(declared)
     runs, seconds = _run_studies(studies, store, machine, judging)
     answer_and_exit(runs, seconds, store, judging, before)
 
@@ -269,6 +284,7 @@ def _print_answer(answer: RunAnswer, verbose: bool) -> None:
     from validation.cli.printing.answer import lines
     from validation.cli.printing.output import print_blocks, print_lines, width
     from validation.scenes.scene import scene_names
+    from validation.suite.folders import folder_of
 
     if answer.verdicts and (verbose or (answer.user_scenes and len(answer.verdicts) <= GATES_LISTED)):
         print_blocks([tables.verdict_table(answer.verdicts, answer.results, answer.names)])
@@ -280,7 +296,10 @@ def _print_answer(answer: RunAnswer, verbose: bool) -> None:
         print_blocks(tables.change_blocks(answer.changes))
     for judged in answer.runs:
         name = judged.study.name
-        if name in answer.user_scenes and not judged.verdicts:
+        folder = folder_of(name)
+        if name in answer.user_scenes and folder is not None:
+            print_blocks(folder.module("answer").answer(answer.results.manifest(name)))
+        elif name in answer.user_scenes and not judged.verdicts:
             print_blocks(tables.difference_blocks(answer.results, name, name not in scene_names()))
 
 

@@ -37,7 +37,7 @@ class Case:
     without_savings: bool = False
     ranks: int = 1  # of the solvers that can be distributed
     measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "energy", "limit"
-    repeats: int = 0  # of a timed case, after a run that warms up
+    repeats: int = 0  # of a timed case, after two runs, one of which counts lines and one warms up
     only: frozenset[str] | None = None  # the metrics that are measured, all that `measures` name where None
 
     @property
@@ -59,6 +59,7 @@ class Case:
             "scene": self._read(solver),
             "measures": sorted(self.measures),
             "only": None if self.only is None else sorted(self.only),
+            "repeats": self.repeats,
             "sources": {name: source_digest(name) for name in (*solver.sources, *SOURCES)},
             "versions": {**library_versions(), **solver.versions()},
         }

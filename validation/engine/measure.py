@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import sys
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from types import FrameType
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -32,6 +35,7 @@ from validation.solvers.soundness import checked
 Part = TypeVar("Part")
 INSTANTS = 4000  # at most, at which an exact motion is kept beside its steps
 INSTANTS_OF_STEP = 20  # at most, in one of them
+LEAST_TOTAL = 0.004  # s of all repeats of a timed case: of many short runs one is not interrupted
 
 
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
@@ -65,9 +69,12 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver = case.make_solver()
     scene = case.scene
     prepared, run = attempt(solver, scene, case.full, contact_record=_reads_contact_record(case))
-    run = _repeated(checked(run, scene), solver, case)
+    run = checked(run, scene)
     failed: list[str] = []
     metrics: dict[str, Value] = {}
+    spread: dict[str, Value] = {}
+    if case.repeats and run.outcome is Outcome.COMPLETED:
+        run, spread["seconds.spread"] = timed(run, solver, case)
     if prepared is not None:
         if scene.time.allow_unstable and features.linear(scene):
             run = stability.with_growth_outcome(run, prepared, scene)
@@ -82,7 +89,7 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
         scene=scene.name,
         solver=case.solver,
         outcome=run.outcome,
-        metrics=metrics,
+        metrics=metrics | spread,
         work=dict(run.work),
         seconds={k: round(v, 6) for k, v in run.seconds.items()},
         notes=tuple(map(printable, (*run.notes, *failed))),
@@ -124,15 +131,42 @@ def columns_of(case: Case) -> tuple[str, ...]:
     return tuple(_narrowed(case.make_solver(), case.scene)[0].run.columns)
 
 
-def _repeated(run: Run, solver: Solver, case: Case) -> Run:
-    """Return the run with the least seconds of its repeats, each part apart, and their spread."""
-    if not case.repeats or run.outcome is not Outcome.COMPLETED:
-        return run
-    timings = [attempt(solver, case.scene, case.full)[1].seconds for _ in range(case.repeats)]
-    sums = [sum(timing.values()) for timing in timings]
-    least = {part: min(timing[part] for timing in timings) for part in timings[0]}
-    spread = f"least seconds of {case.repeats} repeats, spread {max(sums) - min(sums):.1g} s"
-    return replace(run, seconds=least, notes=(*run.notes, spread))
+def timed(run: Run, solver: Solver, case: Case) -> tuple[Run, float]:
+    """Return a run with its least seconds and the lines of Python that it takes, and the spread of its seconds.
+
+    Seconds are the processor's, which other processes do not take, of a scene that is prepared and run: of these the
+    stepping has the share that the solver says by the clock, all the rest is set-up. What takes less than `LEAST_TOTAL`
+    is repeated more often than the case asks for.
+    """
+    lines = lines_of(lambda: solver.solve(case.scene, case.full))
+    timings: list[tuple[float, float]] = []  # seconds of the processor, and the share of the stepping
+    while len(timings) < case.repeats or sum(total for total, _ in timings) < LEAST_TOTAL:
+        began = time.perf_counter()
+        start = time.process_time()
+        stepping = solver.solve(case.scene, case.full).seconds.get("stepping", 0.0)
+        total = time.process_time() - start
+        timings.append((total, stepping / (time.perf_counter() - began)))
+    least, share = min(timings)
+    seconds = {"setup": (1 - share) * least, "stepping": share * least}
+    return replace(run, seconds=seconds, work={**run.work, "lines": lines}), max(timings)[0] - least
+
+
+def lines_of(action: Callable[[], object]) -> int:
+    """Return how many lines of Python an action executes, which no clock and no other process changes."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Callable[..., Any]:
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        action()
+    finally:
+        sys.settrace(before)
+    return count
 
 
 @np.errstate(all="ignore")  # what overflows is named by `checked`, not warned of

@@ -160,10 +160,11 @@ def run_cases(
     timed = [group for group in groups if group.study.timed]
     pooled: dict[str, Pending] = {}
     missing: dict[str, list[StudyCases]] = {}  # by key, the studies that wait for its row
-    for group in untimed:
+    for group in groups:
         for case, key in group.keyed:
             if key in finished_rows and _is_valid(finished_rows[key], case, results):
                 group.rows[key] = finished_rows[key]
+    for group in untimed:
         for task in group.pending():
             pooled.setdefault(task.key, task)
             missing.setdefault(task.key, []).append(group)

@@ -13,7 +13,7 @@ from validation.runs.records import Annotations
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 
-REPEATS = 3  # of each case of a study of timings
+REPEATS = 2  # of each case of a study of timings
 
 
 def _nothing_to_say(scenes: Sequence[Scene], finished: Finished) -> Annotations:
@@ -37,7 +37,7 @@ class Study:
     gates
         Function that returns the gates, so that listing studies computes nothing.
     timed
-        Whether the study is one of timings, which always run afresh, alone and repeatedly.
+        Whether the study is one of timings, whose cases run alone and repeatedly.
     derived
         Function that returns the rows that are computed from finished cases.
     data

@@ -35,6 +35,7 @@ BUILT_IN = {
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
 }
 USERS = "validation.solvers.user:UserSolver"
+OF_STUDIES = "validation.studies."  # how the name of a solver begins that a study brings in its folder, a class
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
 
@@ -64,7 +65,7 @@ def _is_target(module: str, attribute: str) -> bool:
 def get_solver(name: str) -> Solver:
     """Return a solver by name, importing its adapter now.
 
-    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own.
+    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own or a study's.
 
     Raises
     ------
@@ -72,6 +73,9 @@ def get_solver(name: str) -> Solver:
         There is no such solver, or it does not take the option.
     """
     plain, colon, option = name.removesuffix(FULL).partition(":")
+    if plain.startswith(OF_STUDIES):
+        brought: Solver = _imported(name)()
+        return brought
     if plain not in BUILT_IN and is_solver(name):
         user: Solver = _imported(USERS)(name, entry_points().get(name, name))
         return user

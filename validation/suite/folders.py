@@ -7,6 +7,7 @@ table are
     formulas.py      bands, derived rows and generated scenes, which the table names
     chapter.toml     the texts, tables and figures of its chapter
     chapter.py       the function ``chapter``, where these need one
+    answer.py        the function ``answer``, what is printed where the study is run for a user's scene
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ import importlib
 import importlib.util
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
+from validation.scenes import features
 from validation.scenes.places import STUDIES, study_directories
 from validation.scenes.scene import Scene, load_scene, scene_names
 from validation.solvers.names import check_names
@@ -32,6 +34,7 @@ from validation.suite.declaration import Study
 from validation.suite.tables import declare
 
 T = TypeVar("T")
+OF_SCENE = "-of-"  # between the names of a study and of the scene that it is run for
 REQUIRED = ("name", "title", "purpose", "phenomenon", "order")  # of every study
 
 
@@ -117,6 +120,32 @@ def get_study(name: str) -> Study:
 @functools.cache
 def _declared(folder: StudyFolder) -> Study:
     return declare(folder.path, folder.fields, folder.module("formulas"))
+
+
+def folder_of(name: str) -> StudyFolder | None:
+    """Return the folder of a study, or of one that is run for a user's scene; None of a scene alone."""
+    folders = study_folders()
+    return folders.get(name) or folders.get(name.partition(OF_SCENE)[0])
+
+
+def study_of_scene(name: str, source: str, assignments: Mapping[str, Any] | None = None) -> Study:
+    """Return a study with a user's scene, built-in or a file, in place of its own ones.
+
+    Raises
+    ------
+    InputError
+        The study is made for its own scenes only, or it does not take this one.
+    """
+    able = [study for study, folder in study_folders().items() if "of_scene" in folder.fields]
+    if name not in able:
+        raise InputError(f"goes with {', '.join(able)}", field="--scene", value=f"the study {name!r}")
+    folder = study_folders()[name]
+    scene = load_scene(source)
+    scene = scene.with_values(dict(assignments)) if assignments else scene
+    features.refuse_sweep(scene, source)
+    fields = getattr(folder.module("formulas"), folder.fields["of_scene"])(scene)
+    title = f"{folder.fields['title']}: {scene.title or scene.name}"
+    return replace(get_study(name), name=f"{name}{OF_SCENE}{scene.name}", title=title, gates=tuple, **fields)
 
 
 def sources_of(name: str) -> str:

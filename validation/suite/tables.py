@@ -8,6 +8,7 @@
     sources                 what the methods rest on, with keys of the bibliography
     scenes                  built-in scenes, or the function that returns scenes; those of the folder if absent
     gates, derived, data    functions that return further gates and rows, and what the chapter draws beside rows
+    of_scene                the function that returns scenes and rows for a user's scene in place of the study's own
 
 and further fields of a `Study`, of which ``extra`` and ``annotate`` may name functions too. ``[short]`` holds what
 stands in place of these in a study of fewer cases, which is a study of its own.
@@ -55,7 +56,7 @@ from validation.suite.bands import OTHER, about, cases, half_unit
 from validation.suite.declaration import Study
 from validation.suite.printed import printed_numbers
 
-NOT_OF_A_STUDY = ("order", "phenomenon", "register", "sources")
+NOT_OF_A_STUDY = ("order", "phenomenon", "register", "sources", "of_scene")
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 

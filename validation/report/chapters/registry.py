@@ -7,12 +7,12 @@ import functools
 from validation.report.blocks import Chapter
 from validation.report.chapters.scene import scene_chapter
 from validation.report.chapters.written import written_chapter
-from validation.suite.folders import study_folders
+from validation.suite.folders import folder_of
 
 
 def chapter_of(study: str) -> Chapter:
     """Return the function that writes a study's chapter, importing its module now."""
-    folder = study_folders().get(study)
+    folder = folder_of(study)
     if folder is None:
         return scene_chapter
     module = folder.module("chapter")

@@ -6,6 +6,7 @@ and is left out where a table or figure that it names shows nothing:
     { opening = "lead", remark = "note", gates = true }    title, lead, purpose, remark, what the gates say
     { heading = "Run-out", text = "x", figure = "y", table = "z", after = "w" }
     { heading_of = "locking" }                             headed by the title of a scene
+    { figure = "y", file = "y-1.svg", where = { a = 1 } }  a figure or table of the lines that meet this besides
     { level = 3, table = "z", each = "scene" }             once for each scene, headed so
     { section = "figure-7", columns = ["displacement"] }   the section of a scene, `without` the exact solutions
     { ledger = true }                                      where the energy of each scene went
@@ -22,6 +23,7 @@ and ``when``, a list of scenes that must be there. `validation.report.chapters.q
     [table.NAME]    a query, ``group_by``, columns, one of which may be a ``list``; caption, notes, dense, ruled
     [figure.NAME]   panels, file, caption; or ``each``, a figure of the histories of a scene with a panel a case
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
+    [looks.NAME]    how lines look by the value of ``each``, for lines whose ``looks`` is this name
     [picture.NAME]  file, caption, height in mm; ``scenes``, the title of each
     [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
 """
@@ -115,8 +117,10 @@ class WrittenChapter:
             callouts = itertools.chain.from_iterable(map(outcomes, self.table.groups.values()))
             return list(dict.fromkeys(callouts))[: part["outcomes"]]
         shown: Blocks = []
+        if "where" in part:
+            query = query | {"where": part["where"]}
         if "figure" in part:
-            shown += self._figure(part["figure"])
+            shown += self._figure(part["figure"], query, part.get("file", ""))
         if "maps" in part:
             shown += self._maps(part["maps"])
         if "table" in part:
@@ -190,7 +194,7 @@ class WrittenChapter:
     # ---- tables -----------------------------------------------------------------------------------------------------
 
     def _table(self, name: str, query: Query = NO_QUERY) -> list[Table]:
-        described = self.page.described("table", name) | query
+        described = _within(self.page.described("table", name), query)
         if "notes_of" in described:
             described["notes"] = self.table.data.get(described["notes_of"], ())
         columns = [({"title": one} if isinstance(one, str) else one) for one in described["columns"]]
@@ -229,7 +233,7 @@ class WrittenChapter:
 
     # ---- figures ----------------------------------------------------------------------------------------------------
 
-    def _figure(self, name: str) -> list[FigureBlock]:
+    def _figure(self, name: str, query: Query = NO_QUERY, file: str = "") -> list[FigureBlock]:
         described = self.page.described("figure", name)
         if "each" in described:
             figures = (self._figure_of_cases(name, described | entry) for entry in described["each"])
@@ -237,13 +241,16 @@ class WrittenChapter:
         panels = []
         for panel_name in described["panels"]:
             panel = self.page.described("panel", panel_name)
-            lines = list(itertools.chain.from_iterable(map(self._lines, panel["lines"])))
+            lines: list[ChartLine] = []
+            for line in panel["lines"]:
+                lines += self._lines(_within(line, query))
             if lines:
                 panels.append(self.page.panel(panel_name, lines))
         if not panels:
             return []
         caption = self._caption(described["caption"])
-        return [self.page.figure(name, panels, self.directory, described.get("scene", ""), whole_caption=caption)]
+        scene = described.get("scene", "")
+        return [self.page.figure(name, panels, self.directory, scene, whole_caption=caption, file=file)]
 
     def _figure_of_cases(self, name: str, described: Query) -> list[FigureBlock]:
         """Return a figure of histories over time steps, with a panel for each case of a scene."""
@@ -309,7 +316,10 @@ class WrittenChapter:
     def _named(self, line: Query, drawn: ChartLine, first: Line, key: Value) -> ChartLine:
         """Return a line in its name and look."""
         look = {name: line[name] for name in LINE_FIELDS if name in line}
-        look |= line.get("looks", {}).get(_key(key), {})
+        looks = line.get("looks", {})
+        if isinstance(looks, str):
+            looks = self.page.described("looks", looks)
+        look |= looks.get(_key(key), {})
         look = {name: tuple(value) if isinstance(value, list) else value for name, value in look.items()}
         words = {name: str(value) for name, value in first.words.items()}
         for name, number in line.get("numbers", {}).items():
@@ -414,6 +424,11 @@ class WrittenChapter:
                     values[i, j] = _shade(one["shade"], value)
                 texts[i].append(_written(one, value) if value is not None else maps.get("missing", DASH))
         return NumberMap(one["title"], values, texts)
+
+
+def _within(described: Query, query: Query) -> Query:
+    """Return a described query with a further one: it meets both."""
+    return described | query | {"where": described.get("where", {}) | query.get("where", {})}
 
 
 def _as_list(value: Any) -> list[Any]:

@@ -261,12 +261,3 @@ def _name_beside(axes: Axes, panel: ChartPanel) -> None:
         place = (1 + 2.3 / width, 0.97 - 0.3 * number)
         text = f"{line.name}\n{line.note}"
         axes.text(*place, text, transform=axes.transAxes, color=line.shade, va="top", linespacing=1.4)
-
-
-def name_above(figure: Figure, colors: Mapping[str, str]) -> None:
-    """Write names in their colours above the panels."""
-    x = 0.09
-    with house_style():
-        for name, color in colors.items():
-            figure.text(x, 0.995, name, color=color, va="top")
-            x += 0.04 + 0.009 * len(name)

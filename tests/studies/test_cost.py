@@ -1,0 +1,349 @@
+"""Error against run time: rivals, window and norm, what reaches an error, a user's block, and the kill matrix."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import beside
+from faults import seams
+from faults.fault import Fault, swapped
+from faults.kill_matrix import check_kill_matrix
+from oracles.made_cases import between, kept_study, made_history, made_row
+from oracles.pages import table
+from typer.testing import CliRunner
+
+from validation.cli.app import app
+from validation.engine.run import run_study
+from validation.engine.table import tidy
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import solve
+from validation.studies.cost import formulas, measures
+from validation.studies.cost.ladder import Ladder, Method, first_period, landing, methods
+from validation.studies.cost.rivals import ModalFilter, PlainLoop
+from validation.suite.folders import get_study, study_of_scene
+
+COST = get_study("cost")
+COARSE = replace(COST, timed=False)  # the repeats of a study of timings are tested apart
+PAPER = load_scene("cost-paper")
+GRANITE = load_scene("cost-granite")
+OPENING = load_scene("cost-opening")
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+CONSTANT = {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.99}
+
+
+# ---- rivals -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", [AVERAGE, CONSTANT], ids=["average", "constant"])
+@pytest.mark.parametrize("block", [PAPER, GRANITE, OPENING], ids=["paper", "granite", "opening"])
+def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
+    scene = block.with_values(scheme)
+    ours = solve(scene, "dda").history
+    theirs = PlainLoop().solve(scene).history
+    for name, column in theirs.columns.items():
+        assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
+
+
+def test_filtered_modes_are_the_bar_and_many_small_elements():
+    fine = {"time.step": 2e-4, "time.steps": 100, "fem.elements": 128}
+    modal = ModalFilter().solve(PAPER.with_values(fine)).history
+    exact = solve(PAPER.with_values(fine), "continuum").history
+    for name, column in modal.columns.items():
+        assert np.abs(column - exact.columns[name]).max() < 2e-4 * np.abs(column).max()
+    heavy = GRANITE.with_values({"time.step": 2e-6, "time.steps": 1500, "fem.elements": 128, "fem.degree": 1} | AVERAGE)
+    modal, mesh = ModalFilter().solve(heavy).history, solve(heavy, "fem").history
+    for name, column in modal.columns.items():
+        assert np.abs(column - mesh.columns[name]).max() < 2e-3 * np.abs(column).max()
+
+
+# ---- window and norm ----------------------------------------------------------------------------------------------
+
+
+def test_the_window_is_in_periods_of_the_first_mode_from_the_landing_on():
+    (first, _) = solve_modes(PAPER)
+    assert first_period(PAPER) == pytest.approx(2 * np.pi / first, rel=1e-9)
+    assert landing(PAPER) == 0.0
+    assert landing(OPENING) == pytest.approx(np.sqrt(2 * 1e-4 / 9.81))
+    assert landing(OPENING.with_values({"block.velocity": -0.5, "load.gravity": 0.0})) == pytest.approx(2e-4)
+    thrown = landing(OPENING.with_values({"block.velocity": 0.1, "contact.gap": 0.0}))
+    assert thrown == pytest.approx(2 * 0.1 / 9.81)
+
+
+def solve_modes(scene):
+    from validation.solvers.registry import get_solver
+
+    return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
+
+
+def test_the_running_mean_of_a_sudden_load_is_the_answer_to_one_that_rises():
+    """By linearity; both are stepped, and the steps differ in what they make of the rise."""
+    ladder = Ladder.of(PAPER)
+    scene = PAPER.with_values({"time.step": 1e-5, "time.steps": 2000} | AVERAGE)
+    sudden, rising = (solve(scene.with_values({"load.ramp": ramp}), "dda").history for ramp in (0.0, ladder.mean))
+    grid = np.append(0.0, sudden.time)
+    for name in ("displacement", "contact_pressure"):
+        mean = measures.running_mean(sudden, name, grid, round(ladder.mean / 1e-5))[1:]
+        assert np.abs(mean - rising.columns[name]).max() < 1e-3 * np.abs(mean).max()
+
+
+def test_a_history_of_long_steps_is_straight_between_them():
+    history = made_history(0.5, [1.0, 1.0], [0.0, 2.0])
+    mean = measures.running_mean(history, "displacement", np.linspace(0, 1, 5), 2)
+    assert mean == pytest.approx([0, 0.125, 0.5, 0.875, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("block", "values", "reference"),
+    [
+        (PAPER, {}, "continuum"),
+        (PAPER, {"block.poisson": 0.25}, "fem"),
+        (PAPER, {"load.ramp": 0.01}, "fem"),
+        (GRANITE, {}, "fem"),
+        (OPENING, {}, "bar-events"),
+        (OPENING, {"block.poisson": 0.25}, "fem"),
+    ],
+)
+def test_the_reference_is_exact_where_an_exact_motion_applies(block, values, reference):
+    ladder = Ladder.of(block.with_values(values))
+    assert ladder.reference.solver == reference
+    finest = ladder.scene(ladder.reference).expand()[-1]
+    assert finest.time.duration == pytest.approx(ladder.window, rel=1e-5)
+
+
+def test_a_method_sets_its_scheme_cut_mesh_and_springs_alone():
+    ladder = Ladder.of(PAPER.with_values({"time.scheme": "leapfrog", "time.start": "consistent"}))
+    by_id = {method.id: ladder.scene(method).expand()[-1] for method in methods()}
+    assert by_id["block-generalised"].time.rho_inf == 0.0 and by_id["block-constant"].time.delta == 1.0
+    assert by_id["many-average"].block.subdivide == (1, 16)
+    assert (by_id["fem-linear"].fem.degree, by_id["fem-linear"].fem.per_side) == (1, 16)
+    assert by_id["p-tenfold"].contact.stiffness == pytest.approx(1e10)
+    assert by_id["gg-0.99"].time.discount == 0.99
+    assert Ladder.of(PAPER.with_values({"block.poisson": 0.2})).scene(methods()[3]).block.subdivide == (3, 3)
+
+
+# ---- what reaches an error ----------------------------------------------------------------------------------------
+
+
+def made_run(name: str, level: int, error: float, work: float = 1.0) -> measures.Run:
+    method = Method(name, name, "dda", {}, ())
+    return measures.Run(method, level, {"error.force": error, "work": work})
+
+
+def test_a_run_reaches_an_error_if_all_finer_ones_of_its_method_do():
+    runs = [made_run("a", 8, 0.005), made_run("a", 16, 0.02), made_run("a", 32, 0.009), made_run("b", 8, 0.1)]
+    assert measures.reaching(runs, "force", 0.01) == [runs[2]]
+    assert measures.reaching(runs, "force", 0.1) == runs
+    assert measures.reached(runs, "force") == 2
+    assert measures.reached([made_run("a", 8, float("nan"))], "force") == 0
+
+
+def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
+    row = made_row("dda", {}, "w", work={"lines": 400, "unknowns": 20, "steps": 50})
+    assert measures.effort(row) == 400 + 20 * 50 / measures.NUMBERS_A_LINE
+
+
+# ---- the table of a study -----------------------------------------------------------------------------------------
+
+
+def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path: Path) -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
+    work = {"unknowns": 6, "solves": 41, "steps": 40}
+    spent = {"setup": 0.25, "stepping": 0.5}
+    rows = [
+        made_row("dda", {"mode1.damping": 0.17}, "w1", work=work, seconds=spent, estimate=2e-15),
+        made_row("bar", {"mode1.damping": 0.15}, "w1", seconds={"stepping": 0.1}),
+    ]
+    pairs = [between(scene.name, "dda", "bar", displacement_l2=0.031, pressure_l2=0.032)]
+    results = Results(tmp_path)
+    manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
+    derived = {"derived": [{"scene": "owner", "name": "order", "metrics": {"power": 2.0}}]}
+    lines = list(tidy(results, manifest | derived))  # type: ignore[arg-type]
+    numbers = {(row.solver, row.reference, row.metric): row.value for row in lines}
+    assert len(numbers) == len(lines)
+    assert numbers["dda", "", "outcome"] == "completed" and numbers["dda", "", "estimate"] == 2e-15
+    assert numbers["dda", "", "work.solves"] == 41 and numbers["dda", "", "seconds.stepping"] == 0.5
+    assert numbers["dda", "", "mode1.damping"] == 0.17 and numbers["bar", "", "mode1.damping"] == 0.15
+    assert numbers["dda", "bar", "displacement.l2"] == 0.031 and ("bar", "", "estimate") not in numbers
+    units = {(row.metric, row.window, row.unit) for row in lines if row.metric in ("displacement.l2", "seconds.setup")}
+    assert units == {("displacement.l2", 1.0, "1"), ("seconds.setup", None, "s")}
+    last = lines[-1]
+    assert (last.scene, last.case, last.solver, last.metric) == ("owner", "", "order", "power")
+
+
+# ---- orders -------------------------------------------------------------------------------------------------------
+
+
+def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times() -> None:
+    """Step n of dt and step 4 n of dt / 4 end at the same time."""
+    fine = made_history(0.25, np.arange(1, 13) ** 2, np.arange(1, 13))
+    finished: Any = SimpleNamespace(needed_history=lambda case, solver: fine)
+    columns = formulas._columns(finished, "a", "dda", 4)
+    assert columns["displacement"].tolist() == [16, 64, 144] and columns["pressure"].tolist() == [4, 8, 12]
+
+
+def test_the_grid_convergence_index_is_that_of_the_last_change() -> None:
+    """Values 1 + n^-2 change by (3/4) n^-2: order 2, index 1.25 |last change| / (2^2 - 1)."""
+    recipe, index = formulas.grid_convergence(), load_scene("cost-h-poisson").expand()
+    values = {case.name: 1 + n**-2 for case, n in zip(index, formulas.MESHES, strict=True)}
+    made: Any = SimpleNamespace(
+        needed_history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3)
+    )
+    metrics = recipe.compute(made)
+    change = 0.75 * 32**-2 / values[index[-1].name]
+    assert metrics["order.displacement"] == pytest.approx(2.0, abs=0.02)
+    assert metrics["gci.displacement"] == pytest.approx(1.25 * change / (2 ** metrics["order.displacement"] - 1))
+    assert metrics["gci.pressure"] == pytest.approx(metrics["gci.displacement"])
+
+
+# ---- a user's block -----------------------------------------------------------------------------------------------
+
+MINE = {
+    "block": {"width": 0.8, "height": 0.5, "density": 2400.0, "young": 2e9},
+    "contact": {"stiffness": 5e8},
+    "load": {"pressure": 1e5},
+    "time": {"step": 1e-3, "steps": 10},
+}
+
+
+def test_a_user_s_block_is_run_and_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few methods, two levels each: the command runs the study of the scene and prints the cheapest ways."""
+    short = tuple(replace(one, levels=one.levels[:2]) for one in methods() if one.id in ("fem-linear", "modal"))
+    monkeypatch.setattr("validation.studies.cost.ladder.methods", lambda: short)
+    monkeypatch.setattr(measures, "methods", lambda: short)
+    path = tmp_path / "mine.toml"
+    path.write_text("\n".join(f"{name} = {inline(table)}" for name, table in MINE.items()))
+    where = ["--results", str(tmp_path / "results")]
+    run = CliRunner().invoke(app, ["run", "cost", "--scene", str(path), *where])
+    assert run.exit_code == 0, run.output
+    assert "2 modes" in run.output and "no run gets there" in run.output
+    assert CliRunner().invoke(app, ["run", "cost", "--scene", str(path), *where]).exit_code == 0
+    assert CliRunner().invoke(app, ["rows", "cost-of-mine", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
+    lines = table(tmp_path / "a.csv")
+    assert {"work.lines", "seconds.spread", "error.force"} <= {line["metric"] for line in lines}
+
+
+def inline(values: dict[str, Any]) -> str:
+    return "{ " + ", ".join(f"{key} = {value!r}" for key, value in values.items()) + " }"
+
+
+@pytest.mark.parametrize(
+    ("study", "scene", "values", "field"),
+    [
+        ("core", "cost-paper", {}, "--scene"),
+        ("cost", "columns-weight", {}, "--scene"),
+        ("cost", "figures-3-4", {}, "sweep"),
+        ("cost", "cost-opening", {"contact.gap": 1.0}, "contact.gap"),
+        ("cost", "cost-opening", {"load.gravity": 0.0, "load.pressure": -1e5}, "block"),
+        ("cost", "cost-paper", {"damping.kinetic": "adaptive"}, "damping.kinetic"),
+    ],
+)
+def test_what_a_study_cannot_be_run_for_is_refused(study, scene, values, field):
+    with pytest.raises(InputError) as caught:
+        study_of_scene(study, scene, values)
+    assert caught.value.field == field
+
+
+# ---- faults -------------------------------------------------------------------------------------------------------
+
+
+def heavier_on_coarse_meshes(sound):
+    """An error of first order in h."""
+    return lambda basis, *a, **k: (1 + basis.N**-0.5) * sound(basis, *a, **k)
+
+
+def of_newmark(**changes):
+    """Another scheme in place of Newmark's; a discount that it sets does not vanish with the step."""
+
+    def wrap(sound):
+        def faulty(scene):
+            scheme = sound(scene)
+            if scene.time.scheme != "newmark":
+                return scheme
+            return replace(scheme, **{name: change(getattr(scheme, name)) for name, change in changes.items()})
+
+        return faulty
+
+    return wrap
+
+
+def softer(share):
+    """Elements of another modulus, by a share that may depend on how many there are."""
+    return lambda sound: lambda p: sound(replace(p, young=p.young * (1 - share(p.elements))))
+
+
+def of_continuum(**changes):
+    """The exact motion of another bar."""
+
+    def wrap(sound):
+        def faulty(bar, *a, **k):
+            return sound(
+                replace(bar, **{name: factor * getattr(bar, name) for name, factor in changes.items()}), *a, **k
+            )
+
+        return faulty
+
+    return wrap
+
+
+def on_soft_springs(sound):
+    return lambda problem, *a, **k: sound(replace(problem, base_stiffness=problem.base_stiffness / 3), *a, **k)
+
+
+FAULTS = [
+    Fault("dda: a discount", ("dda",), seams.DDA_SCHEME, of_newmark(gg=lambda gg: 0.99 * gg)),
+    Fault("dda: other start", ("dda",), seams.DDA_SCHEME, of_newmark(start=swapped)),
+    Fault("dda: delta 1/2", ("dda",), seams.DDA_SCHEME, of_newmark(delta=lambda delta: 0.5)),
+    Fault("fem: column 0.1 % soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1e-3)),
+    Fault("fem: column of first order", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1 / elements)),
+    Fault("fem: fine columns soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 0.1 * (elements > 40))),
+    Fault("fem: mass of first order", ("fem",), seams.FEM_MASS, heavier_on_coarse_meshes),
+    Fault("continuum: too large", ("continuum",), seams.BAR_CONTINUUM, of_continuum(pressure=1.2)),
+    Fault("continuum: as fast as one strain", ("continuum",), seams.BAR_CONTINUUM, of_continuum(density=0.905)),
+    Fault("bar-events: softer springs", ("bar-events",), seams.EVENTS_BAR, on_soft_springs),
+]
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> Results:
+    """Return the results of the paper's block alone, untimed."""
+    results = beside(finished_cases, tmp_path_factory.mktemp("cost"))
+    run_study(paper_alone(), results)
+    return results
+
+
+def paper_alone() -> Any:
+    scenes = [scene for scene in COST.scenes if isinstance(scene, Scene) and scene.name.startswith("cost-paper")]
+    derived = [row for row in COST.derived() if row.scene.startswith("cost-paper")]
+    gates = [gate for gate in COST.gates() if gate.scene == "cost-paper"]
+    return replace(COARSE, scenes=scenes, derived=lambda: tuple(derived), gates=lambda: tuple(gates))
+
+
+def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound: Results) -> None:
+    verdicts = sound.verdicts("cost")
+    assert len(verdicts) == 2 * 8 and {verdict["verdict"] for verdict in verdicts} == {"PASS"}
+    rows = {(row["scene"], row["name"]): row["metrics"] for row in sound.manifest("cost")["derived"]}
+    cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
+    assert cheapest["error.force"] <= 1e-3
+    assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
+
+
+def test_a_seeded_fault_makes_the_gates_red(sound: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fault = FAULTS[0]
+    fault.seam.wrap(monkeypatch, fault.replacement)
+    faulty = Results(tmp_path)
+    study = paper_alone()
+    run_study(study, faulty)
+    red = {verdict["metric"] for verdict in faulty.verdicts("cost") if verdict["verdict"] == "FAIL"}
+    assert red == {"reached.dda", "sub_blocks", "model"}

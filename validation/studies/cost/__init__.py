@@ -1,0 +1,1 @@
+"""Error against run time and work: methods refined on three blocks, rivals, orders."""

@@ -1,4 +1,0 @@
-"""Error against run time and work.
-
-Points, fronts and orders.
-"""
