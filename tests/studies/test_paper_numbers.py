@@ -71,7 +71,7 @@ def order(rate: float) -> float:
 
 
 def test_a_rate_of_discount_converges_in_the_order_of_the_scheme() -> None:
-    """Without a rate the orders from both starts are gates of the study `work-precision`."""
+    """Without a rate the orders from both starts are gates of the study `cost`."""
     assert order(60.0) == pytest.approx(2.0, abs=0.03)
 
 
