@@ -33,6 +33,7 @@ from validation.runs.modes import Mode
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.registry import get_solver
 
 # ---- windows ------------------------------------------------------------------------------------------------------
 
@@ -268,6 +269,9 @@ def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.Mo
     before = sys.gettrace()
     few, many = (measure.lines_of(partial(loop, count)) for count in (10, 110))
     assert many - few == 200 and sys.gettrace() is before
+    run = partial(get_solver("dda").solve, load_scene("figure-8").expand()[0])
+    run()
+    assert measure.lines_of(run) == measure.lines_of(run)
 
 
 def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Scene, tmp_path: Path) -> None:

@@ -64,7 +64,12 @@ def of_scene(base: Scene) -> dict[str, Any]:
         raise InputError(f"has no reference: {reason}", source=base.name, field="--scene", value=base.name)
     purpose = "Which method gives which error at which cost for this block; what a discount, springs and steps buy."
     rows = tuple(BlockRows(ladder, OWN_BLOCK).rows())
-    return {"purpose": purpose, "scenes": ladder.scenes(), "derived": lambda: rows}
+    applying = []
+    for scene in ladder.scenes():
+        (solver,) = scene.run.solvers
+        if get_solver(solver).refusal(scene.expand()[0]) is None:
+            applying.append(scene)
+    return {"purpose": purpose, "scenes": applying, "derived": lambda: rows}
 
 
 def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
