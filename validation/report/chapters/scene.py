@@ -303,7 +303,8 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
     panel = panels[telling]
     sentences = []
     if len(group.cases) > 1:
-        sentences.append(f"{panel.title}, of {len(group.cases)} cases the one that shows most.")
+        which = "the one that shows most" if distances else "the first"
+        sentences.append(f"{panel.title}, of {len(group.cases)} cases {which}.")
     share = shares[telling]
     if share:
         span = max(float(history.time[-1]) for history in panel.histories.values())
