@@ -15,7 +15,7 @@ from oracles.made_cases import lines_of, names_at, rules_of
 from validation.advice.budget import budgets
 from validation.engine.run import run_study
 from validation.report.appendix.alarms import alarm_table
-from validation.report.blocks import FigureBlock, Table
+from validation.report.blocks import Table, figures_of
 from validation.report.chapters.budget import CONTACT_COLOR, MARGINS, budget_panel
 from validation.report.chapters.registry import chapter_of
 from validation.report.figures.charts import chart_figure
@@ -82,7 +82,7 @@ def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     results = beside(finished_cases, tmp_path / "results")
     run_study(Study(study.name, study.title, study.purpose, [scene], ("dda", "bar", "continuum")), results)
     blocks = chapter_of("figures-5-6")(results, results.manifest("figures-5-6"), tmp_path)
-    captions = [block.caption for block in blocks if isinstance(block, FigureBlock)]
+    captions = [figure.caption for figure in figures_of(blocks)]
     assert len(captions) == len(drawn) > 1
     assert any("Damping budget" in caption and "1.052 to 1.102 times" in caption for caption in captions)
     _, table = alarm_table(groups_of_studies(results, ["figures-5-6"]))

@@ -42,7 +42,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
+from validation.solvers.registry import by_role, role
 from validation.suite.folders import sources_of
 
 MOST_PANELS = 10
@@ -307,10 +307,10 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
         sentences.append(f"{panel.title}, of {len(group.cases)} cases {which}.")
     share = shares[telling]
     if share:
-        span = max(float(history.time[-1]) for history in panel.histories.values())
+        window = max(float(history.time[-1]) for history in panel.histories.values())
         name = columns[0].replace("_", " ")
         sentences.append(
-            f"Over these {short(span, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
+            f"Over these {short(window, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
             "(relative L2)."
         )
     return panel, sentences
@@ -328,21 +328,24 @@ def _is_shown_whole(group: CaseGroup) -> bool:
 def _judged(panel: HistoryPanel) -> str | None:
     """Return the solver of a panel that is judged: DDA, or the first beside the reference."""
     solvers = [name for name in panel.histories if name != panel.reference]
-    return next((name for name in by_role(Role.JUDGED) if name in solvers), next(iter(solvers), None))
+    return min(solvers, key=lambda name: role(name) is not Role.JUDGED, default=None)
 
 
 def lead_difference(panel: HistoryPanel, column: str) -> float | None:
-    """Return the relative L2 difference that a panel shows between its judged solver and its reference."""
+    """Return the relative L2 difference that a panel shows between its judged solver and its reference.
+
+    None where they cannot be compared, one of them blew up, or all that they differ by is rounding.
+    """
     one = panel.histories.get(_judged(panel) or "")
     base = panel.histories.get(panel.reference or "")
     if one is None or base is None or one.time.size != base.time.size:
         return None
     if column not in one.columns or column not in base.columns:
         return None
-    size = float(np.linalg.norm(base.columns[column]))
-    with np.errstate(all="ignore"):  # a run that blew up differs by infinity
-        off = float(np.linalg.norm(one.columns[column] - base.columns[column]))
-    return off / size if size > 0 and 0 < off < math.inf else None
+    values = base.columns[column]
+    with np.errstate(all="ignore"):
+        share = float(np.linalg.norm(one.columns[column] - values) / np.linalg.norm(values))
+    return share if motion.FLOOR < share < math.inf else None
 
 
 def free_window(case: CaseResults, column: str) -> float:
