@@ -431,11 +431,6 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool = False)
         )
     if any(panel.static for panel in panels):
         sentences.append("Hairline: static value.")
-    sparse: set[str] = set()
-    for panel in panels:
-        sparse.update(panel.sparse(columns))
-    if sparse:
-        sentences.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
     if references and apart:
         sentences.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")
