@@ -61,3 +61,10 @@ def test_each_kind_of_scene_is_drawn_with_all_its_bodies(name: str, bodies: int)
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert left <= corners[:, 0].min() and corners[:, 0].max() <= right
     assert low <= corners[:, 1].min() and corners[:, 1].max() <= high
+
+
+def test_what_is_rounding_decides_nothing(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """Which of two cases is shown would depend on the processor."""
+    cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
+    (block,) = lead_figure(made_group(*cases), tmp_path)
+    assert block.caption.startswith("dt = 0.002 s, of 2 cases the first.")

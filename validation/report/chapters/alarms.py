@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import chain
 
 from validation.report.blocks import Callout
-from validation.report.chapters.data import Groups
-from validation.report.chapters.text import some
+from validation.report.chapters.data import Groups, labels_of
+from validation.report.chapters.text import AS_STATED, some
 from validation.runs.case_name import scene_of
 from validation.runs.records import AlarmRecord
 
@@ -18,6 +18,7 @@ def alarm_lines(groups: Groups) -> list[Callout]:
     raised: dict[str, list[AlarmRecord]] = {}
     for alarm in chain.from_iterable(group.alarms for group in groups.values()):
         raised.setdefault(alarm["kind"], []).append(alarm)
+    labels = labels_of(groups.values())
     lines = []
     for kind, records in raised.items():
         first = records[0]
@@ -26,5 +27,7 @@ def alarm_lines(groups: Groups) -> list[Callout]:
         number = f" in {cases} cases" if cases > 1 else ""
         scenes = list(map(scene_of, names))
         where = f" of {some(scenes, MOST_NAMES)}" if len(set(scenes)) > 1 else ""
-        lines.append(Callout(f"Alarm{number}{where}, {kind}: {first['scene']}: {first['sentence']}.", "warn"))
+        label = labels.get(first["scene"], AS_STATED)
+        case = scene_of(first["scene"]) + ("" if label == AS_STATED else f", {label}")
+        lines.append(Callout(f"Alarm{number}{where}, {kind}: {case}: {first['sentence']}.", "warn"))
     return lines

@@ -34,7 +34,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
+from validation.solvers.registry import by_role, role
 from validation.suite.folders import sources_of
 
 MOST_PANELS = 10
@@ -53,10 +53,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
     if len(groups) == 1:
-        _, finding, *section = scene_section(groups[0], directory)
-        summary = scene_summary(groups[0], directory)
-        lead = lead_figure(groups[0], directory)
-        return [Heading(groups[0].title), finding, *summary, *lead, *section, *budget_blocks(groups[0], directory)]
+        return scene_page(groups[0], directory, summarised=True)
     columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
     blocks = opening(manifest)
     for group, drawn in zip(groups, columns, strict=True):
@@ -64,18 +61,25 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def scene_page(group: CaseGroup, directory: Path) -> Blocks:
-    """Return the page of a scene: drawing and finding, the case that shows it best, alarms, all cases, numbers."""
+def scene_page(group: CaseGroup, directory: Path, summarised: bool = False) -> Blocks:
+    """Return the page of a scene: drawing and finding, the case that shows it best, alarms, all cases, numbers.
+
+    If `summarised`, the finding is followed by what page 1 of a report says, in place of data, alarms and differences.
+    """
     _, finding, *section = scene_section(group, directory, () if _is_shown_whole(group) else None)
+    lead = lead_figure(group, directory)
+    budgets = budget_blocks(group, directory)
+    if summarised:
+        return [Heading(group.title), finding, *scene_summary(group, directory), *lead, *section, *budgets]
     drawing = histories.saved(scene_figure(group.cases[0].scene), directory, f"{group.slug}-drawing.svg", "")
     return [
         Heading(group.title),
         Beside((drawing,), (finding, description(group).facts()), DRAWING_SHARE),
-        *lead_figure(group, directory),
+        *lead,
         *alarm_lines({group.name: group}),
         *section,
         *difference_blocks(group),
-        *budget_blocks(group, directory),
+        *budgets,
     ]
 
 
@@ -298,13 +302,14 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
     panel = panels[telling]
     sentences = []
     if len(group.cases) > 1:
-        sentences.append(f"{panel.title}, of {len(group.cases)} cases the one that shows most.")
+        which = "the one that shows most" if distances else "the first"
+        sentences.append(f"{panel.title}, of {len(group.cases)} cases {which}.")
     share = shares[telling]
     if share:
-        span = max(float(history.time[-1]) for history in panel.histories.values())
+        window = max(float(history.time[-1]) for history in panel.histories.values())
         name = columns[0].replace("_", " ")
         sentences.append(
-            f"Over these {short(span, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
+            f"Over these {short(window, 3)} s {_judged(panel)} is {percent(share)} off {panel.reference} in {name} "
             "(relative L2)."
         )
     return panel, sentences
@@ -322,21 +327,24 @@ def _is_shown_whole(group: CaseGroup) -> bool:
 def _judged(panel: HistoryPanel) -> str | None:
     """Return the solver of a panel that is judged: DDA, or the first beside the reference."""
     solvers = [name for name in panel.histories if name != panel.reference]
-    return next((name for name in by_role(Role.JUDGED) if name in solvers), next(iter(solvers), None))
+    return min(solvers, key=lambda name: role(name) is not Role.JUDGED, default=None)
 
 
 def lead_difference(panel: HistoryPanel, column: str) -> float | None:
-    """Return the relative L2 difference that a panel shows between its judged solver and its reference."""
+    """Return the relative L2 difference that a panel shows between its judged solver and its reference.
+
+    None where they cannot be compared, one of them blew up, or all that they differ by is rounding.
+    """
     one = panel.histories.get(_judged(panel) or "")
     base = panel.histories.get(panel.reference or "")
     if one is None or base is None or one.time.size != base.time.size:
         return None
     if column not in one.columns or column not in base.columns:
         return None
-    size = float(np.linalg.norm(base.columns[column]))
-    with np.errstate(all="ignore"):  # a run that blew up differs by infinity
-        off = float(np.linalg.norm(one.columns[column] - base.columns[column]))
-    return off / size if size > 0 and 0 < off < math.inf else None
+    values = base.columns[column]
+    with np.errstate(all="ignore"):
+        share = float(np.linalg.norm(one.columns[column] - values) / np.linalg.norm(values))
+    return share if motion.FLOOR < share < math.inf else None
 
 
 def free_window(case: CaseResults, column: str) -> float:
@@ -422,11 +430,6 @@ def _reading(panels: HistoryPanels, columns: Sequence[str], apart: bool = False)
         )
     if any(panel.static for panel in panels):
         sentences.append("Hairline: static value.")
-    sparse: set[str] = set()
-    for panel in panels:
-        sparse.update(panel.sparse(columns))
-    if sparse:
-        sentences.append(f"Dots: {' and '.join(sorted(sparse))} at the steps, too few to be joined.")
     references = dict.fromkeys(p.reference for p in panels if p.reference and differences(p, columns[0]))
     if references and apart:
         sentences.append(f"|Δ|: from {' or '.join(map(str, references))}, the largest in each fortieth of the time.")

@@ -15,12 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.runs.history import Array, History
-from validation.solvers.contract import LineStyle, Role
-from validation.solvers.registry import by_role, get_solver, is_solver
+from validation.solvers.contract import LineStyle
+from validation.solvers.registry import get_solver, is_solver
 
-TURNING = 0.25  # of the samples: an exact solution that turns more often has fewer than eight to a swing
-RIPPLE = 0.05  # of the range: smaller changes from sample to sample are seen as what they are
-MOST_DOTS = 400  # samples; more dots cannot be told apart
 ROUNDING = 1e-9  # m, rad, N: smaller positions, rotations and forces of rigid boxes are zero
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
@@ -104,13 +101,6 @@ class HistoryPanel:
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
     of_boxes: bool = False  # whether its columns are those of rigid boxes
 
-    def sparse(self, columns: Sequence[str]) -> list[str]:
-        """Return the solvers that are drawn as dots in one of some columns."""
-        solvers = []
-        for column in columns:
-            solvers += [s for s, h in self.drawn(column).items() if is_sparse(s, h.time, h.columns[column])]
-        return solvers
-
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
         finest = {name: self.finer.get(name, history) for name, history in self.histories.items()}
@@ -152,17 +142,3 @@ def differences(panel: HistoryPanel, column: str) -> dict[str, tuple[Array, Arra
                 scaled = (history.columns[column] - base.columns[column]) / scale
             envelopes[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
     return envelopes
-
-
-def is_sparse(solver: str, x: Array, y: Array) -> bool:
-    """Whether an exact solution has too few instants to be joined: its lines would be a zigzag that is no motion.
-
-    A history that is stepped is what its steps are, and is joined.
-    """
-    exact = solver in (EXACT, *by_role(Role.TRUTH), *by_role(Role.LIMIT))
-    if not exact or x.size < 3 or x.size > MOST_DOTS:
-        return False
-    changes = np.diff(y)
-    large = np.abs(changes) > RIPPLE * np.ptp(y)
-    turning = (changes[1:] * changes[:-1] < 0) & large[1:] & large[:-1]
-    return bool(np.mean(turning) > TURNING)

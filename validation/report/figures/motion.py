@@ -24,7 +24,6 @@ from validation.report.figures.curves import (
     common_range,
     differences,
     engineering,
-    is_sparse,
     style_of,
 )
 from validation.report.figures.histories import (
@@ -166,8 +165,8 @@ def start_of(panels: HistoryPanels, column: str) -> float | None:
     """Return the time [s] of the start that is drawn by itself, or None where all swings can be seen."""
     spans = []
     for panel in panels:
-        for history in panel.histories.values():
-            if column in history.columns and (count := swings(history, column)) > SWINGS:
+        for history in panel.drawn(column).values():
+            if (count := swings(history, column)) > SWINGS:
                 spans.append(float(history.time[-1]) * START / count)
     return max(spans, default=None)
 
@@ -235,9 +234,6 @@ def _history_row(row: list[Axes], panels: HistoryPanels, column: str, limits: tu
 
 
 def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
-    if is_sparse(solver, x, y):
-        axes.plot(x, y, "o", ms=2.0, color=style_of(solver).color, zorder=2 + style_of(solver).layer)
-        return
     if not dense:
         draw_chart_line(axes, ChartLine(solver, x, y))
         return
