@@ -388,35 +388,44 @@ def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) ->
     return force((low + high) / 2)
 
 
-def dashpot(
-    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
+def by_free_gap(
+    run: Run, alpha: float, delta: float, zero: bool, force: Callable[[float, float, float], float]
 ) -> Rows:
-    """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
+    """Newmark's step with a contact force at its end of the free gap, its rate and the compliance B M_eff^(-1) B."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
     v = np.zeros(2)
     a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
     S = b.M + alpha * dt * dt * b.K
-    C0 = b.B @ np.linalg.solve(S, b.B)
+    C = b.B @ np.linalg.solve(S, b.B)
     rows = []
     for _ in range(run.steps):
         u = run.gg * v
         ahead = x + dt * u + dt * dt * (0.5 - alpha) * a
         af = np.linalg.solve(S, b.F - b.K @ ahead)
         wf = b.B @ (ahead + alpha * dt * dt * af)
-        rate = b.B @ (u + dt * ((1 - delta) * a + delta * af))
-        N = -(b.k * wf + c * rate) / (1 + C0 * (alpha * dt * dt * b.k + delta * dt * c))
-        if run.opens:
-            if wf >= 0:
-                N = 0.0
-            elif clipped:
-                N = max(N, 0.0)
+        N = force(wf, b.B @ (u + dt * ((1 - delta) * a + delta * af)), C)
         a1 = af + np.linalg.solve(S, b.B * N)
         x = ahead + alpha * dt * dt * a1
         v = u + dt * ((1 - delta) * a + delta * a1)
         a = a1
         rows.append((x, N))
     return rows
+
+
+def dashpot(
+    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
+) -> Rows:
+    """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
+    k, dt = run.body.k, run.dt
+
+    def force(wf: float, rate: float, C: float) -> float:
+        N = -(k * wf + c * rate) / (1 + C * (alpha * dt * dt * k + delta * dt * c))
+        if run.opens and wf >= 0:
+            return 0.0
+        return max(N, 0.0) if run.opens and clipped else N
+
+    return by_free_gap(run, alpha, delta, zero, force)
 
 
 def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
@@ -440,32 +449,20 @@ def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
 
 def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance: float = 0.0, r: float = 0.0) -> Rows:
     """Rigid contact in displacements: complementarity, or passes of an augmented Lagrangian down to a penetration."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
-    S = b.M + alpha * dt * dt * b.K
-    C = alpha * dt * dt * b.B @ np.linalg.solve(S, b.B)
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-        ahead = x + dt * u + dt * dt * (0.5 - alpha) * a
-        af = np.linalg.solve(S, b.F - b.K @ ahead)
-        wf = b.B @ (ahead + alpha * dt * dt * af)
-        N = max(0.0, -wf / C)
-        if tolerance:
-            N = 0.0
-            for _ in range(100000):
-                # with the penalty r of the pass: w = wf + C N', N' = max(0, N - r w)
-                N = max(0.0, (N - r * wf) / (1 + r * C))
-                if wf + C * N > -tolerance:
-                    break
-        a1 = af + np.linalg.solve(S, b.B * N)
-        x = ahead + alpha * dt * dt * a1
-        v = u + dt * ((1 - delta) * a + delta * a1)
-        a = a1
-        rows.append((x, N))
-    return rows
+
+    def force(wf: float, rate: float, compliance: float) -> float:
+        C = alpha * run.dt**2 * compliance
+        if not tolerance:
+            return max(0.0, -wf / C)
+        N = 0.0
+        for _ in range(100000):
+            # with the penalty r of the pass: w = wf + C N', N' = max(0, N - r w)
+            N = max(0.0, (N - r * wf) / (1 + r * C))
+            if wf + C * N > -tolerance:
+                break
+        return N
+
+    return by_free_gap(run, alpha, delta, zero, force)
 
 
 METHODS: dict[str, Callable[..., Rows]] = {

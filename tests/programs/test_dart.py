@@ -1,10 +1,11 @@
 """DART's adapter: that it states a scene of boxes rightly, by what DART's own integrator and impulses must give."""
 
+import importlib
 from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from peers.dart import FINE_STEP, OWN_STEP, Dart, World, program
+from peers.dart import FINE_STEP, OWN_STEP, Dart, World
 from programs.rigid_scenes import rigid_scene
 
 # To look for it costs nothing; to import it takes seconds in every process that collects these tests.
@@ -14,7 +15,7 @@ DEPTH = 1e-6  # m: DART lets a resting box sink by about g h^2 before its contac
 
 @installed
 def test_its_default_step_and_sleeping_are_those_of_a_new_world():
-    world = program().simulation.World()
+    world = importlib.import_module("dartpy").simulation.World()
     assert world.getTimeStep() == OWN_STEP
     assert world.getDeactivationOptions().mEnabled
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, substeps
 from peers.packages import imported
@@ -36,7 +35,7 @@ class World:
                 "contact of given stiffness: Box2D's hertz correct overlap, its contacts stop a box dead"
             )
         self.scene = scene
-        self.box2d = program()
+        self.box2d = imported("pyb2d3", "Box2D", RECIPE)
         self.world = self.box2d.World(gravity=rigid.pull)
         self.moves = bool(rigid.base_amplitude)
         self.default = default
@@ -109,14 +108,3 @@ class AsItComes(Box2D):
 
     default = True
     settings = "step 1/60 s in 4 sub-steps; contact of 30 Hz, no restitution below 1 m/s, sleeping allowed"
-
-
-def program() -> Any:
-    """Return Box2D.
-
-    Raises
-    ------
-    NotImplementedError
-        It is not installed.
-    """
-    return imported("pyb2d3", "Box2D", RECIPE)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from validation.runs.history import Array
-from validation.scenes.rigid import FORCE, POSE, RigidSection
+from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers.user import PROGRAM_STEPS
 
@@ -51,6 +51,13 @@ def spring_step(scene: Scene) -> float:
     if rigid.stiffness is None:
         return math.inf
     return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
+
+
+def corners_of(box: BoxSection) -> list[tuple[float, float]]:
+    """Return the corners of a box from its centre, the two lower ones first [m]."""
+    half_width = box.width / 2
+    half_height = box.height / 2
+    return [(side * half_width, end * half_height) for end in (-1, 1) for side in (-1, 1)]
 
 
 def correction_rate(scene: Scene) -> float:

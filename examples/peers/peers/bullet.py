@@ -7,7 +7,6 @@ three joints, two that slide and one that turns, which Bullet's multi-bodies kee
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
 from peers.packages import imported
@@ -41,7 +40,7 @@ class World:
         rigid = boxes_of(scene)
         self.scene = scene
         self.default = default
-        self.bullet = program()
+        self.bullet = imported("pybullet", "PyBullet", RECIPE)
         self.server = self.bullet.connect(self.bullet.DIRECT)
         self.own_step = USUAL_STEP if default else min(STEP, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
@@ -238,14 +237,3 @@ class AsItComes(Bullet):
     default = True
     model = "boxes of 1 m free in space, ground a box; contact by sequential impulses"
     settings = "step 1/240 s; 50 iterations, damping, no restitution below 0.2 m/s, overlap corrected by a fifth"
-
-
-def program() -> Any:
-    """Return PyBullet.
-
-    Raises
-    ------
-    NotImplementedError
-        It is not installed.
-    """
-    return imported("pybullet", "PyBullet", RECIPE)

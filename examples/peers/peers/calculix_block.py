@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from peers.blocks import push_of, tangent_of, turn_of
 from peers.calculix_deck import Deck, amplitude, node, number, refuse, row
 
 if TYPE_CHECKING:
@@ -19,12 +20,6 @@ BALLAST = 1e5  # kinetic energy of the ballast over the greatest of the scene
 SPEED = 10.0  # m/s, of the ballast
 FACES = {"small": ("S3",), "updated": ("S3", "S4", "S5", "S6")}  # the base; every side of the outline
 COLUMNS = {"displacement", "contact_pressure", "horizontal_displacement", "rotation"}
-
-
-def _rectangle(block: BlockSection) -> tuple[float, float]:
-    """Return width and height of an upright rectangle that stands on its base edge [m]."""
-    refuse(block.rectangle is None, "the outline is no upright rectangle on its base, and the element is one")
-    return block.rectangle or (0.0, 0.0)
 
 
 def _constants(block: BlockSection) -> list[str]:
@@ -44,13 +39,15 @@ def _check_block(scene: Scene) -> None:
     refuse(contact.cohesion > 0, "contact in CalculiX has friction but no cohesion")
     refuse(run.rotation != "exact", "a rotation of first order is that of older DDA programs")
     refuse(not COLUMNS & set(run.columns), "none of the columns that are asked for is reported")
+    outline = "the outline is no upright rectangle on its base, and the element is one"
+    refuse(scene.block.rectangle is None, outline)
 
 
 def block_deck(scene: Scene, sub: int) -> Deck:
     """Return the model of a block under its loads."""
     _check_block(scene)
     b, t = scene.block, scene.time
-    width, height = _rectangle(b)
+    width, height = b.rectangle
     deck = Deck(t.step, t.steps, sub, printed=[1, 2, 3, 4], updated=scene.run.geometry == "updated")
     corners = _placed(scene, width, height)
     deck.model += ["*NODE,NSET=ALL", *(node(k + 1 + 4 * z, *corners[k], z) for z in (0, 1) for k in range(4))]
@@ -75,7 +72,7 @@ def _placed(scene: Scene, width: float, height: float) -> Array:
     corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
     angle = math.radians(scene.block.tilt)
     pivot = np.array([0.0 if angle >= 0 else width, 0.0])
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    turn = turn_of(angle)
     placed: Array = pivot + (corners - pivot) @ turn.T + [0.0, scene.contact.gap]
     return placed
 
@@ -106,7 +103,7 @@ def _contact(scene: Scene, deck: Deck, width: float, height: float) -> str:
     tension = 1e-12 * c.stiffness  # at infinity, as ccx rounds the corner of its law
     deck.model += ["*SURFACE INTERACTION,NAME=TOUCH", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR"]
     deck.model += [row(2 * c.stiffness / length, tension)]
-    friction = GLUED if c.friction is None else math.tan(math.radians(c.friction))
+    friction = tangent_of(scene, GLUED)
     if c.shear and friction:
         deck.model += ["*FRICTION", row(friction, 2 * c.shear / length)]
     deck.model += ["*CONTACT PAIR,INTERACTION=TOUCH,TYPE=NODE TO SURFACE", "SLAVE,MASTER"]
@@ -170,7 +167,7 @@ def _loads(scene: Scene, deck: Deck, width: float, base: str) -> None:
         deck.model += [*amplitude("ALONG", time, x), *amplitude("UP", time, y), "*BOUNDARY", f"{base},3,3"]
         for dof, name in ((1, "ALONG"), (2, "UP")):
             deck.loads += [f"*BOUNDARY,AMPLITUDE={name}", f"{base},{dof},{dof},1."]
-    push, e = load.pressure * (width - 2 * abs(load.eccentricity)), load.eccentricity / width
+    push, e = push_of(scene), load.eccentricity / width
     for corner, share in ((3, 0.5 + e), (4, 0.5 - e)):
         deck.loads += ["*CLOAD", row(str(corner), "2", -push * share)]
         deck.loads += ["*CLOAD", row(str(corner), "1", load.traction * width / 2)]
@@ -181,7 +178,7 @@ def _loads(scene: Scene, deck: Deck, width: float, base: str) -> None:
 
 def block_columns(scene: Scene, found: Array) -> dict[str, Array]:
     """Return the columns of a block from the displacements of its four corners, shape (steps, 4, 2)."""
-    width, height = _rectangle(scene.block)
+    width, height = scene.block.rectangle
     time, _, y = _record(scene)
     corners, c = _placed(scene, width, height), scene.contact
     base = np.interp(scene.time.step * np.arange(1, scene.time.steps + 1), time, y)

@@ -22,22 +22,11 @@ LEAST_RESTITUTION = 1e-3  # the same of its restitution
 GROUND_DEPTH = 10.0  # m: the boxes are 1 m deep
 
 
-def program() -> Any:
-    """Import DART.
-
-    Raises
-    ------
-    NotImplementedError
-        It is not installed.
-    """
-    return imported("dartpy", "DART", RECIPE)
-
-
 class World:
     """A scene in DART."""
 
     def __init__(self, scene: Scene, *, sleeps: bool) -> None:
-        self.dart = program()
+        self.dart = imported("dartpy", "DART", RECIPE)
         self.boxes = boxes_of(scene)
         self.world = self.dart.simulation.World()
         self.world.setGravity([*self.boxes.pull, 0.0])

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, boxes_of, named, substeps
+from peers.boxes import Pose, boxes_of, corners_of, named, substeps
+from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.runs.history import Array
 from validation.scenes.rigid import BoxSection, RigidSection
@@ -57,11 +58,8 @@ class Exudyn(ExternalProgram):
             The scene has no rigid boxes, or Exudyn is not installed.
         """
         rigid = boxes_of(scene)
-        try:
-            import exudyn
-            import exudyn.itemInterface
-        except ImportError as error:
-            raise NotImplementedError(f"Exudyn is not installed: {RECIPE}") from error
+        imported("exudyn.itemInterface", "Exudyn", RECIPE)
+        exudyn = imported("exudyn", "Exudyn", RECIPE)
         exudyn.config.printToConsole = False
         steps = substeps(scene, self.own_step)
         model = Model(exudyn, rigid, self.stiffness(rigid, scene.time.step / steps), self.friction_zone)
@@ -186,7 +184,7 @@ class Model:
             self.add_box(box, start)
         ground = self.system.AddObject(self.items.ObjectGround())
         size = max(math.hypot(box.width, box.height) for box in rigid.box)
-        on_ground = self.touch(self.bodies[0], corners(rigid.box[0]), ground, (0.0, 1.0), WIDE * size, laws[0])
+        on_ground = self.touch(self.bodies[0], corners_of(rigid.box[0]), ground, (0.0, 1.0), WIDE * size, laws[0])
         self.contacts = [on_ground]  # of each box with what is below it
         for number, box in enumerate(rigid.box[1:], start=1):
             lower = rigid.box[number - 1]
@@ -194,8 +192,8 @@ class Model:
             lower_body = self.bodies[number - 1]
             top = (lower.height / 2, 1.0)
             bottom = (-box.height / 2, -1.0)
-            on_lower = self.touch(upper_body, corners(box)[:2], lower_body, top, lower.width / 2, laws[number])
-            on_upper = self.touch(lower_body, corners(lower)[2:], upper_body, bottom, box.width / 2, laws[number])
+            on_lower = self.touch(upper_body, corners_of(box)[:2], lower_body, top, lower.width / 2, laws[number])
+            on_upper = self.touch(lower_body, corners_of(lower)[2:], upper_body, bottom, box.width / 2, laws[number])
             self.contacts.append(on_lower + on_upper)
         self.system.Assemble()
 
@@ -292,18 +290,6 @@ class Model:
         reference = data.GetODE2Coordinates(self.exudyn.ConfigurationType.Reference)
         shape = (len(self.nodes), 3)
         return time, (data.GetODE2Coordinates() + reference).reshape(shape), data.GetODE2Coordinates_t().reshape(shape)
-
-
-def corners(box: BoxSection) -> list[tuple[float, float]]:
-    """Return the corners of a box from its centre, the two lower ones first [m]."""
-    half_width = box.width / 2
-    half_height = box.height / 2
-    return [
-        (-half_width, -half_height),
-        (half_width, -half_height),
-        (-half_width, half_height),
-        (half_width, half_height),
-    ]
 
 
 def between(first: State, last: State, time: float) -> Array:

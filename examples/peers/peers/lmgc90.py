@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from peers.boxes import Pose, boxes_of, record, substeps
+from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.runs.history import Array
 from validation.scenes.rigid import BoxSection, RigidSection
@@ -59,11 +60,8 @@ class LMGC90(ExternalProgram):
         rigid = boxes_of(scene)
         refuse(rigid)
         alert = self.alert(rigid)
-        try:
-            from compas_lmgc90 import _lmgc90
-        except ImportError as error:
-            raise NotImplementedError(f"LMGC90 is not installed: {RECIPE}") from error
-        model = Model(_lmgc90.LMGC90Solver, rigid, scene.time.step / substeps(scene, self.own_step), alert)
+        program = imported("compas_lmgc90._lmgc90", "LMGC90", RECIPE)
+        model = Model(program.LMGC90Solver, rigid, scene.time.step / substeps(scene, self.own_step), alert)
         try:
             return record(scene, self.own_step, model.advance, model.poses, model.forces)
         finally:

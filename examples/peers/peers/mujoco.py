@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from peers.blocks import push_of
 from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
 from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
@@ -49,7 +50,7 @@ def sizes(scene: Scene) -> tuple[float, float]:
 def loads(scene: Scene) -> tuple[float, float, float]:
     """Return forces towards +x and upwards of all loads [N], and how far towards +x the pressure acts [m]."""
     q, (a, _), turn = scene.load, sizes(scene), math.radians(scene.load.slope)
-    weight, push = scene.block.mass * q.gravity, q.pressure * (a - 2 * abs(q.eccentricity))
+    weight, push = scene.block.mass * q.gravity, push_of(scene)
     return q.traction * a + weight * math.sin(turn), -push - weight * math.cos(turn), -push * q.eccentricity
 
 
@@ -74,8 +75,9 @@ def block_network(scene: Scene) -> Network:
     if c.shear > 0 and not (opens and upright(scene)):
         springs += [Spring({"u": 1.0, "px": s, "ty": -1.0, **x}, c.shear, slips=opens) for s in (-1.0, 1.0)]
     along, up, turning = loads(scene)
-    push = -q.pressure * (a - 2 * abs(q.eccentricity))
-    return Network(masses, springs, {}, {"u": along, "v": up, "ty": q.traction * a, "tx": turning * 2 / a, "py": push})
+    return Network(
+        masses, springs, {}, {"u": along, "v": up, "ty": q.traction * a, "tx": turning * 2 / a, "py": -push_of(scene)}
+    )
 
 
 def upright(scene: Scene) -> bool:
@@ -163,7 +165,7 @@ def rigid_box(scene: Scene, *, default: bool) -> Columns:
     world = f'<geom type="plane" size="1 1 1" {contact}/><body pos="0 0 {lowest!r}">{joints}{box}</body>'
     gravity = f"{q.gravity * math.sin(turn)!r} 0 {-q.gravity * math.cos(turn)!r}"
     march = March(model_text(f'timestep="{dt!r}" {options}', world, gravity=gravity))
-    push = q.pressure * (a - 2 * abs(q.eccentricity))
+    push = push_of(scene)
     march.data.qfrc_applied[:] = q.traction * a, -push, -push * q.eccentricity - q.traction * a * h / 2
     march.data.qpos[2], march.data.qvel[1] = tilt, b.velocity
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -89,7 +88,7 @@ class March:
     """
 
     def __init__(self, text: str, network: Network | None = None) -> None:
-        self.mujoco = program()
+        self.mujoco = imported("mujoco", "MuJoCo", RECIPE)
         self.model = self.mujoco.MjModel.from_xml_string(text)
         for i, spring in enumerate(network.springs if network else []):  # not by XML, to which -1 means something else
             self.model.tendon_lengthspring[i] = spring.lower, spring.lower if spring.pulls else FREE
@@ -142,17 +141,6 @@ class March:
             yield
         finally:
             self.mujoco.set_mju_user_warning(before)
-
-
-def program() -> Any:
-    """Return MuJoCo.
-
-    Raises
-    ------
-    NotImplementedError
-        It is not installed.
-    """
-    return imported("mujoco", "MuJoCo", RECIPE)
 
 
 def refuse(why: str, *, where: bool) -> None:

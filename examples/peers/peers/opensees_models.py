@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from peers.blocks import push_of, tangent_of, turn_of
 from peers.columns import NEAR, Stretch, stretches
 from validation.runs.history import Array
 from validation.scenes.drive import motion_at
@@ -75,7 +76,7 @@ def corners(scene: Scene) -> dict[int, Array]:
     """Return where the nodes of the block are at t = 0 [m]: turned about the corner that stays down."""
     width, height = scene.block.rectangle or (0.0, 0.0)
     tilt = math.radians(scene.block.tilt)
-    turn = np.array([[math.cos(tilt), -math.sin(tilt)], [math.sin(tilt), math.cos(tilt)]])
+    turn = turn_of(tilt)
     down = np.array([0.0 if tilt >= 0 else width, 0.0])
     upright = {LEFT: (0.0, 0.0), RIGHT: (width, 0.0), TOP: (width / 2, height)}
     return {node: down + turn @ (np.array(point) - down) for node, point in upright.items()}
@@ -103,7 +104,7 @@ def _stand(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
     c = scene.contact
     ops.uniaxialMaterial("Elastic", 3, c.stiffness)
     ops.uniaxialMaterial("Elastic", 4, c.shear)
-    slope = GLUED if c.friction is None else math.tan(math.radians(c.friction))
+    slope = tangent_of(scene, GLUED)
     for node, element in SPRINGS.items():
         ground = GROUND + node
         ops.node(ground, at[node][0], -c.gap)
@@ -118,7 +119,7 @@ def _stand(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
 def loads(scene: Scene) -> dict[int, tuple[float, float]]:
     """Return the forces on the nodes that do the work of a scene's loads [N]."""
     b, q = scene.block, scene.load
-    pressed = q.pressure * (b.base_length - 2 * abs(q.eccentricity))
+    pressed = push_of(scene)
     couple = pressed * q.eccentricity / b.base_length
     weight, slope = b.mass * q.gravity, math.radians(q.slope)
     found = {n: (weight * math.sin(slope) * share, -weight * math.cos(slope) * share) for n, share in SHARES.items()}
@@ -200,9 +201,8 @@ def column(ops: Any, scene: Scene, plan: Plan) -> Look:
     def look() -> dict[str, float]:
         base = carried * float(np.interp(ops.getTime(), instants, drive.displacement))
         moved = base + np.array([ops.nodeDisp(node, 1) for node in nodes])
-        heights = {f"displacement_{i}": h for i, h in enumerate(scene.column.heights, start=1)}
-        seen_at = {name: float(np.interp(h, levels, moved)) for name, h in heights.items()}
-        return {"displacement": float(moved[-1])} | seen_at
+        seen_at = np.interp(scene.column.heights, levels, moved).tolist()
+        return {"displacement": float(moved[-1])} | {f"displacement_{i}": x for i, x in enumerate(seen_at, start=1)}
 
     return look
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record
+from peers.boxes import Pose, base_velocity, boxes_of, corners_of, ground_ends, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.runs.history import Array
@@ -34,7 +34,7 @@ class World:
         if rigid.stiffness is not None:
             raise NotImplementedError("contact of given stiffness: pymunk's contacts are impulses")
         self.scene = scene
-        self.pymunk = program()
+        self.pymunk = imported("pymunk", "pymunk", RECIPE)
         self.space = self.pymunk.Space()
         self.space.gravity = rigid.pull
         if not default:
@@ -56,15 +56,7 @@ class World:
             body.velocity = box.velocity
             body.angular_velocity = box.spin
             self.space.add(body)
-            half_width = box.width / 2
-            half_height = box.height / 2
-            corners = [
-                (-half_width, -half_height),
-                (half_width, -half_height),
-                (half_width, half_height),
-                (-half_width, half_height),
-            ]
-            self._add_shape(body, corners)
+            self._add_shape(body, corners_of(box))
             self.boxes.append(body)
 
     def _add_shape(self, body: Any, corners: list[tuple[float, float]]) -> None:
@@ -131,14 +123,3 @@ class AsItComes(Pymunk):
 
     default = True
     settings = "step 1/60 s; 10 iterations, slop 0.1 m, overlap corrected by a tenth in 1/60 s; no sleeping"
-
-
-def program() -> Any:
-    """Return pymunk.
-
-    Raises
-    ------
-    NotImplementedError
-        It is not installed.
-    """
-    return imported("pymunk", "pymunk", RECIPE)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from peers.blocks import push_of, tangent_of, turn_of
 from peers.programs import ExternalProgram
 
 PYTHON = "/usr/bin/python3"  # Debian's, for which its packages are made
@@ -49,8 +50,12 @@ class Siconos(ExternalProgram):
     )
 
     def version(self) -> str:
-        """Return the version of Debian's package."""
-        return version()
+        """Return the version of Debian's package, or that there is none."""
+        try:
+            command = ["dpkg-query", "-W", "-f", "${Version}", "python3-siconos"]
+            return subprocess.run(command, capture_output=True, text=True).stdout or "not installed"
+        except OSError:
+            return "unknown"
 
     def solve(self, scene: Scene) -> dict[str, np.ndarray]:
         """Return the columns of a scene that the model has.
@@ -81,15 +86,6 @@ class AsItComes(Siconos):
         "MoreauJeanOSI(), theta = 1/2, and FrictionContact(2) at the step of the scene; rigid boxes at 0.5 ms, the "
         "step of MechanicsHdf5Runner.run"
     )
-
-
-def version() -> str:
-    """Return the version of Debian's package, or that there is none."""
-    try:
-        command = ["dpkg-query", "-W", "-f", "${Version}", "python3-siconos"]
-        return subprocess.run(command, capture_output=True, text=True).stdout or "not installed"
-    except OSError:
-        return "unknown"
 
 
 def ask(request: dict[str, Any]) -> dict[str, Any]:
@@ -150,7 +146,7 @@ def matrices(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
     else:
         material = np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]]) / (1 - mu * mu)
     strain = np.array([[0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1], [0, 0, 0, 1, 1, 0.0]])
-    pressed = load.pressure * (a - 2 * abs(load.eccentricity))
+    pressed = push_of(scene)
     dragged = load.traction * a
     fx, fy = m * load.gravity * math.sin(slope) + dragged, -m * load.gravity * math.cos(slope) - pressed
     return {
@@ -219,7 +215,7 @@ def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: in
     c, step = scene.contact, scene.time.step / parts
     p, ps, mass = c.stiffness, c.shear, of["M"][:, None]
     rubs = ps > 0
-    tan = GLUED if c.friction is None else math.tan(math.radians(c.friction))
+    tan = tangent_of(scene, GLUED)
     d = float(np.abs(of["F"][:2]).sum()) / (2 * p) + abs(scene.block.velocity) * math.sqrt(of["M"][0] / (2 * p)) or 1.0
     n, size = (6, 14) if rubs else (2, 12)
     A, B, C, D = np.zeros((size, size)), np.zeros((size, n)), np.zeros((n, size)), np.eye(n)
@@ -246,16 +242,26 @@ def rigid(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]
     of = matrices(scene, a, h)
     force = of["F"][[0, 1, 4]] - [0, 0, of["F"][3]]
     refuse_rigid(scene, force, h)
-    tan = GLUED if c.friction is None else math.tan(math.radians(c.friction))
+    tan = tangent_of(scene, GLUED)
     tilt = math.radians(scene.block.tilt)
-    inertia = [of["M"][0], of["M"][0], of["M"][2] + of["M"][3]]
+    mass = float(of["M"][0])
     corners = np.array([[-a / 2, -h / 2], [a / 2, -h / 2]])
-    down = turned(tilt) @ corners[1 if tilt < 0 else 0]
+    down = turn_of(tilt) @ corners[1 if tilt < 0 else 0]
     start = [-down[0], -down[1], tilt]
-    parts = substeps(scene, 40 * math.sqrt(np.hypot(*force[:2]) / of["M"][0] / h), fine)
-    more = {"inertia": inertia, "force": force, "corners": corners, "q0": start, "turns": turns, "middle": fine}
-    q = ask({"kind": "rigid", **times(scene, parts), **more, "friction": tan if c.shear > 0 else 0.0})["q"]
+    parts = substeps(scene, 40 * math.sqrt(np.hypot(*force[:2]) / mass / h), fine)
+    inertia = [mass, mass, of["M"][2] + of["M"][3]]
+    body = {"inertia": inertia, "q0": start, "v0": np.zeros(3), "couple": force[2]}
+    motion = {"boxes": [body], "pull": force[:2] / mass, "amplitude": 0.0, "rate": 0.0, "turns": turns, "middle": fine}
+    law = {"restitution": 0.0, "friction": tan if c.shear > 0 else 0.0, "pivots": False, "iterations": None}
+    touching = [corner_on_ground(corner) for corner in corners]
+    request = {**motion, **law, "contacts": touching, "size": 0.0}  # of no size: a gap is taken as it is
+    q = ask({"kind": "boxes", **times(scene, parts), **request})["poses"][:, 0]
     return {"horizontal_displacement": q[:, 0] - start[0], "rotation": q[:, 2] - tilt}
+
+
+def corner_on_ground(corner: Any) -> dict[str, Any]:
+    """Return the contact of a corner of the lowest body with the ground."""
+    return {"body": 0, "corner": corner, "other": None, "level": 0.0, "outward": 1.0, "carried": 0}
 
 
 def refuse_rigid(scene: Scene, force: np.ndarray, h: float) -> None:
@@ -278,11 +284,6 @@ def refuse_rigid(scene: Scene, force: np.ndarray, h: float) -> None:
     held = c.shear > 0 and (c.friction is None or abs(force[0]) <= math.tan(math.radians(c.friction)) * -force[1])
     if held and not turns:
         raise NotImplementedError("contact: friction holds the block, and what moves it are springs, not rigid corners")
-
-
-def turned(angle: float) -> np.ndarray:
-    """Return the matrix of a rotation."""
-    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
 
 def column(scene: Scene, fine: bool) -> dict[str, np.ndarray]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from peers.boxes import boxes_of, named, substeps
+from peers.siconos import corner_on_ground, times
 from validation.runs.history import Array
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
@@ -34,7 +35,7 @@ def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
         "kind": "boxes",
         **times(scene, parts),
         "boxes": [
-            {"inertia": [box.mass, box.mass, box.inertia], "q0": start, "v0": [*box.velocity, box.spin]}
+            {"inertia": [box.mass, box.mass, box.inertia], "q0": start, "v0": [*box.velocity, box.spin], "couple": 0.0}
             for box, start in zip(rigid.box, rigid.starts, strict=True)
         ],
         "pull": rigid.pull,
@@ -44,6 +45,7 @@ def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
         "amplitude": rigid.base_amplitude,
         "rate": 2 * math.pi * rigid.base_frequency,
         "middle": fine,
+        "turns": True,
         "size": max(math.hypot(box.width, box.height) for box in rigid.box),
         # Pivots solve the contact of a box exactly, but those of a pile went wrong: ten boxes at rest moved by 0.2 m.
         "pivots": fine and len(rigid.box) == 1,
@@ -56,19 +58,13 @@ def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
     return named(rows, parts * scene.time.steps)
 
 
-def times(scene: Scene, parts: int) -> dict[str, float]:
-    """Return what every request says of time."""
-    return {"step": scene.time.step / parts, "parts": parts, "steps": scene.time.steps}
-
-
 def contacts(rigid: RigidSection) -> list[dict[str, Any]]:
     """Return a contact for each corner that may touch: corner and face in their bodies' frames, and who is carried."""
     first = rigid.box[0]
     requests = []
     for side in (-1.0, 1.0):
         for end in (-1.0, 1.0):
-            corner = (side * first.width / 2, end * first.height / 2)
-            requests.append({"body": 0, "corner": corner, "other": None, "level": 0.0, "outward": 1.0, "carried": 0})
+            requests.append(corner_on_ground((side * first.width / 2, end * first.height / 2)))
     for number in range(1, len(rigid.box)):
         requests += [between(rigid, number, side) for side in (-1.0, 1.0)]
     return requests

@@ -93,44 +93,12 @@ def complementarity(sk: Any, given: Request) -> dict[str, Any]:
     return {"x": found, "opened": bool(opened)}
 
 
-def rigid(sk: Any, given: Request) -> dict[str, Any]:
-    """Move a rigid body (x, y, angle) on two corners that Siconos keeps from going below y = 0, with friction, e = 0.
-
-    The corners' relations are linear in a step, about the angle at its start or foreseen at its middle.
-    """
-    q0, corners, turns = np.array(given["q0"]), np.array(given["corners"]), given["turns"]
-    system = sk.LagrangianLinearTIDS(q0, np.zeros(3), np.diag(given["inertia"]))
-    force = np.array(given["force"])
-    system.setFExtPtr(force)
-    relations = [(sk.SimpleMatrix(2, 3), sk.SiconosVector(2)) for _ in corners]
-    law = sk.NewtonImpactFrictionNSL(0.0, 0.0, given["friction"], 2)
-    contacts = [sk.Interaction(law, sk.LagrangianLinearTIR(*relation)) for relation in relations]
-
-    def update(q: np.ndarray, angle: float) -> None:
-        for (rows_, offset), corner in zip(relations, corners, strict=True):
-            x, y = arm(corner, angle)
-            values = [[0.0, 1.0, x], [1.0, 0.0, -y]]
-            for i in range(6):
-                rows_.setValue(i // 3, i % 3, values[i // 3][i % 3])
-            height = q[1] + arm(corner, q[2])[1]
-            offset.setValue(0, float(height - np.dot(values[0], q)))
-
-    update(q0, q0[2] if turns else 0.0)
-    stepping = stepped(sk, system, contacts, (sk.MoreauJeanOSI(), sk.FrictionContact(2)), given)
-    q, rate = system.q(), system.velocity()  # of the stepping: what they were before is not moved
-
-    def before(number: int) -> None:
-        if turns:
-            update(q, q[2] + (given["step"] / 2 * rate[2] if given["middle"] else 0.0))
-
-    return {"q": [np.array(q).tolist() for at in rows(stepping, given, before) if at]}
-
-
 def boxes(sk: Any, given: Request) -> dict[str, Any]:
     """Move rigid boxes (x, y, angle) whose corners Siconos keeps out of faces, with friction and Newton's restitution.
 
-    A contact is a corner of one body and a face of another, or of the ground; its relation is linear in a step, as in
-    `rigid`. A ground that moves rests in its own frame: from t to t + h the boxes bear -m (V(t + h) - V(t)) / h.
+    A contact is a corner of one body and a face of another, or of the ground. Its relation is linear in a step, about
+    angles foreseen at its middle or as they are; where nothing `turns`, about those of the start. A ground that moves
+    rests in its own frame: from t to t + h the boxes bear -m (V(t + h) - V(t)) / h.
     """
     step = given["step"]
     model = sk.NonSmoothDynamicalSystem(0.0, 2 * step * given["parts"] * given["steps"])
@@ -142,6 +110,7 @@ def boxes(sk: Any, given: Request) -> dict[str, Any]:
         force = sk.SiconosVector(3)
         for freedom in (0, 1):
             force.setValue(freedom, float(inertia[freedom] * given["pull"][freedom]))
+        force.setValue(2, box["couple"])
         system.setFExtPtr(force)
         model.insertDynamicalSystem(system)
         systems.append(system)
@@ -172,7 +141,8 @@ def boxes(sk: Any, given: Request) -> dict[str, Any]:
             acceleration = given["amplitude"] * rate * change / step
             for box, force in zip(given["boxes"], pushes, strict=True):
                 force.setValue(0, box["inertia"][0] * (given["pull"][0] - acceleration))
-        update(given, contacts, positions, rates)
+        if given["turns"]:
+            update(given, contacts, positions, rates)
 
     poses: list[Any] = []
     forces: list[Any] = []
@@ -236,7 +206,7 @@ def arm(corner: np.ndarray, angle: float) -> tuple[float, float]:
     return c * corner[0] - s * corner[1], s * corner[0] + c * corner[1]
 
 
-KINDS = {"linear": linear, "complementarity": complementarity, "rigid": rigid, "boxes": boxes}
+KINDS = {"linear": linear, "complementarity": complementarity, "boxes": boxes}
 
 
 def main(request: str, answer: str) -> int:

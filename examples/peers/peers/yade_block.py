@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from peers.blocks import push_of, turn_of
 from peers.yade_bodies import Body, Bond, Floor, Model, Point
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def gravity_of(scene: Scene) -> tuple[float, float]:
 def top_load(scene: Scene) -> tuple[tuple[float, float], float]:
     """Return the force on the top edge [N] and its moment about the middle of that edge [N m]."""
     load, (width, _) = scene.load, scene.block.rectangle
-    push = load.pressure * (width - 2 * abs(load.eccentricity))
+    push = push_of(scene)
     return (load.traction * width, -push), -push * load.eccentricity
 
 
@@ -174,7 +175,7 @@ def one_body(scene: Scene) -> Model:
         body = Body((0.0, h / 2), b.mass, feet, inertia, b.velocity, force, moment)
         return Model((body,), (), floor_of(scene), gravity_of(scene))
     tilt, radius = math.radians(b.tilt), deepest(scene)
-    turn = np.array([[math.cos(tilt), -math.sin(tilt)], [math.sin(tilt), math.cos(tilt)]])
+    turn = turn_of(tilt)
     corners = [turn @ (x, y) for y in (-h / 2, h / 2) for x in (-a / 2, a / 2)]
     x, y = -corners[0 if tilt >= 0 else 1]
     body = Body((x, y), b.mass, tuple(Point(tuple(map(float, at)), radius) for at in corners), inertia, b.velocity)
