@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
@@ -48,11 +49,15 @@ def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
     shares = (pushed / modal.frequencies) ** 2
     shares /= np.sum(shares)
     carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2
-    return tuple(
-        Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w), float(carried[i]))
-        for i in np.argsort(-shares)
-        for w in [float(modal.frequencies[i])]
-    )
+    return modes_of(scheme, modal.frequencies, shares, carried, np.argsort(-shares))
+
+
+def modes_of(
+    scheme: Scheme, frequencies: Array, shares: Array, carried: Array, order: NDArray[np.intp]
+) -> tuple[Mode, ...]:
+    """Return modes in some order, with what a step of the scheme does to each."""
+    rows = zip(frequencies[order].tolist(), shares[order].tolist(), carried[order].tolist(), strict=True)
+    return tuple(Mode(w, share, scalar_eigenvalues(scheme, w), pressure) for w, share, pressure in rows)
 
 
 def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:

@@ -20,7 +20,7 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.model.block import Block, displacement_rows
 from dda.model.checks import check_count
-from dda.one_block.modes import Mode, scalar_eigenvalues
+from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result, bound_overflow, times_of
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, Point, shared_edges
@@ -230,11 +230,7 @@ class GluedBlocks:
         squares, shapes, _ = lowest_modes(equations, equations.at_rest, count)
         D = self.rest.ravel() / self.system.load_size
         shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ D))
-        order = np.argsort(squares)
-        frequencies = np.sqrt(squares).tolist()
-        return tuple(
-            Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), 0.0) for i in order
-        )
+        return modes_of(scheme, np.sqrt(squares), shares, 0 * shares, np.argsort(squares))
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
         """Return what some rows observe of the blocks from rest, at each step.

@@ -23,8 +23,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.one_block.modes import Mode, scalar_eigenvalues
+from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
+from dda.scheme import harmonic
+from dda.scheme.harmonic import largest_frequency
 from dda.scheme.newmark import (
     Scheme,
     effective_matrix,
@@ -42,7 +44,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
-_DENSE = 300  # unknowns up to which all modes are found by a dense solver
 
 
 def joint_flexibility(scheme: Scheme | Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
@@ -284,11 +285,7 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
             break
         count *= 2
     carried = (equations.pressure @ forces) * (shapes.T @ F) / squares
-    frequencies = np.sqrt(squares).tolist()
-    return tuple(
-        Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), float(carried[i]))
-        for i in np.argsort(-shares, kind="stable")
-    )
+    return modes_of(scheme, np.sqrt(squares), shares, carried, np.argsort(-shares, kind="stable"))
 
 
 def _pushed(system: BlockSystem, equations: Equations) -> Array:
@@ -320,7 +317,7 @@ def lowest_modes(
     def flexibility(right: Array) -> Array:
         return solve(np.ravel(right), still)[0]
 
-    if n <= _DENSE or count >= n - 1:
+    if n <= harmonic.DENSE or count >= n - 1:
         root = np.linalg.cholesky(M.toarray())
         values, vectors = eigh(root.T @ np.array([flexibility(column) for column in root.T]).T)
         order = np.argsort(-values)[:count]
@@ -336,14 +333,6 @@ def lowest_modes(
 
 def highest_frequency(system: BlockSystem) -> float:
     """Return the largest natural frequency [rad/s], which limits a conditionally stable scheme."""
-    from scipy.linalg import eigh
-    from scipy.sparse.linalg import eigsh
-
     e = system.reached
-    M = e.blockwise(e.mass)
     K = e.blockwise(e.elastic) + e.B.T @ e.kappa @ e.B
-    if len(e.F) <= _DENSE:
-        return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
-    start = np.random.default_rng(0).standard_normal(len(e.F))
-    squares = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
-    return float(np.sqrt(squares[0]))
+    return largest_frequency(K.tocsr(), e.blockwise(e.mass))
