@@ -6,7 +6,9 @@ One step from (D, V, A) is the scheme's (6) and (7), solved for the acceleration
     (M + delta dt C + alpha dt^2 K) A1 = F1 - C V* - K D*
     D1 = D* + alpha dt^2 A1,                        V1 = V* + delta dt A1
 
-and of other schemes a stage or two of the same form (`dda.scheme.stages`), whose forces, those of the dashpot too, are
+in v = dt V and f = dt^2 A,
+
+and of other schemes a stage or two of the same form (`dda.scheme.stage`), whose forces, those of the dashpot too, are
 balanced between the ends of the step where the scheme says so. The matrix has three diagonals below and on the main one
 and is factorised once. Nothing is divided by alpha, and alpha = 0 is the same code.
 """
@@ -24,8 +26,8 @@ from dda.column.column import Column
 from dda.column.equations import Equations, equations
 from dda.model.arrays import Array
 from dda.one_block.solution import Result, bound_overflow, times_of
-from dda.scheme.newmark import Scheme, correctors, dashpot_matrix, predictors
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
+from dda.scheme.stage import dashpot_matrix, inertia_force, predictor, velocity_corrector
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -197,66 +199,54 @@ class Stepper:
         self.system = system
         self.scheme = scheme
         self.loading = Loading(system)
-        self.M, self.C, self.K = (bands(matrix) for matrix in (self.loading.M, self.loading.C, self.loading.K))
-        self.matrices = [dashpot_matrix(stage, self.M, self.C, self.K) for stage in scheme.stages]
+        self.M = bands(self.loading.M)
+        self.c = scheme.step * bands(self.loading.C)
+        self.k = scheme.step**2 * bands(self.loading.K)
+        self.matrices = [dashpot_matrix(stage, self.M, self.c, self.k) for stage in scheme.stages]
         self.solvers = [_factorised(matrix) for matrix in self.matrices]
 
     def run(self, drive: Drive, rows: Observers) -> Array:
         """Return the observed rows at every step, (rows, steps)."""
-        push = self.loading.push
+        dt = self.scheme.step
+        push = dt * dt * self.loading.push
         parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
-        by_state = np.hstack(self.loading.free(rows))
+        by_D, by_V, by_A = self.loading.free(rows)
+        by_state = np.hstack([by_D, by_V / dt, by_A / dt**2])
         M = _product(self.M)
-        K = _product(self.K)
-        C = _product(self.C)
+        k = _product(self.k)
+        c = _product(self.c)
         stages = tuple(zip(self.scheme.stages, self.solvers, strict=True))
-        D = np.zeros(len(push))
-        A = self._start(push @ parts[0])
-        V = np.zeros_like(D)
-        if self.scheme.lag:
-            V = V - self.scheme.lag / self.scheme.gg * self.scheme.step * A
         force = push @ parts[0]
+        f = self._start(force)
+        D = np.zeros_like(f)
+        v = late_momentum(self.scheme, D, f)
         ends = parts[len(stages) :: len(stages)]
         observed_values = np.empty((len(by_state), len(ends)))
         coming = iter(parts[1:])
         for n in range(len(ends)):
-            start_V = V
-            start_A = A
-            start_force = force
+            v_0 = v
+            f_0 = f
+            force_0 = force
+            inertia_0 = M(f_0) if self.scheme.averages else f_0  # which am = 0 does not look at
             for stage, solve in stages:
-                before_V = V
-                before_A = A
-                D, V = predictors(stage, D, start_V, start_A)
-                if stage is not self.scheme.stages[0]:
-                    D, V = add_stage_before(stage, D, V, before_V, before_A)
+                f_g = f
+                D = D + predictor(stage, v_0, f_0, v, f_g)
                 load = push @ next(coming)
-                force = load - C(V) - K(D)
+                force = load - c(velocity_corrector(stage, v_0, f_0, f_g, 0 * f)) - k(D)
+                f = solve(inertia_force(stage, force, force_0, inertia_0))
+                D = D + stage.alpha * f
+                v = velocity_corrector(stage, v_0, f_0, f_g, f)
                 if self.scheme.averages:
-                    force = (1 - stage.af) * force + stage.af * start_force - stage.am * M(start_A)
-                    A = solve(force) / (1 - stage.am)
-                else:
-                    A = solve(force)
-                D, V = correctors(stage, D, V, A)
-                if self.scheme.averages:
-                    force = load - C(V) - K(D)
-            if self.scheme.lag:
-                observed_values[:, n] = by_state @ np.concatenate((D, V + self.scheme.lag * self.scheme.step * A, A))
-            else:
-                observed_values[:, n] = by_state @ np.concatenate((D, V, A))
+                    force = load - c(v) - k(D)
+            observed_values[:, n] = by_state @ np.concatenate((D, v + self.scheme.lag * f, f))
         return observed_values + self.loading.prescribed(rows) @ ends.T
 
     def _start(self, F: Array) -> Array:
         if self.scheme.start != "consistent":
-            return np.zeros_like(F)
+            return initial_acceleration(self.scheme, F)
         if not self.system.prescribed and self.system.column.springs[0] is not None:
             raise ValueError("start: must be 'zero' where a spring lies between half-space and column")
         return _factorised(self.M)(F)
-
-
-def add_stage_before(stage: Scheme | Stage, D: Array, V: Array, V_g: Array, A_g: Array) -> tuple[Array, Array]:
-    """Return predicted D and V with what the end of the stage before, (V_g, A_g), adds."""
-    dt = stage.step
-    return D + dt * stage.d_g * V_g + dt**2 * stage.e_g * A_g, V + dt * stage.g_g * A_g
 
 
 def bands(matrix: csr_array) -> Array:

@@ -10,7 +10,7 @@ k0 = h^2 K0, F for h^2 F, mu = h^2 lambda, momentum P = h M V and inertia force 
 so that S0 is factorised once for all contact states and the flexibility of the contacts is
 C = alpha h^2 B S0^-1 B'. A closed corner's gap is -N/p, set on acceptance: it is no sum of increments.
 
-Every scheme is such a step, or two of them, with other numbers (`dda.scheme.stages`): where it balances the forces
+Every scheme is such a step, or two of them, with other numbers (`dda.scheme.stage`): where it balances the forces
 between the ends of a step, those of contact are averaged as the others are, (1 - af) lambda1 + af lambda0. Of a scheme
 of two stages each has an open-close iteration of its own, from the end of the one before; gg enters once.
 
@@ -60,18 +60,8 @@ from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
-from dda.scheme.newmark import (
-    Scheme,
-    acceleration_corrector,
-    implicit_weight,
-    inertia_force,
-    initial_acceleration,
-    late_momentum,
-    plain_stage,
-    predictor,
-    velocity_corrector,
-)
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
@@ -438,16 +428,10 @@ def free_stage(
             length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     P = room.P
     f = room.f
-    alpha = numbers.alpha
-    d_u = numbers.d_u
-    d_g = numbers.d_g
-    e_g = numbers.e_g
     for i in range(n):
-        force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
-        force = inertia_force(numbers, force, room.force_0[i], f[i])
-        balance = predictor(numbers, d_u * P[i], f[i])
-        balance += d_g * (ratio * before.P[i]) + e_g * (ratio * ratio * before.f[i])
-        room.balance[i] = balance + alpha * force
+        force = inertia_force(numbers, length.F[i] - length.k[i] * before.D[i], room.force_0[i], f[i])
+        balance = predictor(numbers, P[i], f[i], ratio * before.P[i], ratio * ratio * before.f[i])
+        room.balance[i] = balance + numbers.alpha * force
     if base is not None:
         interval = Part(part.begun + ratio * numbers.begin, ratio * (numbers.end - numbers.begin))
         base_displacement(base, block.step, interval, room.start, stage.base)
@@ -498,9 +482,9 @@ def motion_at_end(
     room = block.room
     numbers = stage.numbers
     ratio = length.numbers[0]
-    force = acceleration_corrector(length.F[i], length.k[i], D) + pressed
+    force = length.F[i] - length.k[i] * D + pressed
     f1 = inertia_force(numbers, force, room.force_0[i], room.f[i])
-    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1) + numbers.g_g * (ratio * ratio * before.f[i])
+    P1 = velocity_corrector(numbers, room.P[i], room.f[i], ratio * ratio * before.f[i], f1)
     return force, f1, P1
 
 

@@ -15,7 +15,7 @@ stays of second order, and at delta = 1 a force does the work lambda times the e
 small motion, no energy is gained by contact however far the block turns. First-order rotation is linear in a step:
 its chord is the derivative at both ends. Its outline grows, and with the area det Q inertia and stiffness do.
 
-Other schemes take one stage or two of this form (`dda.scheme.stages`) and forces that act as at the end of each: with
+Other schemes take one stage or two of this form (`dda.scheme.stage`) and forces that act as at the end of each: with
 B_1, as at delta = 1/2.
 """
 
@@ -48,8 +48,8 @@ from dda.contact.kernel import (
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
-from dda.scheme.newmark import Scheme, implicit_weight, plain_stage
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 from dda.stepping.driver import BaseRecord, Part, base_at, driver
 from dda.stepping.energy import DAMPING, add_contact_losses
 
@@ -220,7 +220,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     return equations
 
 
-def stage_room(stage: Scheme | Stage, corners: int) -> RollingStage:
+def stage_room(stage: Stage, corners: int) -> RollingStage:
     """Return a stage, with room for what belongs to it."""
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
     return RollingStage(plain_stage(stage), float(implicit_weight(stage)), *lengths, *zeros(corners, corners, 2))
@@ -382,9 +382,9 @@ def predict(
     hold(body, matrices, state.q, room.held)
     length = numbers.end - numbers.begin
     for i in range(6):
-        room.guess[i] = length * (gg * h * room.V[i]) + length * length * (h * h / 2 * room.A_0[i])
-        room.new[i] = numbers.d_u * (gg * h * room.V[i]) + h * h * numbers.e_0 * room.A_0[i]
-        room.new[i] += numbers.d_g * h * state.V[i] + h * h * numbers.e_g * state.A[i]
+        moving = gg * h * room.V[i]
+        room.guess[i] = length * moving + length * length * (h * h / 2 * room.A_0[i])
+        room.new[i] = predictor(numbers, moving, h * h * room.A_0[i], h * state.V[i], h * h * state.A[i])
         known = numbers.af * room.R[i] - numbers.am * dot(matrices.M[i], room.A_0, 6)
         room.held[i] += known / (1 - numbers.af)
     for i in range(6):
@@ -638,11 +638,11 @@ def accept(
         room.push[i] += room.held[i]
     for i in range(6):
         after.R[i] = room.push[i]
-        known = numbers.af * dot(matrices.accelerating[i], room.R, 6) - numbers.am * room.A_0[i]
-        after.A[i] = ((1 - numbers.af) * dot(matrices.accelerating[i], room.push, 6) + known) / (1 - numbers.am)
-        gained = h * (numbers.g_0 * room.A_0[i] + numbers.delta * after.A[i])
-        gained += h * numbers.g_g * state.A[i]
-        after.V[i] = matrices.numbers[1] * room.V[i] + gained
+        end = dot(matrices.accelerating[i], room.push, 6)
+        start = dot(matrices.accelerating[i], room.R, 6)
+        after.A[i] = inertia_force(numbers, end, start, room.A_0[i])
+        moving = matrices.numbers[1] * room.V[i]
+        after.V[i] = velocity_corrector(numbers, moving, h * room.A_0[i], h * state.A[i], h * after.A[i])
     place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(len(body.xi)):
         contacts.gap[i] = room.after[i][1]

@@ -1,7 +1,7 @@
 r"""Steady vibrations of the scheme: what a step makes of a frequency.
 
 Let all quantities go as z^n with z = e^{iw dt}. Velocity and displacement of a scheme of one stage
-(`dda.scheme.stages`; of Newmark's these are the velocity corrector (7) and the displacement that (6) gives) are
+(`dda.scheme.stage`; of Newmark's these are the velocity corrector (7) and the displacement that (6) gives) are
 
     (z - gg) V = dt (g_0 + delta z) A
     (z - 1) D  = gg dt V + dt^2 (e_0 + alpha z) A
@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dda.model.arrays import Array
-from dda.scheme.newmark import Scheme, effective_matrix, staged_step
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, staged_step, step_matrices
+from dda.scheme.stage import Stage
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -50,7 +50,7 @@ def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
     return np.asarray(W2)
 
 
-def one_stage(scheme: Scheme) -> Scheme | Stage:
+def one_stage(scheme: Scheme) -> Stage:
     """Return the only stage of a scheme.
 
     Raises
@@ -82,7 +82,7 @@ def staged_amplitude(scheme: Scheme, omega: Array, k: float, load: float, base: 
     load, base
         Amplitudes of dt^2 F, and of the displacement of the base as the mode sees it.
     """
-    matrices = [effective_matrix(stage, 1.0, k) for stage in scheme.stages]
+    matrices = step_matrices(scheme, 1.0, k)
     instants: list[Complex] = [np.exp(1j * omega * instant) for instant in scheme.instants(1)]
     loads: list[Any] = [load * turned for turned in instants]
     pushes: list[Any] = [base * (later - earlier) for earlier, later in pairwise(instants)]

@@ -19,6 +19,7 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray, critical_omega
+from dda.scheme.stage import effective_matrix, predictor, velocity_corrector
 
 
 def state_matrix(scheme: Scheme, k: float) -> Array:
@@ -30,11 +31,11 @@ def state_matrix(scheme: Scheme, k: float) -> Array:
         f1 = f
         moved = 0.0
         for stage in scheme.stages:
-            balance = stage.d_u * scheme.gg * P + stage.e_0 * f + stage.d_g * P1 + stage.e_g * f1
-            gained = stage.g_g * f1
-            moved += (balance - stage.alpha * k * (D + moved)) / (1 + stage.alpha * k)
+            f_g = f1
+            balance = predictor(stage, P, f, P1, f_g)
+            moved += (balance - stage.alpha * k * (D + moved)) / effective_matrix(stage, 1.0, k)
             f1 = -k * (D + moved)
-            gained += stage.g_0 * f + stage.delta * f1
+            gained = velocity_corrector(stage, 0.0, f, f_g, f1)
             P1 = scheme.gg * P + gained
         change[:, column] = moved, gained - (1 - scheme.gg) * P
     return change

@@ -9,7 +9,7 @@ a sub-block has a contact point at each end, with its share p l / a of the corne
     f1 = F - k D1 - B' mu1 + dt^2 Bc' lambda,
 
 so that one factorisation, and as many solves with it as there are forces, serve every contact state. Other schemes
-take one stage or two of this form (`dda.scheme.stages`), each with its own contacts.
+take one stage or two of this form (`dda.scheme.stage`), each with its own contacts.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_step import NEWMARK
-from dda.scheme.newmark import Scheme, inertia_force, late_momentum, predictor, velocity_corrector
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, late_momentum
+from dda.scheme.stage import Stage, inertia_force, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
 from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
 from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss, energies_of, spring_energies
@@ -132,7 +132,7 @@ class SystemState:
 class StageLength:
     """What forces of the points change in a stage of a step of one length."""
 
-    def __init__(self, opening: OpeningSystem, stage: Scheme | Stage, rows: Array) -> None:
+    def __init__(self, opening: OpeningSystem, stage: Stage, rows: Array) -> None:
         self.solver = StageSolver(opening.equations, stage)
         self.still = np.zeros(len(opening.equations.pressure))
         push = stage.step**2 * rows
@@ -298,8 +298,8 @@ def make_stage(
     f = ratio * ratio * state.f
     force_0 = ratio * ratio * state.force
     mu = ratio * ratio * before.mu
-    balance = predictor(stage, stage.d_u * P, f)
-    balance = balance + stage.d_g * (ratio * before.P) + stage.e_g * (ratio * ratio * before.f)
+    f_g = ratio * ratio * before.f
+    balance = predictor(stage, P, f, ratio * before.P, f_g)
     # contact forces at the start of the stage are no part of what is known of its end
     internal = solver.k @ before.D + solver.Bt @ mu
     balance = balance + stage.alpha * inertia_force(stage, length.F - internal, force_0, f)
@@ -323,7 +323,7 @@ def make_stage(
         pressed = length.push @ forces
     force = length.F - (solver.k @ D + solver.Bt @ mu) + pressed
     f1 = inertia_force(stage, force, force_0, f)
-    P1 = velocity_corrector(stage, P, f, f1) + stage.g_g * (ratio * ratio * before.f)
+    P1 = velocity_corrector(stage, P, f, f_g, f1)
     after.D = D
     after.P = P1 / ratio
     after.f = f1 / (ratio * ratio)

@@ -9,7 +9,7 @@ mu = dt^2 lambda, k = dt^2 Ke, C' = C / dt^2 and S = M + alpha k, which is a mat
 by (C' + alpha B S^-1 B') dmu = B S^-1 r - G dy, whose matrix is sparse, positive definite and
 factorised once. Then f1 = F - k D1 - B' mu1 and P1 = gg P + (1 - delta) f + delta f1, as for one block.
 The force of a joint is never its stiffness times a difference of displacements. Other schemes take one stage or two
-of this form (`dda.scheme.stages`), with alpha (1 - af)/(1 - am) for alpha in the matrices.
+of this form (`dda.scheme.stage`), with alpha (1 - af)/(1 - am) for alpha in the matrices.
 """
 
 from __future__ import annotations
@@ -27,17 +27,8 @@ from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
 from dda.scheme import harmonic
 from dda.scheme.harmonic import largest_frequency
-from dda.scheme.newmark import (
-    Scheme,
-    effective_matrix,
-    implicit_weight,
-    inertia_force,
-    late_momentum,
-    predictor,
-    predictors,
-    velocity_corrector,
-)
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, late_momentum
+from dda.scheme.stage import Stage, effective_matrix, implicit_weight, inertia_force, predictor, velocity_corrector
 from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 
 if TYPE_CHECKING:
@@ -46,15 +37,15 @@ if TYPE_CHECKING:
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
 
 
-def joint_flexibility(scheme: Scheme | Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
+def joint_flexibility(stage: Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
     """Return C' + alpha B S^-1 B', the matrix of the joint forces' increments."""
-    return C + implicit_weight(scheme) * (B @ inverse @ B.T)
+    return C + implicit_weight(stage) * (B @ inverse @ B.T)
 
 
 class StageSolver:
     """The equations of a stage; everything is multiplied by dt^2 where the module says so."""
 
-    def __init__(self, equations: Equations, stage: Scheme | Stage) -> None:
+    def __init__(self, equations: Equations, stage: Stage) -> None:
         """Form the matrices and factorise the one of the joint forces."""
         self.stage = stage
         self.weight = implicit_weight(stage)
@@ -129,14 +120,14 @@ class Stepper:
             for solver in self.stages:
                 stage = solver.stage
                 f_g = f
-                balance = predictor(stage, stage.d_u * P_0, f_0) + stage.d_g * P + stage.e_g * f_g
+                balance = predictor(stage, P_0, f_0, P, f_g)
                 balance = balance + stage.alpha * inertia_force(stage, force, force_0, f_0)
                 dD, dmu = solver.increments(balance, next(pushes))
                 D = D + dD
                 mu = mu + dmu
                 force = F - (solver.k @ D + solver.Bt @ mu)
                 f = inertia_force(stage, force, force_0, f_0)
-                P = velocity_corrector(stage, P_0, f_0, f) + stage.g_g * f_g
+                P = velocity_corrector(stage, P_0, f_0, f_g, f)
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 
@@ -166,7 +157,8 @@ class _ViscousStepper(Stepper):
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and of the springs' own forces at every step, (rows, steps)."""
         e = self.equations
-        s = replace(self.damped_scheme, step=1.0)  # of v and q
+        s = self.damped_scheme
+        (stage,) = s.stages
         F = self.scheme.step**2 * e.F
         solver = self.stages[0]
         still = np.zeros(len(e.pressure))
@@ -176,7 +168,8 @@ class _ViscousStepper(Stepper):
         mu = still
         observed = np.empty((len(observed_by), steps))
         for n in range(steps):
-            D, v = predictors(s, D, v, q)
+            D = D + predictor(stage, v, q, v, q)
+            v = velocity_corrector(stage, v, q, q, 0 * q)
             ahead = D + self.lag * v
             drag = self.drag * (self.M @ v)
             internal = solver.k @ G + solver.Bt @ mu
