@@ -41,7 +41,6 @@ from dda.contact.dashpot import damped, set_gaps
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
-    NONE,
     TO_OWN,
     Contacts,
     Flexibility,
@@ -62,7 +61,7 @@ from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
-from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
+from dda.stepping.driver import BaseRecord, Part, base_displacement, driver, staged
 from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
 
 NEWMARK = "newmark"
@@ -352,46 +351,32 @@ def solve_augmented(
     return outcome, solves
 
 
-def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
-    """Return what makes a step whose contacts are found by `solve`, one of the functions above."""
+def stage_with(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a stage whose contacts are found by `solve`, one of the functions above."""
 
-    def advance(
+    def make_stage(
         block: BlockEquations,
         shear_law: Shear,
+        stage: BlockStage,
         state: BlockState,
+        before: BlockState,
         after: BlockState,
         base: BaseRecord | None,
         part: Part,
     ) -> tuple[int, int]:
-        """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-        ratio = part.ratio
-        if block.lag != 0 and ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
-            return NONE, 0
-        stages = block.stages
-        total = 0
-        before = state
-        for number in range(1, stages + 1):
-            stage = block.last if number == stages else block.first
-            target = after if number == stages else block.between
-            length = length_of(block, shear_law, stage, ratio)
-            if number == 1:
-                begin_step(block, state, length)
-            free_stage(block, shear_law, stage, length, before, base, part)
-            outcome, solves = solve(block, shear_law, before.contacts, length, target.contacts)
-            total += solves
-            if outcome != FOUND:
-                return outcome, total
-            accept(block, shear_law, stage, length, before, target)
+        """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
+        length = length_of(block, shear_law, stage, part.ratio)
+        begin_step(block, state, length)
+        free_stage(block, shear_law, stage, length, before, base, part)
+        outcome, solves = solve(block, shear_law, before.contacts, length, after.contacts)
+        if outcome == FOUND:
+            accept(block, shear_law, stage, length, before, after)
             if shear_law is not None:
-                refer(block, before.contacts, target)
-                copy(target.contacts.slipped, stage.slipped)
-            before = target
-        if shear_law is not None and stages == 2:
-            for i in range(len(after.contacts.slipped)):
-                after.contacts.slipped[i] += block.first.slipped[i]
-        return FOUND, total
+                refer(block, before.contacts, after)
+                copy(after.contacts.slipped, stage.slipped)
+        return outcome, solves
 
-    return advance
+    return make_stage
 
 
 def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> None:
@@ -698,8 +683,8 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
     return math.isfinite(total)
 
 
-advance = stepping(solve_at_end)
+advance = staged(stage_with(solve_at_end))
 make_steps = driver(advance, account, keep)
-make_conserving_steps = driver(stepping(solve_conserving), account, keep)
-make_damped_steps = driver(stepping(solve_damped), account, keep)
-make_augmented_steps = driver(stepping(solve_augmented), account, keep)
+make_conserving_steps = driver(staged(stage_with(solve_conserving)), account, keep)
+make_damped_steps = driver(staged(stage_with(solve_damped)), account, keep)
+make_augmented_steps = driver(staged(stage_with(solve_augmented)), account, keep)

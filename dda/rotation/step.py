@@ -50,7 +50,7 @@ from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
-from dda.stepping.driver import BaseRecord, Part, base_at, driver
+from dda.stepping.driver import BaseRecord, Part, base_at, driver, staged
 from dda.stepping.energy import DAMPING, add_contact_losses
 
 ROUNDS = 40  # of the turn; two to four are usual
@@ -294,37 +294,12 @@ def matrices_of(body: RollingEquations, stage: RollingStage, Q: Matrix, ratio: f
     return matrices
 
 
-def advance(
-    body: RollingEquations,
-    shear_law: Shear,
-    state: RollingState,
-    after: RollingState,
-    base: BaseRecord | None,
-    part: Part,
-) -> tuple[int, int]:
-    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-    if body.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
-        return NONE, 0
-    room = body.room
-    copy(state.V, room.V)
-    copy(state.A, room.A_0)
-    copy(state.R, room.R)
-    if body.stages == 1:
-        return make_stage(body, shear_law, body.last, state, after, base, part)
-    outcome, solves = make_stage(body, shear_law, body.first, state, body.between, base, part)
-    if outcome != FOUND:
-        return outcome, solves
-    outcome, further_solves = make_stage(body, shear_law, body.last, body.between, after, base, part)
-    for i in range(len(body.xi)):
-        after.contacts.slipped[i] += body.first.slipped[i]
-    return outcome, solves + further_solves
-
-
 def make_stage(
     body: RollingEquations,
     shear_law: Shear,
     stage: RollingStage,
     state: RollingState,
+    before: RollingState,
     after: RollingState,
     base: BaseRecord | None,
     part: Part,
@@ -334,13 +309,16 @@ def make_stage(
     Of a convex outline two corners at most touch a plane. Which they may be is guessed from the stage without contact,
     and it is made again with those that turn out to be the lowest, until no other one has crossed the plane.
     """
-    matrices = matrices_of(body, stage, state.Q, part.ratio)
-    predict(body, stage, matrices, state, base, part)
     room = body.room
+    copy(state.V, room.V)
+    copy(state.A, room.A_0)
+    copy(state.R, room.R)
+    matrices = matrices_of(body, stage, before.Q, part.ratio)
+    predict(body, stage, matrices, before, base, part)
     near = nearest(body, room.near, REACH * body.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(body, shear_law, stage, matrices, state, after, near)
+        outcome, solves = settle(body, shear_law, stage, matrices, before, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
@@ -351,6 +329,9 @@ def make_stage(
             if room.tried[k] == pair_number(room.at, near):
                 return NONE, total
     return NONE, total
+
+
+advance = staged(make_stage)
 
 
 def pair_number(at: States, near: int) -> int:

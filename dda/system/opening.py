@@ -18,13 +18,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import NamedTuple
 
 import numpy as np
 
 from dda.contact.kernel import (
     FOUND,
-    NONE,
     TO_PAIR,
     Contacts,
     Flexibility,
@@ -49,7 +47,16 @@ from dda.one_block.unilateral_step import NEWMARK
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, inertia_force, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
+from dda.stepping.driver import (
+    BaseRecord,
+    Part,
+    base_displacement,
+    base_record,
+    driver,
+    history_of,
+    reached_history,
+    staged,
+)
 from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss, energies_of, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import StageSolver
@@ -157,16 +164,6 @@ class Length:
         self.stages = [StageLength(opening, stage, self.rows) for stage in self.scheme.stages]
 
 
-class MadeStage(NamedTuple):
-    """A stage that was made last."""
-
-    before: SystemState
-    after: SystemState
-    carried: Array  # (2,) by which the base moved, along and away from it [m]
-    slipped: Array  # of the points [m]
-    share: float  # its length over that of the step
-
-
 class OpeningBody:
     """The sub-blocks as the loop over steps takes them: `advance`, `account` and `keep` are for `driver`."""
 
@@ -191,8 +188,14 @@ class OpeningBody:
         self.elastic = e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
         self.energies = energies
-        self.between = self.start_state()  # room for the end of a first stage
-        self.passed: list[MadeStage] = []  # the stages of the part of a step that was made last
+        self.lag = scheme.lag
+        self.stages = len(scheme.stages)
+        self.first = 0  # number of the first stage of two
+        self.last = self.stages - 1
+        self.between = self.start_state()  # room for the end of the first stage
+        # of each stage in the part of a step that was made last: displacement of the base and slips of the points [m]
+        self.carried = np.zeros((self.stages, 2))
+        self.slipped = np.zeros((self.stages, points))
 
     def length(self, ratio: float) -> Length:
         """Return what belongs to a length, over the scheme's step; that of the whole step is always kept."""
@@ -241,59 +244,26 @@ class OpeningBody:
         return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
 
 
-def advance(
-    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, base: BaseRecord | None, part: Part
-) -> tuple[int, int]:
-    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-    if body.scheme.lag and part.ratio != 1:  # the velocity of half a step before goes on in equal steps only
-        return NONE, 0
-    length = body.length(part.ratio)
-    body.passed.clear()
-    before = state
-    total = 0
-    for stage in length.stages:
-        target = after if stage is length.stages[-1] else body.between
-        begin = stage.solver.stage.begin
-        share = stage.solver.stage.end - begin
-        interval = Part(part.begun + part.ratio * begin, part.ratio * share)
-        carried = np.zeros(2)
-        if base is not None:
-            base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
-        outcome, solves = make_stage(body, shear_law, (length, stage), (state, before), target, carried, part.ratio)
-        total += solves
-        if outcome != FOUND:
-            return outcome, total
-        slipped = np.array(target.contacts.slipped)
-        body.passed.append(MadeStage(before, target, carried, slipped, share))
-        before = target
-    if len(body.passed) > 1:
-        for i in range(body.points):
-            after.contacts.slipped[i] = sum(stage.slipped[i] for stage in body.passed)
-    return FOUND, total
-
-
 def make_stage(
     body: OpeningBody,
     shear_law: Shear,
-    matrices: tuple[Length, StageLength],
-    states: tuple[SystemState, SystemState],
+    number: int,
+    state: SystemState,
+    before: SystemState,
     after: SystemState,
-    carried: Array,
-    ratio: float,
+    base: BaseRecord | None,
+    part: Part,
 ) -> tuple[int, int]:
-    """Go to the end of a stage; return the outcome and the number of solves.
-
-    Parameters
-    ----------
-    states
-        The start of the step, and the end of the stage before.
-    carried
-        By which the base moves, along and away from itself [m].
-    """
-    length, made = matrices
-    state, before = states
+    """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
+    length = body.length(part.ratio)
+    made = length.stages[number]
     solver = made.solver
     stage = solver.stage
+    ratio = part.ratio
+    carried = body.carried[number]
+    if base is not None:
+        interval = Part(part.begun + ratio * stage.begin, ratio * (stage.end - stage.begin))
+        base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
     P = ratio * state.P
     f = ratio * ratio * state.f
     force_0 = ratio * ratio * state.force
@@ -329,7 +299,11 @@ def make_stage(
     after.f = f1 / (ratio * ratio)
     after.mu = mu / (ratio * ratio)
     after.force = force / (ratio * ratio)
+    body.slipped[number] = after.contacts.slipped
     return FOUND, solves
+
+
+advance = staged(make_stage)
 
 
 def account(
@@ -340,18 +314,20 @@ def account(
     scheme = body.length(part.ratio).scheme
     dt2 = body.scheme.step**2
     newmark = scheme.table is None
-    for stage in body.passed:
-        slide = opening.tangents @ (stage.after.D - stage.before.D) - stage.carried[0]
+    ends = [state, body.between, after] if body.stages == 2 else [state, after]
+    for number, stage in enumerate(scheme.stages):
+        start = ends[number]
+        end = ends[number + 1]
         add_contact_losses(
             body.law,
             shear_law,
-            stage.before.contacts,
-            stage.after.contacts,
-            stage.slipped,
-            slide,
-            stage.carried,
+            start.contacts,
+            end.contacts,
+            body.slipped[number],
+            opening.tangents @ (end.D - start.D) - body.carried[number, 0],
+            body.carried[number],
             scheme.delta if newmark else 0.5,
-            scheme.step * stage.share,
+            scheme.step * (stage.end - stage.begin),
             1.0,
             sums,
         )
