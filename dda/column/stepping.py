@@ -25,7 +25,7 @@ import numpy as np
 from dda.column.column import Column
 from dda.column.equations import Equations, equations
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, bound_overflow, times_of
+from dda.one_block.solution import Result, linear_result
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 from dda.scheme.stage import dashpot_matrix, inertia_force, predictor, velocity_corrector
 
@@ -107,17 +107,17 @@ def solve_column(
     observed = observers(system, columns, heights)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        histories = stepper.run(drive, observed) + 0.0
-        overflow = bound_overflow(histories, 1.0)
-    steps = histories.shape[1]
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, histories, strict=True)),
+        histories = stepper.run(drive, observed)
+    return linear_result(
+        scheme,
+        (began, ready),
+        columns,
+        histories,
+        1.0,
         unknowns=stepper.M.shape[1],
         nonzeros=int(np.count_nonzero(stepper.matrices[-1])),
         factorisations=len(stepper.solvers),
-        solves=steps * len(stepper.solvers),
-        notes=overflow,
+        solves=histories.shape[1] * len(stepper.solvers),
     )
 
 

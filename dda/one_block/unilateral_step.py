@@ -650,11 +650,9 @@ def add_algorithmic_loss(
         room.change[i] = after.D[i] - state.D[i]
         stiff += room.change[i] * room.change[i] * block.K[i]
     if part.begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
-        share = load_share(block.ramp, 0.0)
         for i in range(n):
-            missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - part.ratio * part.ratio * state.f[i]
             moved = room.change[i] + dot(block.translation[i], block.last.base, 2)
-            sums[ALGORITHMIC] += (1 - delta) * moved * missing / h2
+            sums[ALGORITHMIC] += (1 - delta) * moved * (state.force[i] - state.f[i]) / dt2
     kinetic = 0.0
     kinetic_of_change = 0.0
     if alpha != delta / 2:

@@ -24,7 +24,7 @@ import numpy as np
 
 from dda.model.arrays import Array
 from dda.one_block.modes import Mode, modes_of
-from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
+from dda.one_block.solution import Result, check_damping, check_request, linear_result
 from dda.scheme import harmonic
 from dda.scheme.harmonic import largest_frequency
 from dda.scheme.newmark import Scheme, late_momentum
@@ -214,21 +214,42 @@ def solve_system(
     check_damping(scheme, system.motion is not None)
     began = perf_counter()
     equations = system.equations if full else system.reached
+    return stepped(system, equations, scheme, steps, columns, equations.rows(columns), began)
+
+
+def stepped(
+    system: BlockSystem,
+    equations: Equations,
+    scheme: Scheme,
+    steps: int,
+    names: Sequence[str],
+    rows: tuple[Array, Array],
+    began: float,
+) -> Result:
+    """Step a system from rest and return what some rows, of D and of the joint forces, observe of it.
+
+    Parameters
+    ----------
+    equations
+        In the unknowns that are kept.
+    began
+        When the set-up began [s].
+    """
     stepper = _ViscousStepper(equations, scheme) if scheme.damped else Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.instants(steps)))
-        observed *= system.load_size
-        observed += 0.0
-        overflow = bound_overflow(observed, system.load_size)
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, observed, strict=True)),
+        observed = stepper.run(steps, rows, _moved(system, scheme.instants(steps))) * system.load_size
+    return linear_result(
+        scheme,
+        (began, ready),
+        names,
+        observed,
+        system.load_size,
         unknowns=len(equations.F),
         nonzeros=stepper.stages[-1].factor.nonzeros,
         factorisations=len(stepper.stages),
         solves=steps * sum(1 + solver.corrections for solver in stepper.stages),
-        notes=_savings(system, equations) + overflow,
+        notes=_savings(system, equations),
     )
 
 
