@@ -216,7 +216,7 @@ def linear_result(
     observed: Array,
     size: float,
     notes: tuple[str, ...] = (),
-    **work: int,
+    **work: Any,
 ) -> Result:
     """Return the result of steps of which none may fail; a column is infinite from its first overflow on.
 

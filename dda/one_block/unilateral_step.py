@@ -62,7 +62,7 @@ from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 from dda.stepping.driver import BaseRecord, Part, base_displacement, driver, staged
-from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
+from dda.stepping.energy import ALGORITHMIC, GIVEN, accounted, add_contact_losses, bulk_loss
 
 NEWMARK = "newmark"
 IMPLICIT = "implicit"
@@ -132,7 +132,7 @@ class BlockEquations(NamedTuple):
     pass_limit: int  # its passes in a step
     restitution: float  # of impacts [-]
     rule: int  # place in RULES; that of Newmark's where the contact force enters as there
-    newmark: bool  # whether the scheme is Newmark's
+    by_balance: bool  # whether the algorithm loses what the others leave: of another scheme than Newmark's
     stages: int  # 1, or 2: `first` and `last`
     lag: float  # by how much of a step P is older than D
     gg: float
@@ -181,7 +181,7 @@ def block_equations(
         pass_limit=pass_limit,
         restitution=restitution,
         rule=0 if rule == AUGMENTED else RULES.index(rule),
-        newmark=scheme.table is None,
+        by_balance=scheme.table is not None,
         stages=len(rooms),
         lag=float(scheme.lag),
         gg=scheme.gg,
@@ -567,23 +567,9 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
-) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says."""
-    length = length_of(block, shear_law, block.last, part.ratio)
-    gg = length.numbers[1]
-    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
-    if gg != 1 and not late_start:
-        squares = quadratic(block.inverse_mass, state.P, len(block.K))
-        sums[DAMPING] += (1 - gg * gg) * squares / 2 / (block.step * block.step)
-    before = state
-    if block.stages == 2:
-        before = block.between
-        account_stage(block, shear_law, block.first, state, before, part, sums)
-    account_stage(block, shear_law, block.last, before, after, part, sums)
-    if block.newmark:
-        add_algorithmic_loss(block, length, state, after, part, sums)
+def kinetic_energy(block: BlockEquations, state: BlockState) -> float:
+    """Return the kinetic energy of the momentum that is carried [J]."""
+    return quadratic(block.inverse_mass, state.P, len(block.K)) / 2 / (block.step * block.step)
 
 
 def account_stage(
@@ -602,7 +588,7 @@ def account_stage(
     """
     room = block.room
     numbers = stage.numbers
-    late = numbers.delta if block.newmark else 0.5
+    late = 0.5 if block.by_balance else numbers.delta
     for i in range(len(block.K)):
         room.change[i] = after.D[i] - before.D[i]
     if block.rule != 2:
@@ -635,15 +621,13 @@ def mean_share(block: BlockEquations, numbers: Stage, part: Part, late: float) -
     return (1 - late) * begin + late * end
 
 
-def add_algorithmic_loss(
-    block: BlockEquations, length: StepLength, state: BlockState, after: BlockState, part: Part, sums: Vector
-) -> None:
+def add_algorithmic_loss(block: BlockEquations, state: BlockState, after: BlockState, part: Part, sums: Vector) -> None:
     """Add what Newmark's step loses [J] beside the contacts."""
     room = block.room
     alpha = block.last.numbers.alpha
     delta = block.last.numbers.delta
     n = len(block.K)
-    h2 = length.numbers[2] * length.numbers[2]
+    h = block.step * part.ratio
     dt2 = block.step * block.step
     stiff = 0.0
     for i in range(n):
@@ -661,7 +645,7 @@ def add_algorithmic_loss(
         stored = quadratic(block.inverse_mass, after.f, n) - quadratic(block.inverse_mass, state.f, n)
         kinetic = stored / 2 / dt2 / dt2
         kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
-    sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic, kinetic_of_change)
+    sums[ALGORITHMIC] += bulk_loss(alpha, delta, h * h, stiff, kinetic, kinetic_of_change)
 
 
 def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:
@@ -682,6 +666,7 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
 
 
 advance = staged(stage_with(solve_at_end))
+account = accounted(kinetic_energy, account_stage, add_algorithmic_loss)
 make_steps = driver(advance, account, keep)
 make_conserving_steps = driver(staged(stage_with(solve_conserving)), account, keep)
 make_damped_steps = driver(staged(stage_with(solve_damped)), account, keep)

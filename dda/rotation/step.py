@@ -51,7 +51,7 @@ from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 from dda.stepping.driver import BaseRecord, Part, base_at, driver, staged
-from dda.stepping.energy import DAMPING, add_contact_losses
+from dda.stepping.energy import accounted, add_contact_losses
 
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
@@ -158,6 +158,7 @@ class RollingEquations(NamedTuple):
     exact: bool  # or first-order rotation
     stages: int  # 1, or 2: `first` and `last`
     delta: float  # of Newmark's, 1/2 of another scheme: weight of the forces at the end of each stage
+    by_balance: bool  # True: what the algorithm loses is what the others leave
     lag: float  # by how much of a step V is older than q
     gg: float
     step: float  # [s]
@@ -197,6 +198,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         exact=setting.rotation == EXACT,
         stages=len(stages),
         delta=scheme.delta if scheme.table is None else 0.5,
+        by_balance=True,
         lag=float(scheme.lag),
         gg=scheme.gg,
         step=scheme.step,
@@ -636,34 +638,28 @@ def accept(
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    body: RollingEquations, shear_law: Shear, state: RollingState, after: RollingState, part: Part, sums: Vector
-) -> None:
-    """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
-    gg = body.gg**part.ratio
-    h = body.step * part.ratio
-    if gg != 1 and not (body.lag != 0 and part.begun == 0):
-        sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
-    before = state.contacts
-    if body.stages == 2:
-        before = body.between.contacts
-        add_stage_losses(body, shear_law, body.first, state.contacts, before, h, sums)
-    add_stage_losses(body, shear_law, body.last, before, after.contacts, h, sums)
-
-
-def add_stage_losses(
+def account_stage(
     body: RollingEquations,
     shear_law: Shear,
     stage: RollingStage,
-    before: Contacts,
-    after: Contacts,
-    h: float,
+    before: RollingState,
+    after: RollingState,
+    part: Part,
     sums: Vector,
 ) -> None:
-    """Add what the contacts lose in a stage of a step of length h."""
-    length = h * (stage.numbers.end - stage.numbers.begin)
+    """Add what a stage slips, gives and loses by its contacts; what the algorithm loses is the rest."""
     add_contact_losses(
-        body.law, shear_law, before, after, stage.slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
+        body.law,
+        shear_law,
+        before.contacts,
+        after.contacts,
+        stage.slipped,
+        stage.slide,
+        stage.moved,
+        body.delta,
+        body.step * part.ratio * (stage.numbers.end - stage.numbers.begin),
+        1.0,
+        sums,
     )
 
 
@@ -676,6 +672,10 @@ def kinetic(body: RollingEquations, state: RollingState) -> float:
         for j in range(2, 6):
             turning += state.V[i] * body.M[i][j] * state.V[j]
     return float((growth * moving + growth * growth * turning) / 2)
+
+
+def no_loss_beside(body: RollingEquations, state: RollingState, after: RollingState, part: Part, sums: Vector) -> None:
+    """Add nothing: the balance of energy has it."""
 
 
 def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) -> bool:
@@ -694,4 +694,5 @@ def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) 
     return math.isfinite(total)
 
 
+account = accounted(kinetic, account_stage, no_loss_beside)
 make_steps = driver(advance, account, keep)

@@ -57,7 +57,7 @@ from dda.stepping.driver import (
     reached_history,
     staged,
 )
-from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss, energies_of, spring_energies
+from dda.stepping.energy import ALGORITHMIC, accounted, add_contact_losses, bulk_loss, energies_of, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import StageSolver
 from dda.system.subdivision import Pattern, subdivided
@@ -188,6 +188,8 @@ class OpeningBody:
         self.elastic = e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
         self.energies = energies
+        self.by_balance = scheme.table is not None
+        self.gg = scheme.gg
         self.lag = scheme.lag
         self.stages = len(scheme.stages)
         self.first = 0  # number of the first stage of two
@@ -306,43 +308,49 @@ def make_stage(
 advance = staged(make_stage)
 
 
-def account(
-    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, part: Part, sums: Array
+def account_stage(
+    body: OpeningBody,
+    shear_law: Shear,
+    number: int,
+    before: SystemState,
+    after: SystemState,
+    part: Part,
+    sums: Array,
 ) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
-    opening = body.opening
-    scheme = body.length(part.ratio).scheme
-    dt2 = body.scheme.step**2
-    newmark = scheme.table is None
-    ends = [state, body.between, after] if body.stages == 2 else [state, after]
-    for number, stage in enumerate(scheme.stages):
-        start = ends[number]
-        end = ends[number + 1]
-        add_contact_losses(
-            body.law,
-            shear_law,
-            start.contacts,
-            end.contacts,
-            body.slipped[number],
-            opening.tangents @ (end.D - start.D) - body.carried[number, 0],
-            body.carried[number],
-            scheme.delta if newmark else 0.5,
-            scheme.step * (stage.end - stage.begin),
-            1.0,
-            sums,
-        )
-    if body.start_discount(part.begun == 0) == 1:
-        sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
-    if not newmark:
-        return
+    """Add what the points lose in a stage, and what the base gives [J]."""
+    stage = body.scheme.stages[number]
+    add_contact_losses(
+        body.law,
+        shear_law,
+        before.contacts,
+        after.contacts,
+        body.slipped[number],
+        body.opening.tangents @ (after.D - before.D) - body.carried[number, 0],
+        body.carried[number],
+        0.5 if body.by_balance else stage.delta,
+        stage.step * part.ratio * (stage.end - stage.begin),
+        1.0,
+        sums,
+    )
+
+
+def kinetic_energy(body: OpeningBody, state: SystemState) -> float:
+    """Return the kinetic energy of the momentum that is carried [J]."""
+    return body.kinetic(state.P / body.scheme.step)
+
+
+def add_algorithmic_loss(body: OpeningBody, state: SystemState, after: SystemState, part: Part, sums: Array) -> None:
+    """Add what Newmark's step loses beside the points [J], with A0 that may be any."""
+    scheme = body.scheme
+    dt2 = scheme.step**2
     moved = after.D - state.D
     R0 = state.f / dt2
     R1 = after.f / dt2
-    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (state.force / dt2 - R0))  # A0 may be any
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (state.force / dt2 - R0))
     stiff = body.stiff(moved, (after.mu - state.mu) / dt2)
     kinetic = body.kinetic(R1) - body.kinetic(R0)
     change = body.kinetic(R1 - R0)
-    sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, scheme.step**2, stiff, kinetic, change)
+    sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, dt2 * part.ratio**2, stiff, kinetic, change)
 
 
 def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> bool:
@@ -355,6 +363,7 @@ def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> boo
     return bool(np.isfinite(state.D).all())
 
 
+account = accounted(kinetic_energy, account_stage, add_algorithmic_loss)
 make_steps = driver(advance, account, keep)
 
 
