@@ -11,7 +11,7 @@ from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme import roots, spectral, viscous
+from dda.scheme import roots, spectral
 from dda.scheme.newmark import Scheme, staged_step, step_matrices, viscosity
 from dda.scheme.stage import inertia_force, predictor, velocity_corrector
 
@@ -153,8 +153,6 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
 
 def _predicted(scheme: Scheme, omegas: Array) -> float:
     """Return the largest |lambda| of some w dt from trace and determinant in closed form."""
-    if scheme.table is not None:
+    if scheme.table is not None or scheme.damped:
         return max(abs(complex(roots.roots(scheme, omega)[0])) for omega in omegas.tolist())
-    if scheme.damped:
-        return max(abs(viscous.eigenvalues(scheme, w / scheme.step)[0]) for w in omegas.tolist())
     return float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg)))
