@@ -5,8 +5,6 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
-import warnings
-
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
 from dda.model.block import Block
@@ -88,11 +86,3 @@ __all__ = [
     "system_response",
     "textbook_applicable",
 ]
-
-
-def __getattr__(name: str) -> type[ContactResult]:
-    """Return what had another name."""
-    if name in ("UnilateralResult", "OpeningResult"):
-        warnings.warn(f"dda.{name} is dda.ContactResult now", DeprecationWarning, stacklevel=2)
-        return ContactResult
-    raise AttributeError(f"module 'dda' has no attribute {name!r}")

@@ -19,12 +19,13 @@ contact feels its neighbours less than half as much as itself. Where all B <= 0,
 second solve on, and N contacts take N + 1 solves at most. If states changed `SWEEPS` times the number of contacts, one
 state is changed at a time (Murty 1974), which ends for every such matrix.
 
-Other schemes take one stage or two of the same form (`dda.scheme.stages`) with b = alpha (1 - af)/(1 - am) dt^2. Where
+Other schemes take one stage or two of the same form (`dda.scheme.stage`) with b = alpha (1 - af)/(1 - am) dt^2. Where
 the forces are balanced between the ends of a step, what the start gives of them is known before the iteration.
 
 What is carried are stretches, and of each contact the gap (of one that sticks -N/k, set, no sum of increments); the
 displacements follow from these, from the base upwards. So neither stiff springs nor long steps, in which weight alone
-would move a block by g dt^2, cost digits. The state is in units of the step: w = dt v, s = dt^2 a.
+would move a block by g dt^2, cost digits. The state is in units of the step, p = dt v and a for dt^2 a: rates of the
+means of all blocks, then those of the stretches.
 
 The kernel of a block, `dda.contact.kernel`, is dense and knows four states and two forces a contact; `dda.stepping`'s
 loop keeps forces, gaps and states of all contacts at every step, and cuts. A column of N blocks needs neither: its
@@ -39,7 +40,7 @@ from typing import Any, NamedTuple
 from dda.contact.dense import Vector, copy
 from dda.contact.kernel import FOUND, NONE, ROUNDING
 from dda.contact.unilateral import OPEN, SLIP, STICK
-from dda.scheme.stages import Stage
+from dda.scheme.stage import Stage, inertia_force, predictor, velocity_corrector
 from dda.stepping.driver import OVERFLOW
 from dda.stepping.energy import ALGORITHMIC, DAMPING, FRICTION, GIVEN, IMPULSE, SUMS, SWITCHING, bulk_loss
 
@@ -115,11 +116,9 @@ class ColumnState(NamedTuple):
     """Where the column is, in units of the step."""
 
     u: Vector  # (n,) mean displacement [m]
-    w: Vector  # dt v
-    s: Vector  # dt^2 a
     e: Vector  # (n,) stretch [m]
-    we: Vector
-    se: Vector
+    p: Vector  # (2n,) dt times the rates of means, then of stretches
+    a: Vector  # (2n,) dt^2 times their accelerations
     gap: Vector  # (n,) gap of a unilateral contact, negative when pressed; stretch of the spring of another [m]
     slip: Vector  # (n,) sum of slips [m]
     force: Vector  # (n + 1,) N at the foot of every block, and the pressure on the top [Pa]
@@ -127,12 +126,10 @@ class ColumnState(NamedTuple):
 
 
 class StepStart(NamedTuple):
-    """Velocities and accelerations at the start of a step, (n,) each as in `ColumnState`."""
+    """Rates and accelerations at the start of a step, as in `ColumnState`."""
 
-    w: Vector
-    s: Vector
-    we: Vector
-    se: Vector
+    p: Vector
+    a: Vector
 
 
 class ColumnWork(NamedTuple):
@@ -144,10 +141,8 @@ class ColumnWork(NamedTuple):
     right: Vector
     tried: States
     start: StepStart  # of two stages
-    mean_0: Vector  # (n,) what forces and accelerations at the start leave of the accelerations of mean and stretch
-    stretch_0: Vector
-    speed: Vector  # (n,) dt v of mean and stretch at the time of the displacements
-    stretch_speed: Vector
+    known: Vector  # (2n,) what forces and accelerations at the start leave of the accelerations
+    speed: Vector  # (2n,) dt times the rates at the time of the displacements
 
 
 class DriveSteps(NamedTuple):
@@ -317,44 +312,27 @@ def predict(
         Of the drive, at the end of the stage.
     """
     stage = numbers.stage
-    alpha = stage.alpha
-    gg = stage.gg
-    early = stage.e_0
-    late = stage.g_0
-    d_g = stage.d_g
-    e_g = stage.e_g
-    g_g = stage.g_g
-    fall = alpha * numbers.share * numbers.fall
-    stiff = alpha * numbers.share
-    w = state.w
-    s = state.s
+    n = len(state.u)
+    p = state.p
+    a = state.a
     e = state.e
-    we = state.we
-    se = state.se
-    gap = state.gap
-    q = work.q
     if numbers.averages:
         known_accelerations(numbers, blocks, state, start, work)
-    state.u[0] += stage.d_u * (gg * start.w[0]) + early * start.s[0]
-    state.u[0] += stage.d_g * w[0] + stage.e_g * s[0]
-    relaxation = blocks.relaxation
+    state.u[0] += predictor(stage, start.p[0], start.a[0], p[0], a[0])
     if numbers.welded == 1:
         below = predict_welded(numbers, blocks, state, start, drive, row, work)
     else:
         below = drive.displacement[row] - drive.displacement[row - 1]
-    for i in range(numbers.welded, len(w)):
-        speed = gg * start.w[i]
-        stretch_speed = gg * start.we[i]
-        moved = stage.d_u * speed + early * start.s[i]
-        moved += d_g * w[i] + e_g * s[i]
-        half = stage.d_u * stretch_speed + early * start.se[i]
-        half += d_g * we[i] + e_g * se[i]
-        w[i] = speed + late * start.s[i] + g_g * s[i]
-        we[i] = stretch_speed + late * start.se[i] + g_g * se[i]
-        moved += fall + alpha * work.mean_0[i]
+    for i in range(numbers.welded, n):
+        k = n + i
+        moved = predictor(stage, start.p[i], start.a[i], p[i], a[i])
+        half = predictor(stage, start.p[k], start.a[k], p[k], a[k])
+        p[i] = velocity_corrector(stage, start.p[i], start.a[i], a[i], 0.0)
+        p[k] = velocity_corrector(stage, start.p[k], start.a[k], a[k], 0.0)
+        moved += stage.alpha * (numbers.share * numbers.fall + work.known[i])
         e[i] += half
-        half = 0.5 * (half - (stiff * relaxation[i] * e[i] - alpha * work.stretch_0[i]))
-        q[i] = gap[i] + (moved - half - below)
+        half = 0.5 * (half - stage.alpha * (numbers.share * blocks.relaxation[i] * e[i] - work.known[k]))
+        work.q[i] = state.gap[i] + (moved - half - below)
         below = moved + half
 
 
@@ -363,50 +341,38 @@ def known_accelerations(
 ) -> None:
     """Write what the start of a step gives of the accelerations at its end: (af R0 - am a0)/(1 - am), R0 by M."""
     stage = numbers.stage
-    for i in range(len(state.w)):
+    n = len(state.u)
+    for i in range(n):
         above = state.force[i + 1]
         below = state.force[i]
         mean = numbers.fall + blocks.mobility[i] * (below - above)
-        work.mean_0[i] = (stage.af * mean - stage.am * start.s[i]) / (1.0 - stage.am)
-        work.stretch_0[i] = 0.0
+        work.known[i] = inertia_force(stage, 0.0, mean, start.a[i])
+        work.known[n + i] = 0.0
         if blocks.stiffness[i] > 0:
             stretch = 0.0 - 12 * blocks.mobility[i] * (blocks.stiffness[i] * state.e[i] + (below + above) / 2)
-            known = (stage.af * stretch - stage.am * start.se[i]) / (1.0 - stage.am)
-            work.stretch_0[i] = blocks.inertia_share[i] * known
+            work.known[n + i] = blocks.inertia_share[i] * inertia_force(stage, 0.0, stretch, start.a[n + i])
     if numbers.welded == 1:  # of its top alone, as a force; the base's inertia is a load, as in `dda.column.stepping`
         mass = 1 / blocks.mobility[0]
-        top_change = start.s[0] + start.se[0] / 2
-        base_change = start.s[0] - start.se[0] / 2
-        force = numbers.fall * mass / 2 - state.force[1] - blocks.stiffness[0] * state.e[0] - mass / 6 * base_change
-        work.mean_0[0] = (stage.af * force - stage.am * mass / 3 * top_change) / (1.0 - stage.am)
+        force = numbers.fall * mass / 2 - state.force[1] - blocks.stiffness[0] * state.e[0]
+        force -= mass / 6 * (start.a[0] - start.a[n] / 2)
+        work.known[0] = inertia_force(stage, 0.0, force, mass / 3 * (start.a[0] + start.a[n] / 2))
 
 
 def correct(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:
     """Write the state under the contact forces."""
-    alpha = numbers.stage.alpha
-    delta = numbers.stage.delta
-    share = numbers.share
-    fall = numbers.fall
-    w = state.w
-    s = state.s
-    e = state.e
-    we = state.we
-    se = state.se
-    force = state.force
-    mobility = blocks.mobility
-    half_stretch = blocks.half_stretch
-    relaxation = blocks.relaxation
-    below = force[numbers.welded]
-    for i in range(numbers.welded, len(w)):
-        above = force[i + 1]
-        a = share * (fall + mobility[i] * (below - above)) + work.mean_0[i]
-        ae = share * (0.0 - relaxation[i] * e[i] - half_stretch[i] * (below + above)) + work.stretch_0[i]
+    n = len(state.u)
+    below = state.force[numbers.welded]
+    for i in range(numbers.welded, n):
+        k = n + i
+        above = state.force[i + 1]
+        mean = numbers.fall + blocks.mobility[i] * (below - above)
+        stretch = 0.0 - blocks.relaxation[i] * state.e[i] - blocks.half_stretch[i] * (below + above)
         below = above
-        w[i] += delta * a
-        s[i] = a
-        e[i] += alpha * ae
-        we[i] += delta * ae
-        se[i] = ae
+        state.a[i] = numbers.share * mean + work.known[i]
+        state.a[k] = numbers.share * stretch + work.known[k]
+        state.p[i] += numbers.stage.delta * state.a[i]
+        state.p[k] += numbers.stage.delta * state.a[k]
+        state.e[i] += numbers.stage.alpha * state.a[k]
 
 
 def predict_welded(
@@ -427,57 +393,59 @@ def predict_welded(
     base = drive.displacement[row] - drive.displacement[row - 1]
     base_speed = numbers.step * drive.velocity[row]
     base_change = numbers.step * numbers.step * drive.acceleration[row]
-    top_speed = stage.gg * (start.w[0] + start.we[0] / 2)
-    top_change = start.s[0] + start.se[0] / 2
-    change_before = state.s[0] + state.se[0] / 2
-    moved = stage.d_u * top_speed + stage.e_0 * top_change
-    moved += stage.d_g * (state.w[0] + state.we[0] / 2) + stage.e_g * change_before
-    predicted_speed = top_speed + stage.g_0 * top_change + stage.g_g * change_before
+    n = len(state.u)
+    p = state.p
+    top_speed = start.p[0] + start.p[n] / 2
+    top_change = start.a[0] + start.a[n] / 2
+    change_before = state.a[0] + state.a[n] / 2
+    moved = predictor(stage, top_speed, top_change, p[0] + p[n] / 2, change_before)
+    predicted_speed = velocity_corrector(stage, top_speed, top_change, change_before, 0.0)
     if blocks.stiffness[0] == 0:
         moved = base - stage.alpha * base_change
         predicted_speed = base_speed - stage.delta * base_change
     state.e[0] += moved - base
-    state.w[0] = (base_speed + predicted_speed) / 2
-    state.we[0] = predicted_speed - base_speed
-    state.s[0] = base_change
+    p[0] = (base_speed + predicted_speed) / 2
+    p[n] = predicted_speed - base_speed
+    state.a[0] = base_change
     return float(moved + stage.alpha * top_acceleration(numbers, blocks, state, 0.0, work))
 
 
 def top_acceleration(
     numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, above: float, work: ColumnWork
 ) -> float:
-    """Return that of the top of a predicted block whose foot's acceleration is `state.s[0]`, under a force on it."""
+    """Return that of the top of a predicted block whose foot's acceleration is `state.a[0]`, under a force on it."""
     weight = numbers.fall / blocks.mobility[0] / 2
-    force = numbers.share * (weight - above - blocks.stiffness[0] * state.e[0]) + work.mean_0[0]
+    force = numbers.share * (weight - above - blocks.stiffness[0] * state.e[0]) + work.known[0]
     coupling = numbers.welded_coupling
     if blocks.stiffness[0] > 0:
         coupling *= numbers.share
-    return float(numbers.welded_mobility * force - coupling * state.s[0])
+    return float(numbers.welded_mobility * force - coupling * state.a[0])
 
 
 def correct_welded(numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, work: ColumnWork) -> None:
     """Write the lowest block, whose foot is the base, and the force of the base on it."""
-    base_change = state.s[0]
+    n = len(state.u)
+    base_change = state.a[0]
     a = top_acceleration(numbers, blocks, state, state.force[1], work)
     state.e[0] += numbers.stage.alpha * a
-    state.w[0] += numbers.stage.delta * a / 2
-    state.we[0] += numbers.stage.delta * a
+    state.p[0] += numbers.stage.delta * a / 2
+    state.p[n] += numbers.stage.delta * a
     if blocks.stiffness[0] == 0:
         state.e[0] = 0.0
-        state.we[0] = 0.0
-    state.s[0] = (base_change + a) / 2
-    state.se[0] = a - base_change
-    state.force[0] = state.force[1] + (state.s[0] - numbers.fall) / blocks.mobility[0]
+        state.p[n] = 0.0
+    state.a[0] = (base_change + a) / 2
+    state.a[n] = a - base_change
+    state.force[0] = state.force[1] + (state.a[0] - numbers.fall) / blocks.mobility[0]
 
 
 def dashpot_force(
     numbers: StepNumbers, blocks: BlockColumn, state: ColumnState, velocity: float, work: ColumnWork
 ) -> float:
     """Return the force of the half-space on a predicted column, z (2 v - velocity of the foot) [Pa]."""
-    foot = state.w[0] - state.we[0] / 2
+    n = len(state.u)
     gained = numbers.share * (numbers.fall + blocks.relaxation[0] * state.e[0] / 2)
-    gained += work.mean_0[0] - work.stretch_0[0] / 2
-    foot += numbers.stage.delta * gained
+    gained += work.known[0] - work.known[n] / 2
+    foot = state.p[0] - state.p[n] / 2 + numbers.stage.delta * gained
     force: float = numbers.impedance * (2 * numbers.step * velocity - foot) * numbers.dashpot
     return force
 
@@ -491,7 +459,7 @@ def place_blocks(numbers: StepNumbers, joints: JointLaws, state: ColumnState, ba
         below = base
     else:
         lowest = 1
-        u[0] += numbers.stage.alpha * state.s[0]
+        u[0] += numbers.stage.alpha * state.a[0]
         below = u[0] + e[0] / 2
     for i in range(lowest, len(u)):
         foot = below + (state.gap[i] - joints.gap[i]) + state.slip[i]
@@ -547,7 +515,7 @@ def make_column_steps(
         (steps + 1, RECORDED), or no rows if they are not asked for.
     """
     count = last.numbers.stages
-    start = StepStart(state.w, state.s, state.we, state.se) if count == 1 else work.start
+    start = StepStart(state.p, state.a) if count == 1 else work.start
     write_step(last, state, work, observed, 0, values, states, energies)
     for step in range(1, len(values)):
         if len(energies) > 0:
@@ -555,10 +523,8 @@ def make_column_steps(
                 energies[step, k] = energies[step - 1, k]
             add_damping(last, state, energies, step)
         if count > 1:
-            copy(state.w, start.w)
-            copy(state.s, start.s)
-            copy(state.we, start.we)
-            copy(state.se, start.se)
+            copy(state.p, start.p)
+            copy(state.a, start.a)
         for k in range(count):
             stage = last if k + 1 == count else first
             row = count * (step - 1) + k + 1
@@ -628,15 +594,12 @@ def write_step(
     """Write what is kept of a state; tell whether it is finite."""
     n = len(state.u)
     joints = stage.joints
-    w = state.w
-    we = state.we
+    p = state.p
     if stage.numbers.lag != 0:
-        w = work.speed
-        we = work.stretch_speed
+        p = work.speed
         discount = stage.numbers.stage.gg if step == 0 else 1.0  # of what `late_momentum` made of those at t = 0
-        for i in range(n):
-            w[i] = discount * state.w[i] + stage.numbers.lag * state.s[i]
-            we[i] = discount * state.we[i] + stage.numbers.lag * state.se[i]
+        for i in range(2 * n):
+            p[i] = discount * state.p[i] + stage.numbers.lag * state.a[i]
     for k in range(len(observed.kind)):
         kind = observed.kind[k]
         place = observed.place[k]
@@ -644,7 +607,7 @@ def write_step(
         if kind == MOTION:
             value = state.u[place] + weight * state.e[place]
         elif kind == SPEED:
-            value = (w[place] + weight * we[place]) / stage.numbers.step
+            value = (p[place] + weight * p[n + place]) / stage.numbers.step
         elif kind == STRAIN:
             value = weight * state.e[place]
         elif kind == FORCES:  # that of one contact, or the mean of both of a rigid block
@@ -658,7 +621,7 @@ def write_step(
         for j in range(n):
             states[step, j] = state.state[j]
     if len(energies) > 0:
-        store(stage, state, w, we, energies, step)
+        store(stage, state, p, energies, step)
     total = 0.0
     for i in range(n):
         total += state.u[i]
@@ -674,19 +637,19 @@ def copy_state(numbers: StepNumbers, source: ColumnState, target: ColumnState, s
     copy(source.force, target.force)
     copy(source.state, target.state)
     if step == 1 or numbers.stage.alpha != numbers.stage.delta / 2:
-        copy(source.s, target.s)
-        copy(source.se, target.se)
+        copy(source.a, target.a)
 
 
-def kinetic_of(mass: Vector, mean: Vector, stretch: Vector) -> float:
-    """Return half the squares of rates of all blocks by their inertia."""
+def kinetic_of(mass: Vector, rates: Vector) -> float:
+    """Return half the squares of rates of means and stretches by their inertia, m and m/12."""
+    n = len(mass)
     total = 0.0
-    for i in range(len(mass)):
-        total += mass[i] * (mean[i] * mean[i] + stretch[i] * stretch[i] / 12)
+    for i in range(n):
+        total += mass[i] * (rates[i] * rates[i] + rates[n + i] * rates[n + i] / 12)
     return total / 2
 
 
-def store(stage: ColumnStage, state: ColumnState, w: Vector, we: Vector, energies: Rows, step: int) -> None:
+def store(stage: ColumnStage, state: ColumnState, p: Vector, energies: Rows, step: int) -> None:
     """Write kinetic energy, strain energy and that of the springs [J/m^2], momentum, and the extremes of contacts."""
     numbers = stage.numbers
     blocks = stage.blocks
@@ -704,10 +667,10 @@ def store(stage: ColumnStage, state: ColumnState, w: Vector, we: Vector, energie
     compliance = joints.compliance
     opens = joints.opens
     e = state.e
-    for i in range(len(w)):
+    for i in range(len(e)):
         strain += stiffness[i] * e[i] * e[i]
-        momentum += mass[i] * w[i]
-    for j in range(numbers.first, len(w)):
+        momentum += mass[i] * p[i]
+    for j in range(numbers.first, len(e)):
         force = state.force[j]
         springs += compliance[j] * force * force
         if opens[j] == 1:
@@ -721,7 +684,7 @@ def store(stage: ColumnStage, state: ColumnState, w: Vector, we: Vector, energie
                 open_contacts += 1
         elif abs(state.slip[j]) > furthest:
             furthest = abs(state.slip[j])
-    energies[step, KINETIC] = kinetic_of(blocks.mass, w, we) / (numbers.step * numbers.step)
+    energies[step, KINETIC] = kinetic_of(blocks.mass, p) / (numbers.step * numbers.step)
     energies[step, STRAINED] = strain / 2
     energies[step, SPRINGS] = springs / 2
     energies[step, MOMENTUM] = momentum / numbers.step
@@ -739,7 +702,7 @@ def add_damping(stage: ColumnStage, state: ColumnState, energies: Rows, step: in
     if numbers.lag != 0 and step == 1:
         return
     if numbers.lag != 0:
-        kinetic = kinetic_of(stage.blocks.mass, state.w, state.we) / (numbers.step * numbers.step)
+        kinetic = kinetic_of(stage.blocks.mass, state.p) / (numbers.step * numbers.step)
     energies[step, DAMPING] += (1 - gg * gg) * kinetic
 
 
@@ -781,11 +744,11 @@ def account(
     kinetic = 0.0
     change = 0.0
     if numbers.newmark and numbers.stage.alpha != late / 2:
-        kinetic = kinetic_of(blocks.mass, after.s, after.se) - kinetic_of(blocks.mass, before.s, before.se)
+        kinetic = kinetic_of(blocks.mass, after.a) - kinetic_of(blocks.mass, before.a)
         for i in range(n):
-            faster = after.s[i] - before.s[i]
-            wider = after.se[i] - before.se[i]
-            change += blocks.mass[i] * (faster * faster + wider * wider / 12) / 2
+            faster = after.a[i] - before.a[i]
+            wider = after.a[n + i] - before.a[n + i]
+            change += mass[i] * (faster * faster + wider * wider / 12) / 2
     row[ALGORITHMIC] += bulk_loss(numbers.stage.alpha, late, 1 / dt2, stiff, kinetic, change)
     switching = 0.0
     keeping = 0.0
@@ -822,10 +785,10 @@ def missing_work(numbers: StepNumbers, blocks: BlockColumn, before: ColumnState,
     dt2 = numbers.step * numbers.step
     work = 0.0
     for i in range(len(after.u)):
-        missing = before.force[i] - before.force[i + 1] + blocks.mass[i] * (numbers.fall - before.s[i]) / dt2
+        missing = before.force[i] - before.force[i + 1] + blocks.mass[i] * (numbers.fall - before.a[i]) / dt2
         work += missing * (after.u[i] - before.u[i])
         if blocks.stiffness[i] > 0:
             missing = 0.0 - (before.force[i] + before.force[i + 1]) / 2 - blocks.stiffness[i] * before.e[i]
-            missing -= blocks.mass[i] / 12 * before.se[i] / dt2
+            missing -= blocks.mass[i] / 12 * before.a[len(after.u) + i] / dt2
             work += missing * (after.e[i] - before.e[i])
     return work

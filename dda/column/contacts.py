@@ -44,7 +44,8 @@ from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.one_block.solution import Result, times_of
-from dda.scheme.newmark import Scheme, implicit_weight, late_momentum, plain_stage
+from dda.scheme.newmark import Scheme, late_momentum
+from dda.scheme.stage import implicit_weight, plain_stage
 from dda.stepping.compiled import run_loop
 from dda.stepping.driver import OUTCOMES
 from dda.stepping.energy import SUMS, energies_of
@@ -298,12 +299,12 @@ def step_equations(
 
 def _room(n: int) -> ColumnWork:
     room: list[Any] = [*zeros(n, n, n, n), np.zeros(n, dtype=np.int64)]
-    room += [StepStart(*zeros(n, n, n, n)), *zeros(n, n, n, n)]
+    room += [StepStart(*zeros(2 * n, 2 * n)), *zeros(2 * n, 2 * n)]
     return ColumnWork(*room)
 
 
 def _room_for_state(n: int) -> ColumnState:
-    room: list[Any] = [*zeros(n, n, n, n, n, n, n, n, n + 1), np.zeros(n, dtype=np.int64)]
+    room: list[Any] = [*zeros(n, n, 2 * n, 2 * n, n, n, n + 1), np.zeros(n, dtype=np.int64)]
     return ColumnState(*room)
 
 
@@ -324,11 +325,11 @@ def start_state(
     lowest = 0 if column.rests_on_base else 1
     state = _room_for_state(n)
     base_speed = scheme.step * drive.velocity[0] if column.rests_on_base else 0.0
-    state.w[:] = scheme.step * column.velocities
+    state.p[:n] = scheme.step * column.velocities
     rigid = joints.compliance == 0
     rigid[:lowest] = False
     welds = rigid & (joints.opens == 0) & np.isinf(joints.upper)  # their blocks get a common velocity at once
-    rigid_forces(blocks, state.w, state.we, base_speed, joints, welds, np.zeros(n + 1), lowest)
+    rigid_forces(blocks, state.p, base_speed, joints, welds, np.zeros(n + 1), lowest)
     state.gap[:] = joints.gap
     if numbers.first == 0:
         state.gap[0] -= drive.displacement[0]
@@ -342,20 +343,19 @@ def start_state(
         write_static(column, state, blocks, joints, float(drive.displacement[0]))
         rigid = np.zeros(n, dtype=bool)
     elif not column.rests_on_base:
-        state.force[0] = numbers.impedance * (2 * scheme.step * drive.velocity[0] - state.w[0] + state.we[0] / 2)
+        state.force[0] = numbers.impedance * (2 * scheme.step * drive.velocity[0] - state.p[0] + state.p[n] / 2)
     state.state[:] = np.where(unilateral & (state.force[:n] <= 0), OPEN, STICK)
     if scheme.start == "consistent":
         unknown = rigid & (~unilateral | (state.gap == 0))
-        state.s[:] = numbers.fall
+        state.a[:n] = numbers.fall
         half_stretch = np.where(blocks.stiffness > 0, 6 * blocks.mobility, 0.0)
-        state.se[:] = -2 * half_stretch * blocks.stiffness * state.e
+        state.a[n:] = -2 * half_stretch * blocks.stiffness * state.e
         base_change = scheme.step**2 * drive.acceleration[0]
-        states = rigid_forces(blocks, state.s, state.se, base_change, joints, unknown, state.force, lowest)
+        states = rigid_forces(blocks, state.a, base_change, joints, unknown, state.force, lowest)
         state.state[unknown] = states[unknown]
     if numbers.welded:
         _move_foot(drive, state, numbers, blocks)
-    state.w[:] = late_momentum(scheme, state.w, state.s)
-    state.we[:] = late_momentum(scheme, state.we, state.se)
+    state.p[:] = late_momentum(scheme, state.p, state.a)
     return state
 
 
@@ -363,18 +363,17 @@ def _move_foot(drive: Drive, state: ColumnState, numbers: StepNumbers, blocks: B
     """Give the foot of the lowest block the motion of the base, and the base the force that this needs."""
     base_speed = numbers.step * drive.velocity[0]
     base_change = numbers.step**2 * drive.acceleration[0]
-    top_speed = state.w[0] + state.we[0] / 2
-    top_change = state.s[0] + state.se[0] / 2
+    n = len(state.u)
+    top_speed = state.p[0] + state.p[n] / 2
+    top_change = state.a[0] + state.a[n] / 2
     if blocks.stiffness[0] == 0:
         top_speed = base_speed
         top_change = base_change
-    state.w[0] = (base_speed + top_speed) / 2
-    state.we[0] = top_speed - base_speed
-    state.s[0] = (base_change + top_change) / 2
-    state.se[0] = top_change - base_change
+    state.p[[0, n]] = (base_speed + top_speed) / 2, top_speed - base_speed
+    state.a[[0, n]] = (base_change + top_change) / 2, top_change - base_change
     m = blocks.mass[0] / numbers.step**2
     if blocks.stiffness[0] == 0:
-        state.force[0] = state.force[1] + m * (state.s[0] - numbers.fall)
+        state.force[0] = state.force[1] + m * (state.a[0] - numbers.fall)
     else:
         state.force[0] = m * (base_change / 3 + top_change / 6 - numbers.fall / 2) - blocks.stiffness[0] * state.e[0]
 
@@ -394,22 +393,21 @@ def write_static(column: Column, state: ColumnState, blocks: BlockColumn, joints
 
 def rigid_forces(
     blocks: BlockColumn,
-    mean: Array,
-    stretch: Array,
+    rates: Array,
     base: float,
     joints: JointLaws,
     rigid: Array,
     force: Array,
     lowest: int,
 ) -> NDArray[np.int64]:
-    """Add to rates of mean and stretch what forces change, of rigid contacts those by which they keep together.
+    """Add to rates of means and stretches what forces change, of rigid contacts those by which they keep together.
 
     It is the problem of a step, in the limit of short ones, for velocities or accelerations.
 
     Parameters
     ----------
-    mean, stretch
-        (n,) rates of all blocks in units of the step without forces; with them, when the function has returned.
+    rates
+        (2n,) rates in units of the step without forces; with them, when the function has returned.
     base
         The rate of the base.
     rigid
@@ -421,7 +419,9 @@ def rigid_forces(
     -------
     (n,) states of the rigid contacts.
     """
-    n = len(mean)
+    n = len(blocks.mass)
+    mean = rates[:n]
+    stretch = rates[n:]
     half_stretch = np.where(blocks.stiffness > 0, 6 * blocks.mobility, 0.0)
     own = blocks.mobility + half_stretch / 2
     top = mean + stretch / 2

@@ -6,7 +6,9 @@ One step from (D, V, A) is the scheme's (6) and (7), solved for the acceleration
     (M + delta dt C + alpha dt^2 K) A1 = F1 - C V* - K D*
     D1 = D* + alpha dt^2 A1,                        V1 = V* + delta dt A1
 
-and of other schemes a stage or two of the same form (`dda.scheme.stages`), whose forces, those of the dashpot too, are
+in v = dt V and f = dt^2 A,
+
+and of other schemes a stage or two of the same form (`dda.scheme.stage`), whose forces, those of the dashpot too, are
 balanced between the ends of the step where the scheme says so. The matrix has three diagonals below and on the main one
 and is factorised once. Nothing is divided by alpha, and alpha = 0 is the same code.
 """
@@ -16,16 +18,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dda.column.column import Column
-from dda.column.equations import WIDTH, Bands, Equations, equations
+from dda.column.equations import Equations, equations
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, bound_overflow, times_of
-from dda.scheme.newmark import Scheme, correctors, dashpot_matrix, predictors
-from dda.scheme.stages import Stage
+from dda.one_block.solution import Result, linear_result
+from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
+from dda.scheme.stage import dashpot_matrix, inertia_force, predictor, velocity_corrector
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+WIDTH = 2  # diagonals beside the main one: a block couples two displacements and the opening between them
 # of the top [m], on the base [Pa]
 DISPLACEMENT = "displacement"
 PRESSURE = "contact_pressure"
@@ -100,17 +107,17 @@ def solve_column(
     observed = observers(system, columns, heights)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        histories = stepper.run(drive, observed) + 0.0
-        overflow = bound_overflow(histories, 1.0)
-    steps = histories.shape[1]
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, histories, strict=True)),
-        unknowns=stepper.M.rows.shape[1],
-        nonzeros=int(np.count_nonzero(stepper.S.rows)),
+        histories = stepper.run(drive, observed)
+    return linear_result(
+        scheme,
+        (began, ready),
+        columns,
+        histories,
+        1.0,
+        unknowns=stepper.M.shape[1],
+        nonzeros=int(np.count_nonzero(stepper.matrices[-1])),
         factorisations=len(stepper.solvers),
-        solves=steps * len(stepper.solvers),
-        notes=overflow,
+        solves=histories.shape[1] * len(stepper.solvers),
     )
 
 
@@ -129,23 +136,17 @@ def observers(system: Equations, columns: Sequence[str], heights: Sequence[float
     none = np.zeros((len(columns), system.size))
     rows = Observers(none.copy(), none.copy(), none.copy(), np.zeros((len(columns), 4)))
     for number, name in enumerate(columns):
-        if name == PRESSURE:
-            _base_pressure(system, rows, number)
-        elif name == DISPLACEMENT:
-            rows.D[number] = system.row(len(system.lower) - 1, 0.0, 1.0)
-        else:
+        if name == DISPLACEMENT:
+            rows.D[number] = system.row(len(system.column.heights) - 1, 0.0, 1.0)
+        elif name != PRESSURE:
             rows.D[number] = _at_height(system, name, heights)
+        elif system.prescribed:  # the force of the base on the column, by the base's own equation
+            rows.D[number] = system.K[[0]].toarray()[0]
+            rows.A[number] = system.M[[0]].toarray()[0]
+        else:  # z (2 v - V) of the half-space
+            rows.V[number, 0] = -system.dashpot
+            rows.drive[number, 1] = 2 * system.dashpot
     return rows
-
-
-def _base_pressure(system: Equations, rows: Observers, number: int) -> None:
-    """Write the row of the base's force on the column: the told base's equation, or z (2 v - V) of the half-space."""
-    if system.told:
-        rows.D[number] = system.K.first_column()
-        rows.A[number] = system.M.first_column()
-    else:
-        rows.V[number, 0] = -system.dashpot
-        rows.drive[number, 1] = 2 * system.dashpot
 
 
 def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
@@ -157,113 +158,122 @@ def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
     return system.row(block, spring, -spring)
 
 
-class Stepper:
-    """The scheme on the equations of a column; of a base that is told only its effect on the others is left."""
+class Loading:
+    """The equations of the free unknowns; of a base of prescribed motion only its effect on the others is left."""
 
-    def __init__(self, system: Equations, scheme: Scheme) -> None:
-        """Form the matrices of the free unknowns and factorise the one of the step."""
-        if scheme.lag and system.dashpot:
-            raise ValueError(f"impedance: a half-space does not go with {scheme.name}, got {system.dashpot!r}")
-        self.system = system
-        self.scheme = scheme
-        first = int(system.told)
+    def __init__(self, system: Equations) -> None:
+        """Form the matrices, and the load that each part of the drive is."""
+        from scipy.sparse import csr_array
+
+        first = int(system.prescribed)
         self.first = first
-        self.M = Bands(system.M.rows[:, first:])
-        self.K = Bands(system.K.rows[:, first:])
-        self.C = Bands.zeros(system.size - first)
-        self.C.add(0, 0, system.dashpot)
-        matrices = [Bands(dashpot_matrix(stage, self.M.rows, self.C.rows, self.K.rows)) for stage in scheme.stages]
-        self.S = matrices[-1]
-        self.solvers = [_factorised(matrix) for matrix in matrices]
+        self.M = system.M[first:, first:]
+        self.K = system.K[first:, first:]
+        self.C = csr_array(([system.dashpot], ([0], [0])), shape=self.M.shape)
         base = np.eye(1, system.size)[0]
-        top = system.row(len(system.lower) - 1, 0.0, -1.0)
-        dashed = 2 * system.dashpot * base
-        parts = (-system.K.first_column(), dashed, -system.M.first_column(), top)
-        weights = np.array([first, 1 - first, first, 1.0])
-        self.push = (np.array(parts).T * weights)[first:]  # (unknowns, 4): load of each part of the drive
+        top = system.row(len(system.column.heights) - 1, 0.0, -1.0)
+        by_motion = -system.K[[0]].toarray()[0], -system.M[[0]].toarray()[0]
+        parts = (first * by_motion[0], (1 - first) * 2 * system.dashpot * base, first * by_motion[1], top)
+        self.push = np.array(parts).T[first:]  # (unknowns, 4)
 
-    def run(self, drive: Drive, rows: Observers) -> Array:
-        """Return the observed rows at every step, (rows, steps)."""
-        push = self.push
-        parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
-        by_state = np.hstack([matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A)])
-        M = _product(self.M)
-        K = _product(self.K)
-        C = _product(self.C)
-        stages = tuple(zip(self.scheme.stages, self.solvers, strict=True))
-        D = np.zeros(len(push))
-        A = self._start(push @ parts[0])
-        V = np.zeros_like(D)
-        if self.scheme.lag:
-            V = V - self.scheme.lag / self.scheme.gg * self.scheme.step * A
-        force = push @ parts[0]
-        ends = parts[len(stages) :: len(stages)]
-        observed_values = np.empty((len(by_state), len(ends)))
-        coming = iter(parts[1:])
-        for n in range(len(ends)):
-            start_V = V
-            start_A = A
-            start_force = force
-            for stage, solve in stages:
-                before_V = V
-                before_A = A
-                D, V = predictors(stage, D, start_V, start_A)
-                if stage is not self.scheme.stages[0]:
-                    D, V = add_stage_before(stage, D, V, before_V, before_A)
-                load = push @ next(coming)
-                force = load - C(V) - K(D)
-                if self.scheme.averages:
-                    force = (1 - stage.af) * force + stage.af * start_force - stage.am * M(start_A)
-                    A = solve(force) / (1 - stage.am)
-                else:
-                    A = solve(force)
-                D, V = correctors(stage, D, V, A)
-                if self.scheme.averages:
-                    force = load - C(V) - K(D)
-            if self.scheme.lag:
-                observed_values[:, n] = by_state @ np.concatenate((D, V + self.scheme.lag * self.scheme.step * A, A))
-            else:
-                observed_values[:, n] = by_state @ np.concatenate((D, V, A))
-        return observed_values + self.told(rows) @ ends.T
+    def free(self, rows: Observers) -> tuple[Array, ...]:
+        """Return the rows of displacement, velocity and acceleration by the free unknowns."""
+        return tuple(matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A))
 
-    def told(self, rows: Observers) -> Array:
-        """Return the rows of the drive, with what the told base adds by its displacement and acceleration."""
+    def prescribed(self, rows: Observers) -> Array:
+        """Return the rows of the drive, with what a base of prescribed motion adds by its motion."""
         drive_weights = rows.drive.copy()
         if self.first:
             drive_weights[:, 0] += rows.D[:, 0]
             drive_weights[:, 2] += rows.A[:, 0]
         return drive_weights
 
+
+class Stepper:
+    """The scheme on the free unknowns of a column."""
+
+    def __init__(self, system: Equations, scheme: Scheme) -> None:
+        """Form the matrices and factorise the one of the step."""
+        if scheme.lag and system.dashpot:
+            raise ValueError(f"impedance: a half-space does not go with {scheme.name}, got {system.dashpot!r}")
+        self.system = system
+        self.scheme = scheme
+        self.loading = Loading(system)
+        self.M = bands(self.loading.M)
+        self.c = scheme.step * bands(self.loading.C)
+        self.k = scheme.step**2 * bands(self.loading.K)
+        self.matrices = [dashpot_matrix(stage, self.M, self.c, self.k) for stage in scheme.stages]
+        self.solvers = [_factorised(matrix) for matrix in self.matrices]
+
+    def run(self, drive: Drive, rows: Observers) -> Array:
+        """Return the observed rows at every step, (rows, steps)."""
+        dt = self.scheme.step
+        push = dt * dt * self.loading.push
+        parts = np.column_stack([drive.displacement, drive.velocity, drive.acceleration, drive.pressure])
+        by_D, by_V, by_A = self.loading.free(rows)
+        by_state = np.hstack([by_D, by_V / dt, by_A / dt**2])
+        M = _product(self.M)
+        k = _product(self.k)
+        c = _product(self.c)
+        stages = tuple(zip(self.scheme.stages, self.solvers, strict=True))
+        force = push @ parts[0]
+        f = self._start(force)
+        D = np.zeros_like(f)
+        v = late_momentum(self.scheme, D, f)
+        ends = parts[len(stages) :: len(stages)]
+        observed_values = np.empty((len(by_state), len(ends)))
+        coming = iter(parts[1:])
+        for n in range(len(ends)):
+            v_0 = v
+            f_0 = f
+            force_0 = force
+            inertia_0 = M(f_0) if self.scheme.averages else f_0  # which am = 0 does not look at
+            for stage, solve in stages:
+                f_g = f
+                D = D + predictor(stage, v_0, f_0, v, f_g)
+                load = push @ next(coming)
+                force = load - c(velocity_corrector(stage, v_0, f_0, f_g, 0 * f)) - k(D)
+                f = solve(inertia_force(stage, force, force_0, inertia_0))
+                D = D + stage.alpha * f
+                v = velocity_corrector(stage, v_0, f_0, f_g, f)
+                if self.scheme.averages:
+                    force = load - c(v) - k(D)
+            observed_values[:, n] = by_state @ np.concatenate((D, v + self.scheme.lag * f, f))
+        return observed_values + self.loading.prescribed(rows) @ ends.T
+
     def _start(self, F: Array) -> Array:
         if self.scheme.start != "consistent":
-            return np.zeros_like(F)
-        if not self.system.told and 0 in self.system.openings:
+            return initial_acceleration(self.scheme, F)
+        if not self.system.prescribed and self.system.column.springs[0] is not None:
             raise ValueError("start: must be 'zero' where a spring lies between half-space and column")
         return _factorised(self.M)(F)
 
 
-def add_stage_before(stage: Scheme | Stage, D: Array, V: Array, V_g: Array, A_g: Array) -> tuple[Array, Array]:
-    """Return predicted D and V with what the end of the stage before, (V_g, A_g), adds."""
-    dt = stage.step
-    return D + dt * stage.d_g * V_g + dt**2 * stage.e_g * A_g, V + dt * stage.g_g * A_g
+def bands(matrix: csr_array) -> Array:
+    """Return the diagonals of a symmetric matrix, (WIDTH + 1, n), the main one first."""
+    n = matrix.shape[0]
+    rows = np.zeros((WIDTH + 1, n))
+    for offset in range(min(WIDTH + 1, n)):
+        rows[offset, : n - offset] = matrix.diagonal(-offset)
+    return rows
 
 
-def _product(matrix: Bands) -> Callable[[Array], Array]:
+def _product(matrix: Array) -> Callable[[Array], Array]:
     """Return the product of a matrix with vectors, by one call of BLAS."""
     from scipy.linalg.blas import dsbmv
 
-    rows = np.asfortranarray(matrix.rows)
+    rows = np.asfortranarray(matrix)
     return lambda x: np.asarray(dsbmv(WIDTH, 1.0, rows, x, lower=1))
 
 
-def _factorised(matrix: Bands) -> Callable[[Array], Array]:
+def _factorised(matrix: Array) -> Callable[[Array], Array]:
     """Return the solver of right-hand sides of a positive definite matrix, factorised now."""
     from scipy.linalg import cholesky_banded
     from scipy.linalg.lapack import dpbtrs
 
-    if not np.isfinite(matrix.rows).all():
+    if not np.isfinite(matrix).all():
         raise OverflowError("the matrix of the step is out of range")
-    factor = np.asfortranarray(cholesky_banded(matrix.rows, lower=True))
+    factor = np.asfortranarray(cholesky_banded(matrix, lower=True))
 
     def solve(right: Array) -> Array:
         solution: Array = dpbtrs(factor, right, lower=1)[0]

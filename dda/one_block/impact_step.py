@@ -30,7 +30,6 @@ from dda.one_block.unilateral_step import (
     length_of,
     mean_share,
 )
-from dda.scheme.newmark import acceleration_corrector
 from dda.stepping.driver import BaseRecord, Part, driver
 from dda.stepping.energy import ALGORITHMIC, CONTACT, DAMPING, GIVEN, IMPULSE
 
@@ -58,7 +57,7 @@ def advance(
     start = room.change  # h u
     multiply(block.inverse_mass, room.P, n, n, start)
     for i in range(n):
-        room.balance[i] = acceleration_corrector(length.F[i], length.k[i], state.D[i] + theta * start[i])
+        room.balance[i] = length.F[i] - length.k[i] * (state.D[i] + theta * start[i])
     multiply(length.inverse, room.balance, n, n, room.x)
     rate = room.slide
     for i in range(c):

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
 from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
-from dda.scheme import roots, spectral, viscous
-from dda.scheme.newmark import Scheme, effective_matrix, modal_step, viscosity
+from dda.scheme import roots, spectral
+from dda.scheme.newmark import Scheme, staged_step, step_matrices, viscosity
+from dda.scheme.stage import inertia_force, predictor, velocity_corrector
 
 
 @dataclass(frozen=True)
@@ -48,11 +50,15 @@ def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
     shares = (pushed / modal.frequencies) ** 2
     shares /= np.sum(shares)
     carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2
-    return tuple(
-        Mode(w, float(shares[i]), scalar_eigenvalues(scheme, w), float(carried[i]))
-        for i in np.argsort(-shares)
-        for w in [float(modal.frequencies[i])]
-    )
+    return modes_of(scheme, modal.frequencies, shares, carried, np.argsort(-shares))
+
+
+def modes_of(
+    scheme: Scheme, frequencies: Array, shares: Array, carried: Array, order: NDArray[np.intp]
+) -> tuple[Mode, ...]:
+    """Return modes in some order, with what a step of the scheme does to each."""
+    rows = zip(frequencies[order].tolist(), shares[order].tolist(), carried[order].tolist(), strict=True)
+    return tuple(Mode(w, share, scalar_eigenvalues(scheme, w), pressure) for w, share, pressure in rows)
 
 
 def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:
@@ -65,9 +71,9 @@ def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, compl
     if scheme.table is not None:
         return roots.eigenvalues(scheme, frequency * scheme.step)
     k = (frequency * scheme.step) ** 2
-    S = effective_matrix(scheme, 1.0, k)
-    a, c, _ = modal_step(scheme, S, k, 0.0, (1.0, 0.0, -k))
-    b, d, _ = modal_step(scheme, S, k, 0.0, (0.0, 1.0, 0.0 - viscosity(scheme, k)))
+    S = step_matrices(scheme, 1.0, k)
+    a, c, *_ = staged_step(scheme, S, k, [0.0], [0.0], (1.0, 0.0, -k, -k))
+    b, d, *_ = staged_step(scheme, S, k, [0.0], [0.0], (0.0, 1.0, 0.0 - viscosity(scheme, k), 0.0))
     root = np.sqrt(complex(((a - d) / 2) ** 2 + b * c))
     pair = sorted(((a + d) / 2 + root, (a + d) / 2 - root), key=abs, reverse=True)
     return complex(pair[0]), complex(pair[1])
@@ -93,14 +99,14 @@ def _operator(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
     D1 = D
     V1 = V
     A1 = A
-    for stage in scheme.stages:
-        S = effective_matrix(stage, M, K)
-        displacement = D1 + stage.d_u * scheme.gg * V + stage.d_g * V1 + stage.e_0 * A + stage.e_g * A1
-        velocity = scheme.gg * V + stage.g_0 * A + stage.g_g * A1
-        force = -K @ ((1 - stage.af) * displacement + stage.af * D) - C @ velocity - stage.am * (M @ A)
-        A1 = np.asarray(np.linalg.solve(S, force) / (1 - stage.am), float)
+    for stage, S in zip(scheme.stages, step_matrices(scheme, M, K), strict=True):
+        A_g = A1
+        displacement = D1 + predictor(stage, V, A, V1, A_g)
+        velocity = velocity_corrector(stage, V, A, A_g, 0 * A)
+        force = inertia_force(stage, -K @ displacement, -K @ D, M @ A) - C @ velocity
+        A1 = np.asarray(np.linalg.solve(S, force), float)
         D1 = displacement + stage.alpha * A1
-        V1 = velocity + stage.delta * A1
+        V1 = velocity_corrector(stage, V, A, A_g, A1)
     return np.vstack([D1, V1, A1])
 
 
@@ -108,7 +114,7 @@ def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
     """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
     k = scheme.step**2 * form.K
     F = scheme.step**2 * form.F
-    diagonal = effective_matrix(scheme.stages[-1], np.diag(form.M), k)
+    diagonal = step_matrices(scheme, np.diag(form.M), k)[-1]
     scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
     return scale[:, None] * form.M * scale, scale * k * scale, scale * F
 
@@ -117,10 +123,10 @@ def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the assembled step."""
     form = model.gap_form.reduced()
     M, k, F = _scaled(form, scheme)
-    S = effective_matrix(scheme.stages[-1], M, np.diag(k))
+    S = step_matrices(scheme, M, np.diag(k))[-1]
     x = np.linalg.solve(S, F)
     residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
-    unscaled = effective_matrix(scheme.stages[-1], model.mass, scheme.step**2 * model.stiffness)
+    unscaled = step_matrices(scheme, model.mass, scheme.step**2 * model.stiffness)[-1]
     reached = modes(model, scheme)
     omegas = np.array([mode.frequency * scheme.step for mode in reached])
     return Diagnostics(
@@ -147,8 +153,6 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
 
 def _predicted(scheme: Scheme, omegas: Array) -> float:
     """Return the largest |lambda| of some w dt from trace and determinant in closed form."""
-    if scheme.table is not None:
+    if scheme.table is not None or scheme.damped:
         return max(abs(complex(roots.roots(scheme, omega)[0])) for omega in omegas.tolist())
-    if scheme.damped:
-        return max(abs(viscous.eigenvalues(scheme, w / scheme.step)[0]) for w in omegas.tolist())
     return float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg)))

@@ -6,7 +6,7 @@ They are blocked (`dda.scheme.blocked`) unless the scheme grows or every saving 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -86,24 +86,27 @@ def solve(
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
         observed *= model.load_size
-        observed += 0.0
-        overflow = bound_overflow(observed, model.load_size)
+        size = model.load_size
         motion = model.load.motion
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
             instants = scheme.instants(steps)
             histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
             base_columns = carried(motion, step_times(scheme, steps))
             own = np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
+            bound_overflow(observed, size)
             observed += rows @ histories.T + own
-            overflow = bound_overflow(observed, 1.0)
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, observed, strict=True)),
+            size = 1.0
+    return linear_result(
+        scheme,
+        (began, ready),
+        columns,
+        observed,
+        size,
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
         solves=steps * len(scheme.stages) if stepped else 0,
-        notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked", *overflow),
+        notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked"),
     )
 
 
@@ -147,18 +150,20 @@ def solve_adaptive(
         ready = perf_counter()
         adapted = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
         observed = size * np.array([form.observers[name] @ modal.shapes @ adapted.modes for name in COLUMNS])
-        overflow = bound_overflow(observed, size)
-    extra_columns = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
-    every = dict(zip(COLUMNS, observed, strict=True)) | extra_columns
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns={name: every[name] for name in columns},
+    result = linear_result(
+        scheme,
+        (began, ready),
+        COLUMNS,
+        observed,
+        size,
         unknowns=len(form.unknowns),
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
         solves=steps,
-        notes=(*_savings(form), f"stepped: self-adaptive damping, discount at least {floor:g}", *overflow),
+        notes=(*_savings(form), f"stepped: self-adaptive damping, discount at least {floor:g}"),
     )
+    every = result.columns | dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
+    return replace(result, columns={name: every[name] for name in columns})
 
 
 def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
@@ -202,6 +207,36 @@ def check_damping(scheme: Scheme, moving: bool) -> None:
     """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
     if scheme.damped and moving:
         raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
+
+
+def linear_result(
+    scheme: Scheme,
+    clock: tuple[float, float],
+    names: Sequence[str],
+    observed: Array,
+    size: float,
+    notes: tuple[str, ...] = (),
+    **work: Any,
+) -> Result:
+    """Return the result of steps of which none may fail; a column is infinite from its first overflow on.
+
+    Parameters
+    ----------
+    clock
+        When the set-up began, and the steps [s].
+    observed : (columns, steps) array
+        What the named columns hold; changed where it overflows.
+    size
+        Size of the loads, without which nothing moves.
+    """
+    observed += 0.0
+    overflow = bound_overflow(observed, size)
+    return Result(
+        **times_of(scheme, observed.shape[1], *clock),
+        columns=dict(zip(names, observed, strict=True)),
+        notes=(*notes, *overflow),
+        **work,
+    )
 
 
 def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from time import perf_counter
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, bound_overflow, check_request, times_of
+from dda.one_block.solution import Result, check_request, linear_result
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme.newmark import Scheme
 
@@ -63,15 +63,16 @@ def solve_textbook(
         states = recursion.run(steps)
     still = np.zeros(steps)
     observed = np.array([states[:, _STATE[name]] if name in _STATE else still for name in columns])
-    notes = bound_overflow(observed, model.load.pressure)
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, observed, strict=True)),
+    return linear_result(
+        scheme,
+        (began, ready),
+        columns,
+        observed,
+        model.load.pressure,
         unknowns=3,
         nonzeros=int(np.count_nonzero(recursion.K)),
         factorisations=1,
         solves=steps,
-        notes=notes,
     )
 
 

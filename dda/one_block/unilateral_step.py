@@ -10,7 +10,7 @@ k0 = h^2 K0, F for h^2 F, mu = h^2 lambda, momentum P = h M V and inertia force 
 so that S0 is factorised once for all contact states and the flexibility of the contacts is
 C = alpha h^2 B S0^-1 B'. A closed corner's gap is -N/p, set on acceptance: it is no sum of increments.
 
-Every scheme is such a step, or two of them, with other numbers (`dda.scheme.stages`): where it balances the forces
+Every scheme is such a step, or two of them, with other numbers (`dda.scheme.stage`): where it balances the forces
 between the ends of a step, those of contact are averaged as the others are, (1 - af) lambda1 + af lambda0. Of a scheme
 of two stages each has an open-close iteration of its own, from the end of the one before; gg enters once.
 
@@ -41,7 +41,6 @@ from dda.contact.dashpot import damped, set_gaps
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot, invert, multiply, quadratic, zeros
 from dda.contact.kernel import (
     FOUND,
-    NONE,
     TO_OWN,
     Contacts,
     Flexibility,
@@ -60,20 +59,10 @@ from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 from dda.model.load import load_share
 from dda.one_block.unilateral_form import U_INDEX, UnilateralForm
-from dda.scheme.newmark import (
-    Scheme,
-    acceleration_corrector,
-    implicit_weight,
-    inertia_force,
-    initial_acceleration,
-    late_momentum,
-    plain_stage,
-    predictor,
-    velocity_corrector,
-)
-from dda.scheme.stages import Stage
-from dda.stepping.driver import BaseRecord, Part, base_displacement, driver
-from dda.stepping.energy import ALGORITHMIC, DAMPING, GIVEN, add_contact_losses, bulk_loss
+from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
+from dda.stepping.driver import BaseRecord, Part, base_displacement, driver, staged
+from dda.stepping.energy import ALGORITHMIC, GIVEN, accounted, add_contact_losses, bulk_loss
 
 NEWMARK = "newmark"
 IMPLICIT = "implicit"
@@ -143,7 +132,7 @@ class BlockEquations(NamedTuple):
     pass_limit: int  # its passes in a step
     restitution: float  # of impacts [-]
     rule: int  # place in RULES; that of Newmark's where the contact force enters as there
-    newmark: bool  # whether the scheme is Newmark's
+    by_balance: bool  # whether the algorithm loses what the others leave: of another scheme than Newmark's
     stages: int  # 1, or 2: `first` and `last`
     lag: float  # by how much of a step P is older than D
     gg: float
@@ -192,7 +181,7 @@ def block_equations(
         pass_limit=pass_limit,
         restitution=restitution,
         rule=0 if rule == AUGMENTED else RULES.index(rule),
-        newmark=scheme.table is None,
+        by_balance=scheme.table is not None,
         stages=len(rooms),
         lag=float(scheme.lag),
         gg=scheme.gg,
@@ -362,46 +351,32 @@ def solve_augmented(
     return outcome, solves
 
 
-def stepping(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
-    """Return what makes a step whose contacts are found by `solve`, one of the functions above."""
+def stage_with(solve: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a stage whose contacts are found by `solve`, one of the functions above."""
 
-    def advance(
+    def make_stage(
         block: BlockEquations,
         shear_law: Shear,
+        stage: BlockStage,
         state: BlockState,
+        before: BlockState,
         after: BlockState,
         base: BaseRecord | None,
         part: Part,
     ) -> tuple[int, int]:
-        """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-        ratio = part.ratio
-        if block.lag != 0 and ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
-            return NONE, 0
-        stages = block.stages
-        total = 0
-        before = state
-        for number in range(1, stages + 1):
-            stage = block.last if number == stages else block.first
-            target = after if number == stages else block.between
-            length = length_of(block, shear_law, stage, ratio)
-            if number == 1:
-                begin_step(block, state, length)
-            free_stage(block, shear_law, stage, length, before, base, part)
-            outcome, solves = solve(block, shear_law, before.contacts, length, target.contacts)
-            total += solves
-            if outcome != FOUND:
-                return outcome, total
-            accept(block, shear_law, stage, length, before, target)
+        """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
+        length = length_of(block, shear_law, stage, part.ratio)
+        begin_step(block, state, length)
+        free_stage(block, shear_law, stage, length, before, base, part)
+        outcome, solves = solve(block, shear_law, before.contacts, length, after.contacts)
+        if outcome == FOUND:
+            accept(block, shear_law, stage, length, before, after)
             if shear_law is not None:
-                refer(block, before.contacts, target)
-                copy(target.contacts.slipped, stage.slipped)
-            before = target
-        if shear_law is not None and stages == 2:
-            for i in range(len(after.contacts.slipped)):
-                after.contacts.slipped[i] += block.first.slipped[i]
-        return FOUND, total
+                refer(block, before.contacts, after)
+                copy(after.contacts.slipped, stage.slipped)
+        return outcome, solves
 
-    return advance
+    return make_stage
 
 
 def begin_step(block: BlockEquations, state: BlockState, length: StepLength) -> None:
@@ -438,16 +413,10 @@ def free_stage(
             length.F[i] = share * length.numbers[2] * length.numbers[2] * block.load[i]
     P = room.P
     f = room.f
-    alpha = numbers.alpha
-    d_u = numbers.d_u
-    d_g = numbers.d_g
-    e_g = numbers.e_g
     for i in range(n):
-        force = acceleration_corrector(length.F[i], length.k[i], before.D[i])
-        force = inertia_force(numbers, force, room.force_0[i], f[i])
-        balance = predictor(numbers, d_u * P[i], f[i])
-        balance += d_g * (ratio * before.P[i]) + e_g * (ratio * ratio * before.f[i])
-        room.balance[i] = balance + alpha * force
+        force = inertia_force(numbers, length.F[i] - length.k[i] * before.D[i], room.force_0[i], f[i])
+        balance = predictor(numbers, P[i], f[i], ratio * before.P[i], ratio * ratio * before.f[i])
+        room.balance[i] = balance + numbers.alpha * force
     if base is not None:
         interval = Part(part.begun + ratio * numbers.begin, ratio * (numbers.end - numbers.begin))
         base_displacement(base, block.step, interval, room.start, stage.base)
@@ -498,9 +467,9 @@ def motion_at_end(
     room = block.room
     numbers = stage.numbers
     ratio = length.numbers[0]
-    force = acceleration_corrector(length.F[i], length.k[i], D) + pressed
+    force = length.F[i] - length.k[i] * D + pressed
     f1 = inertia_force(numbers, force, room.force_0[i], room.f[i])
-    P1 = velocity_corrector(numbers, room.P[i], room.f[i], f1) + numbers.g_g * (ratio * ratio * before.f[i])
+    P1 = velocity_corrector(numbers, room.P[i], room.f[i], ratio * ratio * before.f[i], f1)
     return force, f1, P1
 
 
@@ -598,23 +567,9 @@ def stays(before: Contacts, after: Contacts, i: int) -> bool:
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    block: BlockEquations, shear_law: Shear, state: BlockState, after: BlockState, part: Part, sums: Vector
-) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says."""
-    length = length_of(block, shear_law, block.last, part.ratio)
-    gg = length.numbers[1]
-    late_start = block.lag != 0 and part.begun == 0  # P is what a discount leaves as the momentum of half a step before
-    if gg != 1 and not late_start:
-        squares = quadratic(block.inverse_mass, state.P, len(block.K))
-        sums[DAMPING] += (1 - gg * gg) * squares / 2 / (block.step * block.step)
-    before = state
-    if block.stages == 2:
-        before = block.between
-        account_stage(block, shear_law, block.first, state, before, part, sums)
-    account_stage(block, shear_law, block.last, before, after, part, sums)
-    if block.newmark:
-        add_algorithmic_loss(block, length, state, after, part, sums)
+def kinetic_energy(block: BlockEquations, state: BlockState) -> float:
+    """Return the kinetic energy of the momentum that is carried [J]."""
+    return quadratic(block.inverse_mass, state.P, len(block.K)) / 2 / (block.step * block.step)
 
 
 def account_stage(
@@ -633,7 +588,7 @@ def account_stage(
     """
     room = block.room
     numbers = stage.numbers
-    late = numbers.delta if block.newmark else 0.5
+    late = 0.5 if block.by_balance else numbers.delta
     for i in range(len(block.K)):
         room.change[i] = after.D[i] - before.D[i]
     if block.rule != 2:
@@ -666,26 +621,22 @@ def mean_share(block: BlockEquations, numbers: Stage, part: Part, late: float) -
     return (1 - late) * begin + late * end
 
 
-def add_algorithmic_loss(
-    block: BlockEquations, length: StepLength, state: BlockState, after: BlockState, part: Part, sums: Vector
-) -> None:
+def add_algorithmic_loss(block: BlockEquations, state: BlockState, after: BlockState, part: Part, sums: Vector) -> None:
     """Add what Newmark's step loses [J] beside the contacts."""
     room = block.room
     alpha = block.last.numbers.alpha
     delta = block.last.numbers.delta
     n = len(block.K)
-    h2 = length.numbers[2] * length.numbers[2]
+    h = block.step * part.ratio
     dt2 = block.step * block.step
     stiff = 0.0
     for i in range(n):
         room.change[i] = after.D[i] - state.D[i]
         stiff += room.change[i] * room.change[i] * block.K[i]
     if part.begun == 0:  # A0 may be any; later M A = F - K D + B' lambda
-        share = load_share(block.ramp, 0.0)
         for i in range(n):
-            missing = share * h2 * block.load[i] - length.k[i] * state.D[i] - part.ratio * part.ratio * state.f[i]
             moved = room.change[i] + dot(block.translation[i], block.last.base, 2)
-            sums[ALGORITHMIC] += (1 - delta) * moved * missing / h2
+            sums[ALGORITHMIC] += (1 - delta) * moved * (state.force[i] - state.f[i]) / dt2
     kinetic = 0.0
     kinetic_of_change = 0.0
     if alpha != delta / 2:
@@ -694,7 +645,7 @@ def add_algorithmic_loss(
         stored = quadratic(block.inverse_mass, after.f, n) - quadratic(block.inverse_mass, state.f, n)
         kinetic = stored / 2 / dt2 / dt2
         kinetic_of_change = quadratic(block.inverse_mass, room.change, n) / 2
-    sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic, kinetic_of_change)
+    sums[ALGORITHMIC] += bulk_loss(alpha, delta, h * h, stiff, kinetic, kinetic_of_change)
 
 
 def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> bool:
@@ -714,8 +665,9 @@ def keep(block: BlockEquations, state: BlockState, rows: Array, number: int) -> 
     return math.isfinite(total)
 
 
-advance = stepping(solve_at_end)
+advance = staged(stage_with(solve_at_end))
+account = accounted(kinetic_energy, account_stage, add_algorithmic_loss)
 make_steps = driver(advance, account, keep)
-make_conserving_steps = driver(stepping(solve_conserving), account, keep)
-make_damped_steps = driver(stepping(solve_damped), account, keep)
-make_augmented_steps = driver(stepping(solve_augmented), account, keep)
+make_conserving_steps = driver(staged(stage_with(solve_conserving)), account, keep)
+make_damped_steps = driver(staged(stage_with(solve_damped)), account, keep)
+make_augmented_steps = driver(staged(stage_with(solve_augmented)), account, keep)

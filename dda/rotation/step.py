@@ -15,7 +15,7 @@ stays of second order, and at delta = 1 a force does the work lambda times the e
 small motion, no energy is gained by contact however far the block turns. First-order rotation is linear in a step:
 its chord is the derivative at both ends. Its outline grows, and with the area det Q inertia and stiffness do.
 
-Other schemes take one stage or two of this form (`dda.scheme.stages`) and forces that act as at the end of each: with
+Other schemes take one stage or two of this form (`dda.scheme.stage`) and forces that act as at the end of each: with
 B_1, as at delta = 1/2.
 """
 
@@ -48,10 +48,10 @@ from dda.contact.kernel import (
 from dda.contact.unilateral import OPEN, Unilateral
 from dda.model.arrays import Array
 from dda.rotation.body import EXACT, Body, Turn, directions, place, turn
-from dda.scheme.newmark import Scheme, implicit_weight, plain_stage
-from dda.scheme.stages import Stage
-from dda.stepping.driver import BaseRecord, Part, base_at, driver
-from dda.stepping.energy import DAMPING, add_contact_losses
+from dda.scheme.newmark import Scheme
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
+from dda.stepping.driver import BaseRecord, Part, base_at, driver, staged
+from dda.stepping.energy import accounted, add_contact_losses
 
 ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
@@ -158,6 +158,7 @@ class RollingEquations(NamedTuple):
     exact: bool  # or first-order rotation
     stages: int  # 1, or 2: `first` and `last`
     delta: float  # of Newmark's, 1/2 of another scheme: weight of the forces at the end of each stage
+    by_balance: bool  # True: what the algorithm loses is what the others leave
     lag: float  # by how much of a step V is older than q
     gg: float
     step: float  # [s]
@@ -197,6 +198,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
         exact=setting.rotation == EXACT,
         stages=len(stages),
         delta=scheme.delta if scheme.table is None else 0.5,
+        by_balance=True,
         lag=float(scheme.lag),
         gg=scheme.gg,
         step=scheme.step,
@@ -220,7 +222,7 @@ def rolling_equations(setting: Setting, scheme: Scheme) -> RollingEquations:
     return equations
 
 
-def stage_room(stage: Scheme | Stage, corners: int) -> RollingStage:
+def stage_room(stage: Stage, corners: int) -> RollingStage:
     """Return a stage, with room for what belongs to it."""
     lengths = [StepMatrices(*zeros(3, (6, 6), (3, 3), (6, 6), (6, 6), (6, 6))) for _ in range(2)]
     return RollingStage(plain_stage(stage), float(implicit_weight(stage)), *lengths, *zeros(corners, corners, 2))
@@ -294,37 +296,12 @@ def matrices_of(body: RollingEquations, stage: RollingStage, Q: Matrix, ratio: f
     return matrices
 
 
-def advance(
-    body: RollingEquations,
-    shear_law: Shear,
-    state: RollingState,
-    after: RollingState,
-    base: BaseRecord | None,
-    part: Part,
-) -> tuple[int, int]:
-    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-    if body.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
-        return NONE, 0
-    room = body.room
-    copy(state.V, room.V)
-    copy(state.A, room.A_0)
-    copy(state.R, room.R)
-    if body.stages == 1:
-        return make_stage(body, shear_law, body.last, state, after, base, part)
-    outcome, solves = make_stage(body, shear_law, body.first, state, body.between, base, part)
-    if outcome != FOUND:
-        return outcome, solves
-    outcome, further_solves = make_stage(body, shear_law, body.last, body.between, after, base, part)
-    for i in range(len(body.xi)):
-        after.contacts.slipped[i] += body.first.slipped[i]
-    return outcome, solves + further_solves
-
-
 def make_stage(
     body: RollingEquations,
     shear_law: Shear,
     stage: RollingStage,
     state: RollingState,
+    before: RollingState,
     after: RollingState,
     base: BaseRecord | None,
     part: Part,
@@ -334,13 +311,16 @@ def make_stage(
     Of a convex outline two corners at most touch a plane. Which they may be is guessed from the stage without contact,
     and it is made again with those that turn out to be the lowest, until no other one has crossed the plane.
     """
-    matrices = matrices_of(body, stage, state.Q, part.ratio)
-    predict(body, stage, matrices, state, base, part)
     room = body.room
+    copy(state.V, room.V)
+    copy(state.A, room.A_0)
+    copy(state.R, room.R)
+    matrices = matrices_of(body, stage, before.Q, part.ratio)
+    predict(body, stage, matrices, before, base, part)
     near = nearest(body, room.near, REACH * body.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(body, shear_law, stage, matrices, state, after, near)
+        outcome, solves = settle(body, shear_law, stage, matrices, before, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(body, after):
             return outcome, total
@@ -351,6 +331,9 @@ def make_stage(
             if room.tried[k] == pair_number(room.at, near):
                 return NONE, total
     return NONE, total
+
+
+advance = staged(make_stage)
 
 
 def pair_number(at: States, near: int) -> int:
@@ -382,9 +365,9 @@ def predict(
     hold(body, matrices, state.q, room.held)
     length = numbers.end - numbers.begin
     for i in range(6):
-        room.guess[i] = length * (gg * h * room.V[i]) + length * length * (h * h / 2 * room.A_0[i])
-        room.new[i] = numbers.d_u * (gg * h * room.V[i]) + h * h * numbers.e_0 * room.A_0[i]
-        room.new[i] += numbers.d_g * h * state.V[i] + h * h * numbers.e_g * state.A[i]
+        moving = gg * h * room.V[i]
+        room.guess[i] = length * moving + length * length * (h * h / 2 * room.A_0[i])
+        room.new[i] = predictor(numbers, moving, h * h * room.A_0[i], h * state.V[i], h * h * state.A[i])
         known = numbers.af * room.R[i] - numbers.am * dot(matrices.M[i], room.A_0, 6)
         room.held[i] += known / (1 - numbers.af)
     for i in range(6):
@@ -638,11 +621,11 @@ def accept(
         room.push[i] += room.held[i]
     for i in range(6):
         after.R[i] = room.push[i]
-        known = numbers.af * dot(matrices.accelerating[i], room.R, 6) - numbers.am * room.A_0[i]
-        after.A[i] = ((1 - numbers.af) * dot(matrices.accelerating[i], room.push, 6) + known) / (1 - numbers.am)
-        gained = h * (numbers.g_0 * room.A_0[i] + numbers.delta * after.A[i])
-        gained += h * numbers.g_g * state.A[i]
-        after.V[i] = matrices.numbers[1] * room.V[i] + gained
+        end = dot(matrices.accelerating[i], room.push, 6)
+        start = dot(matrices.accelerating[i], room.R, 6)
+        after.A[i] = inertia_force(numbers, end, start, room.A_0[i])
+        moving = matrices.numbers[1] * room.V[i]
+        after.V[i] = velocity_corrector(numbers, moving, h * room.A_0[i], h * state.A[i], h * after.A[i])
     place_corners(body, room.q, room.turn.end, room.base, room.after)
     for i in range(len(body.xi)):
         contacts.gap[i] = room.after[i][1]
@@ -655,34 +638,28 @@ def accept(
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    body: RollingEquations, shear_law: Shear, state: RollingState, after: RollingState, part: Part, sums: Vector
-) -> None:
-    """Add what an accepted part of a step slips, gives and loses; what the algorithm loses is the rest."""
-    gg = body.gg**part.ratio
-    h = body.step * part.ratio
-    if gg != 1 and not (body.lag != 0 and part.begun == 0):
-        sums[DAMPING] += (1 - gg * gg) * kinetic(body, state)
-    before = state.contacts
-    if body.stages == 2:
-        before = body.between.contacts
-        add_stage_losses(body, shear_law, body.first, state.contacts, before, h, sums)
-    add_stage_losses(body, shear_law, body.last, before, after.contacts, h, sums)
-
-
-def add_stage_losses(
+def account_stage(
     body: RollingEquations,
     shear_law: Shear,
     stage: RollingStage,
-    before: Contacts,
-    after: Contacts,
-    h: float,
+    before: RollingState,
+    after: RollingState,
+    part: Part,
     sums: Vector,
 ) -> None:
-    """Add what the contacts lose in a stage of a step of length h."""
-    length = h * (stage.numbers.end - stage.numbers.begin)
+    """Add what a stage slips, gives and loses by its contacts; what the algorithm loses is the rest."""
     add_contact_losses(
-        body.law, shear_law, before, after, stage.slipped, stage.slide, stage.moved, body.delta, length, 1.0, sums
+        body.law,
+        shear_law,
+        before.contacts,
+        after.contacts,
+        stage.slipped,
+        stage.slide,
+        stage.moved,
+        body.delta,
+        body.step * part.ratio * (stage.numbers.end - stage.numbers.begin),
+        1.0,
+        sums,
     )
 
 
@@ -695,6 +672,10 @@ def kinetic(body: RollingEquations, state: RollingState) -> float:
         for j in range(2, 6):
             turning += state.V[i] * body.M[i][j] * state.V[j]
     return float((growth * moving + growth * growth * turning) / 2)
+
+
+def no_loss_beside(body: RollingEquations, state: RollingState, after: RollingState, part: Part, sums: Vector) -> None:
+    """Add nothing: the balance of energy has it."""
 
 
 def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) -> bool:
@@ -713,4 +694,5 @@ def keep(body: RollingEquations, state: RollingState, rows: Array, number: int) 
     return math.isfinite(total)
 
 
+account = accounted(kinetic, account_stage, no_loss_beside)
 make_steps = driver(advance, account, keep)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.scheme.newmark import Scheme, effective_matrix, initial_acceleration, modal_step
+from dda.scheme.newmark import Scheme, rest, staged_step, step_matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,10 +49,9 @@ def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, f
     dt = scheme.step
     k = (dt * frequencies) ** 2
     F = dt * dt * load
-    S = effective_matrix(scheme, np.ones_like(k), k)
-    D = np.zeros_like(k)
-    P = np.zeros_like(k)
-    f = initial_acceleration(scheme, F)
+    S = step_matrices(scheme, np.ones_like(k), k)
+    still = 0 * k
+    state = rest(scheme, F, still, k)
     modes = np.empty((len(k), steps))
     discount = np.empty(steps)
     loss = np.empty(steps)
@@ -60,8 +59,8 @@ def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, f
     for n in range(steps):
         discount[n] = next_discount(before, now, floor)
         loss[n] = (1 - discount[n] ** 2) * (now / dt) ** 2 / 2
-        D, P, f = modal_step(replace(scheme, gg=float(discount[n])), S, k, F, (D, P, f))
-        modes[:, n] = D
+        state = staged_step(replace(scheme, gg=float(discount[n])), S, k, [F], [still], state)
+        modes[:, n] = state[0]
         before = now
-        now = math.hypot(*P.tolist())
+        now = math.hypot(*state[1].tolist())
     return Adapted(modes, discount, np.cumsum(loss))

@@ -23,7 +23,7 @@ from dda.model.arrays import Array
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
 from dda.scheme.roots import state_matrix
-from dda.scheme.stages import Stage, Table
+from dda.scheme.stage import Stage, Table
 
 BLOCK = 1024  # most steps in a row: its products stay in the cache
 PLACES = 192  # binary places of a map's entries: one from 1e-30 on keeps far more digits than a double
@@ -122,7 +122,7 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
 
 
 def with_all_digits(scheme: Scheme) -> Scheme:
-    """Return the scheme in decimal numbers, which `modal_step` takes in place of doubles."""
+    """Return the scheme in decimal numbers, which `staged_step` takes in place of doubles."""
     fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
     if scheme.table is not None:
         rows: list[list[Any]] = [[Decimal(number) for number in stage] for stage in scheme.table.stages]
@@ -161,7 +161,7 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
     one: Any = Decimal(1)
     with localcontext(_DIGITS):
         k = (frequency * exact.step) ** 2
-        matrices = [newmark.effective_matrix(stage, one, k) for stage in exact.stages]
+        matrices = newmark.step_matrices(exact, one, k)
         loads = [k for _ in matrices]
         still = [zero for _ in matrices]
 
@@ -169,10 +169,9 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
             D, P, *_ = newmark.staged_step(exact, matrices, k, loads, still, (D, P, f, f))
             return int(D * _ONE), int(P * _ONE)
 
-        unstrained = newmark.acceleration_corrector(k, k, zero)
-        e, g = step(zero, zero, unstrained)
-        a, c = step(one, zero, newmark.acceleration_corrector(k, k, one))
-        b, d = step(zero, one, unstrained)
+        e, g = step(zero, zero, k)
+        a, c = step(one, zero, zero)
+        b, d = step(zero, one, k)
         first = step(*newmark.rest(exact, k, zero, k)[:3])
         return (a - e, b - e, c - g, d - g, e, g), first
 

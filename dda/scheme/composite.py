@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from dda.scheme.generalised_alpha import check_radius
-from dda.scheme.stages import Stage, Table
+from dda.scheme.stage import Stage, Table
 
 
 def composite(rho_inf: float = 0.0, split: float | None = None) -> Table:

@@ -12,7 +12,7 @@ am and af weigh the start of the step, as in Chung and Hulbert's paper; OpenSees
 
 from __future__ import annotations
 
-from dda.scheme.stages import Stage, Table
+from dda.scheme.stage import Stage, Table
 
 
 def generalised_alpha(am: float, af: float) -> Table:

@@ -8,7 +8,7 @@ the first half step from the velocity at t = 0 with a_0 / 2. No equation is solv
 
 from __future__ import annotations
 
-from dda.scheme.stages import Stage, Table
+from dda.scheme.stage import Stage, Table
 
 
 def leapfrog() -> Table:

@@ -10,7 +10,7 @@ from dda.scheme.composite import composite
 from dda.scheme.generalised_alpha import chung_hulbert, hilber_hughes_taylor, wood_bossak_zienkiewicz
 from dda.scheme.leapfrog import leapfrog
 from dda.scheme.newmark import NEWMARK, Scheme, Start
-from dda.scheme.stages import Table
+from dda.scheme.stage import Table
 
 TABLES: dict[str, Callable[..., Table]] = {
     "chung-hulbert": chung_hulbert,

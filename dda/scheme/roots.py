@@ -1,4 +1,4 @@
-r"""Roots of one step of a mode, and stability limits, of any scheme without viscous damping.
+r"""Roots of one step of a mode, and stability limits, of any scheme.
 
 For z = 1 + y a scheme of one stage has, with Omega = w dt,
 
@@ -6,7 +6,12 @@ For z = 1 + y a scheme of one stage has, with Omega = w dt,
         + Omega^2 (1 + (1 - af) y) [gg d_u (g_0 + delta + delta y) + (e_0 + alpha + alpha y) (y + 1 - gg)] = 0,
 
 where g_0 + delta = 1; one root is z = 0 where am = af = 0. One of two stages maps (D, dt V) by a 2 x 2 matrix I + B,
-and y^2 - tr(B) y + det(B) = 0. Nothing is subtracted from one, so that slow modes keep their digits.
+and y^2 - tr(B) y + det(B) = 0. Newmark's has under viscous damping, with e = dt (a0 + a1 w^2),
+
+    (1 + alpha Omega^2 + delta e) y^2 + [1 - gg + e + Omega^2 (alpha + 1/2 + gg (delta - alpha))] y
+        + Omega^2 (1 + gg)/2 = 0.
+
+Nothing is subtracted from one, so that slow modes keep their digits.
 """
 
 from __future__ import annotations
@@ -17,8 +22,9 @@ import math
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.scheme.newmark import Scheme
+from dda.scheme.newmark import Scheme, step_matrices, viscosity
 from dda.scheme.spectral import ComplexArray, critical_omega
+from dda.scheme.stage import effective_matrix, predictor, velocity_corrector
 
 
 def state_matrix(scheme: Scheme, k: float) -> Array:
@@ -30,11 +36,11 @@ def state_matrix(scheme: Scheme, k: float) -> Array:
         f1 = f
         moved = 0.0
         for stage in scheme.stages:
-            balance = stage.d_u * scheme.gg * P + stage.e_0 * f + stage.d_g * P1 + stage.e_g * f1
-            gained = stage.g_g * f1
-            moved += (balance - stage.alpha * k * (D + moved)) / (1 + stage.alpha * k)
+            f_g = f1
+            balance = predictor(stage, P, f, P1, f_g)
+            moved += (balance - stage.alpha * k * (D + moved)) / effective_matrix(stage, 1.0, k)
             f1 = -k * (D + moved)
-            gained += stage.g_0 * f + stage.delta * f1
+            gained = velocity_corrector(stage, 0.0, f, f_g, f1)
             P1 = scheme.gg * P + gained
         change[:, column] = moved, gained - (1 - scheme.gg) * P
     return change
@@ -43,6 +49,11 @@ def state_matrix(scheme: Scheme, k: float) -> Array:
 def polynomial(scheme: Scheme, omega: float) -> Array:
     """Return the coefficients of y = z - 1, highest power first, of the roots that are not z = 0 for any w dt."""
     k = omega * omega
+    if scheme.damped:
+        e = viscosity(scheme, k)
+        slope = 1 - scheme.gg + e + k * (scheme.alpha + 0.5 + scheme.gg * (scheme.delta - scheme.alpha))
+        (leading,) = step_matrices(scheme, 1.0, k)
+        return np.array([1.0, slope / leading, k * (1 + scheme.gg) / 2 / leading])
     if not scheme.averages:
         change = state_matrix(scheme, k)
         return np.array([1.0, -np.trace(change), change[0, 0] * change[1, 1] - change[0, 1] * change[1, 0]])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.contact.dense import Vector, zeros
-from dda.contact.kernel import FAILURES, FOUND, UNREACHED, Contacts, Shear
+from dda.contact.kernel import FAILURES, FOUND, NONE, UNREACHED, Contacts, Shear
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.stepping.energy import SUMS
@@ -108,6 +108,41 @@ def base_at(base: BaseRecord, time: float, out: Vector) -> None:
             rise = base.displacement[low + 1][axis] - out[axis]
             slope = rise / (instants[low + 1] - instants[low])
             out[axis] = slope * (time - instants[low]) + out[axis]
+
+
+def staged(make_stage: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a part of a step, stage by stage, as `driver` takes it.
+
+    Parameters
+    ----------
+    make_stage
+        Makes a stage from `before`, the end of the stage before, to `after`, where the step began at `state`:
+        (body, shear_law, stage, state, before, after, base, part) -> outcome and number of solves. The body has
+        `stages`, one or two of them, `first` and `last`, and `between`, room for the end of the first one.
+    """
+
+    def advance(
+        body: Any, shear_law: Shear, state: Any, after: Any, base: BaseRecord | None, part: Part
+    ) -> tuple[int, int]:
+        """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
+        if body.lag != 0 and part.ratio != 1.0:  # the velocity of half a step before goes on in equal steps only
+            return NONE, 0
+        total = 0
+        before = state
+        for number in range(1, body.stages + 1):
+            stage = body.last if number == body.stages else body.first
+            target = after if number == body.stages else body.between
+            outcome, solves = make_stage(body, shear_law, stage, state, before, target, base, part)
+            total += solves
+            if outcome != FOUND:
+                return outcome, total
+            before = target
+        if body.stages == 2:
+            for i in range(len(after.contacts.slipped)):
+                after.contacts.slipped[i] += body.between.contacts.slipped[i]
+        return FOUND, total
+
+    return advance
 
 
 def driver(

@@ -16,7 +16,8 @@ F - K0 D0 is algorithmic, too. Of other schemes the algorithmic loss is what the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,39 @@ ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE, CONTACT = range(7)  #
 SUMS = 7
 DASHPOT = "dashpot"  # names of the sum `CONTACT` among the energies, where there are dashpots, or impacts
 IMPACT = "impact"
+
+
+def accounted(
+    kinetic: Callable[..., float], account_stage: Callable[..., None], add_algorithmic_loss: Callable[..., None]
+) -> Callable[..., None]:
+    """Return what adds the losses of a part of a step to the sums, as `dda.stepping.driver.driver` takes it.
+
+    Parameters
+    ----------
+    kinetic
+        Returns the kinetic energy of the velocities that a body carries [J]: (body, state).
+    account_stage
+        Adds what a stage loses beside kinetic damping: (body, shear_law, stage, before, after, part, sums).
+    add_algorithmic_loss
+        Adds what the step loses beside the contacts, unless the others leave it of the balance (`by_balance` of the
+        body): (body, state, after, part, sums).
+    """
+
+    def account(body: Any, shear_law: Shear, state: Any, after: Any, part: Any, sums: Vector) -> None:
+        """Add what an accepted part of a step loses, and what loads and base give [J]."""
+        discount = body.gg**part.ratio
+        late_start = body.lag != 0 and part.begun == 0  # a discount leaves of P the momentum of half a step before
+        if discount != 1 and not late_start:
+            sums[DAMPING] += (1 - discount * discount) * kinetic(body, state)
+        before = state
+        if body.stages == 2:
+            before = body.between
+            account_stage(body, shear_law, body.first, state, before, part, sums)
+        account_stage(body, shear_law, body.last, before, after, part, sums)
+        if not body.by_balance:
+            add_algorithmic_loss(body, state, after, part, sums)
+
+    return account
 
 
 def add_contact_losses(

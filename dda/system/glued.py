@@ -20,11 +20,11 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.model.block import Block, displacement_rows
 from dda.model.checks import check_count
-from dda.one_block.modes import Mode, scalar_eigenvalues
-from dda.one_block.solution import Result, bound_overflow, times_of
+from dda.one_block.modes import Mode, modes_of
+from dda.one_block.solution import Result
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, Point, shared_edges
-from dda.system.solution import Stepper, lowest_modes
+from dda.system.solution import lowest_modes, stepped
 from dda.system.system import BlockSystem, Equations, SurfaceLoad
 
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
@@ -230,11 +230,7 @@ class GluedBlocks:
         squares, shapes, _ = lowest_modes(equations, equations.at_rest, count)
         D = self.rest.ravel() / self.system.load_size
         shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ D))
-        order = np.argsort(squares)
-        frequencies = np.sqrt(squares).tolist()
-        return tuple(
-            Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), 0.0) for i in order
-        )
+        return modes_of(scheme, np.sqrt(squares), shares, 0 * shares, np.argsort(squares))
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
         """Return what some rows observe of the blocks from rest, at each step.
@@ -247,22 +243,9 @@ class GluedBlocks:
         check_count(steps=steps)
         began = perf_counter()
         equations = self.system.equations
-        stepper = Stepper(equations, scheme)
-        ready = perf_counter()
         none = np.zeros((len(rows), len(equations.pressure)))
-        with np.errstate(all="ignore"):
-            still = np.zeros((1 + len(scheme.stages) * steps, 2))
-            observed = stepper.run(steps, (rows, none), still) * self.system.load_size
-            overflow = bound_overflow(observed, self.system.load_size)
-        return Result(
-            **times_of(scheme, steps, began, ready),
-            columns={str(number): values for number, values in enumerate(observed)},
-            unknowns=len(equations.F),
-            nonzeros=stepper.stages[-1].factor.nonzeros,
-            factorisations=len(stepper.stages),
-            solves=steps * sum(1 + solver.corrections for solver in stepper.stages),
-            notes=overflow,
-        )
+        names = [str(number) for number in range(len(rows))]
+        return stepped(self.system, equations, scheme, steps, names, (rows, none), began)
 
 
 def _without_rigid_motion(system: BlockSystem) -> Equations:

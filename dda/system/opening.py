@@ -9,7 +9,7 @@ a sub-block has a contact point at each end, with its share p l / a of the corne
     f1 = F - k D1 - B' mu1 + dt^2 Bc' lambda,
 
 so that one factorisation, and as many solves with it as there are forces, serve every contact state. Other schemes
-take one stage or two of this form (`dda.scheme.stages`), each with its own contacts.
+take one stage or two of this form (`dda.scheme.stage`), each with its own contacts.
 """
 
 from __future__ import annotations
@@ -18,13 +18,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import NamedTuple
 
 import numpy as np
 
 from dda.contact.kernel import (
     FOUND,
-    NONE,
     TO_PAIR,
     Contacts,
     Flexibility,
@@ -46,11 +44,20 @@ from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
 from dda.one_block.unilateral_step import NEWMARK
-from dda.scheme.newmark import Scheme, inertia_force, late_momentum, predictor, velocity_corrector
-from dda.scheme.stages import Stage
+from dda.scheme.newmark import Scheme, late_momentum
+from dda.scheme.stage import Stage, inertia_force, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
-from dda.stepping.driver import BaseRecord, Part, base_displacement, base_record, driver, history_of, reached_history
-from dda.stepping.energy import ALGORITHMIC, DAMPING, add_contact_losses, bulk_loss, energies_of, spring_energies
+from dda.stepping.driver import (
+    BaseRecord,
+    Part,
+    base_displacement,
+    base_record,
+    driver,
+    history_of,
+    reached_history,
+    staged,
+)
+from dda.stepping.energy import ALGORITHMIC, accounted, add_contact_losses, bulk_loss, energies_of, spring_energies
 from dda.system.joints import FIXED
 from dda.system.solution import StageSolver
 from dda.system.subdivision import Pattern, subdivided
@@ -132,7 +139,7 @@ class SystemState:
 class StageLength:
     """What forces of the points change in a stage of a step of one length."""
 
-    def __init__(self, opening: OpeningSystem, stage: Scheme | Stage, rows: Array) -> None:
+    def __init__(self, opening: OpeningSystem, stage: Stage, rows: Array) -> None:
         self.solver = StageSolver(opening.equations, stage)
         self.still = np.zeros(len(opening.equations.pressure))
         push = stage.step**2 * rows
@@ -155,16 +162,6 @@ class Length:
         self.rows = np.concatenate([opening.normals, opening.tangents]) if opening.law.shear else opening.normals
         self.push = h2 * self.rows.T
         self.stages = [StageLength(opening, stage, self.rows) for stage in self.scheme.stages]
-
-
-class MadeStage(NamedTuple):
-    """A stage that was made last."""
-
-    before: SystemState
-    after: SystemState
-    carried: Array  # (2,) by which the base moved, along and away from it [m]
-    slipped: Array  # of the points [m]
-    share: float  # its length over that of the step
 
 
 class OpeningBody:
@@ -191,8 +188,16 @@ class OpeningBody:
         self.elastic = e.blockwise(e.elastic)
         self.F = e.F * opening.system.load_size
         self.energies = energies
-        self.between = self.start_state()  # room for the end of a first stage
-        self.passed: list[MadeStage] = []  # the stages of the part of a step that was made last
+        self.by_balance = scheme.table is not None
+        self.gg = scheme.gg
+        self.lag = scheme.lag
+        self.stages = len(scheme.stages)
+        self.first = 0  # number of the first stage of two
+        self.last = self.stages - 1
+        self.between = self.start_state()  # room for the end of the first stage
+        # of each stage in the part of a step that was made last: displacement of the base and slips of the points [m]
+        self.carried = np.zeros((self.stages, 2))
+        self.slipped = np.zeros((self.stages, points))
 
     def length(self, ratio: float) -> Length:
         """Return what belongs to a length, over the scheme's step; that of the whole step is always kept."""
@@ -241,65 +246,32 @@ class OpeningBody:
         return float(D @ (self.elastic @ D) + force @ (self.opening.equations.C @ force))
 
 
-def advance(
-    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, base: BaseRecord | None, part: Part
-) -> tuple[int, int]:
-    """Make a part of a step from `state` to `after`; return the outcome and the number of solves."""
-    if body.scheme.lag and part.ratio != 1:  # the velocity of half a step before goes on in equal steps only
-        return NONE, 0
-    length = body.length(part.ratio)
-    body.passed.clear()
-    before = state
-    total = 0
-    for stage in length.stages:
-        target = after if stage is length.stages[-1] else body.between
-        begin = stage.solver.stage.begin
-        share = stage.solver.stage.end - begin
-        interval = Part(part.begun + part.ratio * begin, part.ratio * share)
-        carried = np.zeros(2)
-        if base is not None:
-            base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
-        outcome, solves = make_stage(body, shear_law, (length, stage), (state, before), target, carried, part.ratio)
-        total += solves
-        if outcome != FOUND:
-            return outcome, total
-        slipped = np.array(target.contacts.slipped)
-        body.passed.append(MadeStage(before, target, carried, slipped, share))
-        before = target
-    if len(body.passed) > 1:
-        for i in range(body.points):
-            after.contacts.slipped[i] = sum(stage.slipped[i] for stage in body.passed)
-    return FOUND, total
-
-
 def make_stage(
     body: OpeningBody,
     shear_law: Shear,
-    matrices: tuple[Length, StageLength],
-    states: tuple[SystemState, SystemState],
+    number: int,
+    state: SystemState,
+    before: SystemState,
     after: SystemState,
-    carried: Array,
-    ratio: float,
+    base: BaseRecord | None,
+    part: Part,
 ) -> tuple[int, int]:
-    """Go to the end of a stage; return the outcome and the number of solves.
-
-    Parameters
-    ----------
-    states
-        The start of the step, and the end of the stage before.
-    carried
-        By which the base moves, along and away from itself [m].
-    """
-    length, made = matrices
-    state, before = states
+    """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
+    length = body.length(part.ratio)
+    made = length.stages[number]
     solver = made.solver
     stage = solver.stage
+    ratio = part.ratio
+    carried = body.carried[number]
+    if base is not None:
+        interval = Part(part.begun + ratio * stage.begin, ratio * (stage.end - stage.begin))
+        base_displacement(base, body.scheme.step, interval, np.zeros(2), carried)
     P = ratio * state.P
     f = ratio * ratio * state.f
     force_0 = ratio * ratio * state.force
     mu = ratio * ratio * before.mu
-    balance = predictor(stage, stage.d_u * P, f)
-    balance = balance + stage.d_g * (ratio * before.P) + stage.e_g * (ratio * ratio * before.f)
+    f_g = ratio * ratio * before.f
+    balance = predictor(stage, P, f, ratio * before.P, f_g)
     # contact forces at the start of the stage are no part of what is known of its end
     internal = solver.k @ before.D + solver.Bt @ mu
     balance = balance + stage.alpha * inertia_force(stage, length.F - internal, force_0, f)
@@ -323,52 +295,62 @@ def make_stage(
         pressed = length.push @ forces
     force = length.F - (solver.k @ D + solver.Bt @ mu) + pressed
     f1 = inertia_force(stage, force, force_0, f)
-    P1 = velocity_corrector(stage, P, f, f1) + stage.g_g * (ratio * ratio * before.f)
+    P1 = velocity_corrector(stage, P, f, f_g, f1)
     after.D = D
     after.P = P1 / ratio
     after.f = f1 / (ratio * ratio)
     after.mu = mu / (ratio * ratio)
     after.force = force / (ratio * ratio)
+    body.slipped[number] = after.contacts.slipped
     return FOUND, solves
 
 
-def account(
-    body: OpeningBody, shear_law: Shear, state: SystemState, after: SystemState, part: Part, sums: Array
+advance = staged(make_stage)
+
+
+def account_stage(
+    body: OpeningBody,
+    shear_law: Shear,
+    number: int,
+    before: SystemState,
+    after: SystemState,
+    part: Part,
+    sums: Array,
 ) -> None:
-    """Add what an accepted part of a step loses [J], as `dda.stepping.energy` says, with A0 that may be any."""
-    opening = body.opening
-    scheme = body.length(part.ratio).scheme
-    dt2 = body.scheme.step**2
-    newmark = scheme.table is None
-    for stage in body.passed:
-        slide = opening.tangents @ (stage.after.D - stage.before.D) - stage.carried[0]
-        add_contact_losses(
-            body.law,
-            shear_law,
-            stage.before.contacts,
-            stage.after.contacts,
-            stage.slipped,
-            slide,
-            stage.carried,
-            scheme.delta if newmark else 0.5,
-            scheme.step * stage.share,
-            1.0,
-            sums,
-        )
-    if body.start_discount(part.begun == 0) == 1:
-        sums[DAMPING] += (1 - scheme.gg**2) * body.kinetic(state.P / body.scheme.step)
-    if not newmark:
-        return
+    """Add what the points lose in a stage, and what the base gives [J]."""
+    stage = body.scheme.stages[number]
+    add_contact_losses(
+        body.law,
+        shear_law,
+        before.contacts,
+        after.contacts,
+        body.slipped[number],
+        body.opening.tangents @ (after.D - before.D) - body.carried[number, 0],
+        body.carried[number],
+        0.5 if body.by_balance else stage.delta,
+        stage.step * part.ratio * (stage.end - stage.begin),
+        1.0,
+        sums,
+    )
+
+
+def kinetic_energy(body: OpeningBody, state: SystemState) -> float:
+    """Return the kinetic energy of the momentum that is carried [J]."""
+    return body.kinetic(state.P / body.scheme.step)
+
+
+def add_algorithmic_loss(body: OpeningBody, state: SystemState, after: SystemState, part: Part, sums: Array) -> None:
+    """Add what Newmark's step loses beside the points [J], with A0 that may be any."""
+    scheme = body.scheme
+    dt2 = scheme.step**2
     moved = after.D - state.D
     R0 = state.f / dt2
     R1 = after.f / dt2
-    internal = body.elastic @ state.D + opening.equations.B.T @ (state.mu / dt2)
-    pressed = opening.normals.T @ np.array(state.contacts.normal) + opening.tangents.T @ np.array(state.contacts.shear)
-    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (body.F - internal + pressed - R0))
+    sums[ALGORITHMIC] += (1 - scheme.delta) * float(moved @ (state.force / dt2 - R0))
     stiff = body.stiff(moved, (after.mu - state.mu) / dt2)
     kinetic = body.kinetic(R1) - body.kinetic(R0)
     change = body.kinetic(R1 - R0)
-    sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, scheme.step**2, stiff, kinetic, change)
+    sums[ALGORITHMIC] += bulk_loss(scheme.alpha, scheme.delta, dt2 * part.ratio**2, stiff, kinetic, change)
 
 
 def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> bool:
@@ -381,6 +363,7 @@ def keep(body: OpeningBody, state: SystemState, rows: Array, number: int) -> boo
     return bool(np.isfinite(state.D).all())
 
 
+account = accounted(kinetic_energy, account_stage, add_algorithmic_loss)
 make_steps = driver(advance, account, keep)
 
 

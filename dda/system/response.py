@@ -20,15 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from dda.model.arrays import Array
 from dda.one_block.solution import check_request
-from dda.scheme.harmonic import Complex, answering
+from dda.scheme.harmonic import Complex, Elimination, answering
 from dda.scheme.newmark import Scheme
-from dda.system.system import BlockSystem, Equations
+from dda.system.system import BlockSystem, Equations, modulus_of
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 
-BAND = 2e5  # unknowns times the square of their band's width up to which every frequency is solved by itself
 LARGEST = 600  # vectors
 AT_A_TIME = 16  # vectors between two looks at the remainder
 RESOLVED = 1e-13  # remainder over the static and over the actual response
@@ -135,57 +134,25 @@ def system_response(
         push = equations.G @ along
     amplitudes = np.zeros((len(columns), len(W2)), complex)
     resolved = np.zeros(len(W2), bool)
-    dynamic = _Dynamic(equations, F, push)
-    if not dynamic.narrow:
+    elimination = elimination_of(equations)
+    if not elimination.narrow:
         amplitudes, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
+    modulus = modulus_of(equations)
+    right = np.concatenate([F / modulus, push])
+    by_both = np.hstack([rows[0], modulus * rows[1]])
     for i in np.flatnonzero(~resolved):
-        amplitudes[:, i] = dynamic.observed(rows, complex(W2[i]))
+        solution = elimination.solve(right, complex(W2[i]))
+        amplitudes[:, i] = by_both @ solution if np.isfinite(solution).all() else np.inf
     return dict(zip(columns, amplitudes * factor, strict=True))
 
 
-class _Dynamic:
-    """The equations at one frequency, solved by an elimination of their own, in moduli near one.
+def elimination_of(equations: Equations) -> Elimination:
+    """Return the equations in D and lambda over their largest modulus."""
+    from scipy.sparse import block_array
 
-    A chain of blocks is a narrow band: its elimination costs little, and keeps the digits of a wave that has decayed.
-    """
-
-    def __init__(self, equations: Equations, F: Array, push: Array) -> None:
-        from scipy.sparse import block_array
-        from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-        self.modulus = float(np.max(np.abs(equations.elastic)))
-        Ke = equations.blockwise(equations.elastic) / self.modulus
-        K = block_array([[Ke, equations.B.T], [equations.B, -self.modulus * equations.C]], format="csr")
-        M = equations.blockwise(equations.mass) / self.modulus
-        M.resize(K.shape)  # the forces have no inertia
-        self.order = reverse_cuthill_mckee(abs(K) + abs(K).T, symmetric_mode=True)
-        self.K = K[self.order][:, self.order]
-        self.M = M[self.order][:, self.order]
-        pattern = (abs(self.K) + abs(self.M)).tocoo()
-        self.width = int(np.max(np.abs(pattern.row - pattern.col), initial=0))
-        self.right = np.concatenate([F / self.modulus, push])[self.order].astype(complex)
-        self.count = len(F)
-
-    @property
-    def narrow(self) -> bool:
-        """Whether eliminating the band costs less than a small space does."""
-        return len(self.right) * self.width**2 <= BAND
-
-    def observed(self, rows: tuple[Array, Array], W2: complex) -> Complex:
-        """Return the observed amplitudes, infinite at a resonance that nothing damps."""
-        from scipy.linalg import solve_banded
-        from scipy.sparse.linalg import splu
-
-        matrix = (self.K - W2 * self.M).tocoo()
-        values = np.empty_like(self.right)
-        try:
-            if self.narrow:
-                band = np.zeros((2 * self.width + 1, len(values)), complex)
-                band[self.width + matrix.row - matrix.col, matrix.col] = matrix.data
-                solution = solve_banded((self.width, self.width), band, self.right, check_finite=False)
-            else:
-                solution = splu(matrix.tocsc()).solve(self.right)
-        except (np.linalg.LinAlgError, RuntimeError):
-            return np.full(len(rows[0]), np.inf, complex)
-        values[self.order] = solution
-        return np.asarray(rows[0] @ values[: self.count] + self.modulus * (rows[1] @ values[self.count :]))
+    modulus = modulus_of(equations)
+    Ke = equations.blockwise(equations.elastic) / modulus
+    M = equations.blockwise(equations.mass) / modulus
+    K = block_array([[Ke, equations.B.T], [equations.B, -modulus * equations.C]], format="csr")
+    M.resize(K.shape)  # the forces have no inertia
+    return Elimination(K, M)

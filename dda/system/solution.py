@@ -9,7 +9,7 @@ mu = dt^2 lambda, k = dt^2 Ke, C' = C / dt^2 and S = M + alpha k, which is a mat
 by (C' + alpha B S^-1 B') dmu = B S^-1 r - G dy, whose matrix is sparse, positive definite and
 factorised once. Then f1 = F - k D1 - B' mu1 and P1 = gg P + (1 - delta) f + delta f1, as for one block.
 The force of a joint is never its stiffness times a difference of displacements. Other schemes take one stage or two
-of this form (`dda.scheme.stages`), with alpha (1 - af)/(1 - am) for alpha in the matrices.
+of this form (`dda.scheme.stage`), with alpha (1 - af)/(1 - am) for alpha in the matrices.
 """
 
 from __future__ import annotations
@@ -23,37 +23,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.one_block.modes import Mode, scalar_eigenvalues
-from dda.one_block.solution import Result, bound_overflow, check_damping, check_request, times_of
-from dda.scheme.newmark import (
-    Scheme,
-    effective_matrix,
-    implicit_weight,
-    inertia_force,
-    late_momentum,
-    predictor,
-    predictors,
-    velocity_corrector,
-)
-from dda.scheme.stages import Stage
+from dda.one_block.modes import Mode, modes_of
+from dda.one_block.solution import Result, check_damping, check_request, linear_result
+from dda.scheme import harmonic
+from dda.scheme.harmonic import largest_frequency
+from dda.scheme.newmark import Scheme, late_momentum
+from dda.scheme.stage import Stage, effective_matrix, implicit_weight, inertia_force, predictor, velocity_corrector
 from dda.system.system import BlockSystem, Equations, Factor, factor, inverses
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in S from which each correction is due
-_DENSE = 300  # unknowns up to which all modes are found by a dense solver
 
 
-def joint_flexibility(scheme: Scheme | Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
+def joint_flexibility(stage: Stage, C: csr_array, B: csr_array, inverse: csr_array) -> csr_array:
     """Return C' + alpha B S^-1 B', the matrix of the joint forces' increments."""
-    return C + implicit_weight(scheme) * (B @ inverse @ B.T)
+    return C + implicit_weight(stage) * (B @ inverse @ B.T)
 
 
 class StageSolver:
     """The equations of a stage; everything is multiplied by dt^2 where the module says so."""
 
-    def __init__(self, equations: Equations, stage: Scheme | Stage) -> None:
+    def __init__(self, equations: Equations, stage: Stage) -> None:
         """Form the matrices and factorise the one of the joint forces."""
         self.stage = stage
         self.weight = implicit_weight(stage)
@@ -128,14 +120,14 @@ class Stepper:
             for solver in self.stages:
                 stage = solver.stage
                 f_g = f
-                balance = predictor(stage, stage.d_u * P_0, f_0) + stage.d_g * P + stage.e_g * f_g
+                balance = predictor(stage, P_0, f_0, P, f_g)
                 balance = balance + stage.alpha * inertia_force(stage, force, force_0, f_0)
                 dD, dmu = solver.increments(balance, next(pushes))
                 D = D + dD
                 mu = mu + dmu
                 force = F - (solver.k @ D + solver.Bt @ mu)
                 f = inertia_force(stage, force, force_0, f_0)
-                P = velocity_corrector(stage, P_0, f_0, f) + stage.g_g * f_g
+                P = velocity_corrector(stage, P_0, f_0, f_g, f)
             observed[:, n] = by_D @ D + by_mu @ mu
         return observed
 
@@ -165,7 +157,8 @@ class _ViscousStepper(Stepper):
     def run(self, steps: int, rows: tuple[Array, Array], moved: Array) -> Array:
         """Return the observed rows of D and of the springs' own forces at every step, (rows, steps)."""
         e = self.equations
-        s = replace(self.damped_scheme, step=1.0)  # of v and q
+        s = self.damped_scheme
+        (stage,) = s.stages
         F = self.scheme.step**2 * e.F
         solver = self.stages[0]
         still = np.zeros(len(e.pressure))
@@ -175,7 +168,8 @@ class _ViscousStepper(Stepper):
         mu = still
         observed = np.empty((len(observed_by), steps))
         for n in range(steps):
-            D, v = predictors(s, D, v, q)
+            D = D + predictor(stage, v, q, v, q)
+            v = velocity_corrector(stage, v, q, q, 0 * q)
             ahead = D + self.lag * v
             drag = self.drag * (self.M @ v)
             internal = solver.k @ G + solver.Bt @ mu
@@ -220,21 +214,42 @@ def solve_system(
     check_damping(scheme, system.motion is not None)
     began = perf_counter()
     equations = system.equations if full else system.reached
+    return stepped(system, equations, scheme, steps, columns, equations.rows(columns), began)
+
+
+def stepped(
+    system: BlockSystem,
+    equations: Equations,
+    scheme: Scheme,
+    steps: int,
+    names: Sequence[str],
+    rows: tuple[Array, Array],
+    began: float,
+) -> Result:
+    """Step a system from rest and return what some rows, of D and of the joint forces, observe of it.
+
+    Parameters
+    ----------
+    equations
+        In the unknowns that are kept.
+    began
+        When the set-up began [s].
+    """
     stepper = _ViscousStepper(equations, scheme) if scheme.damped else Stepper(equations, scheme)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        observed = stepper.run(steps, equations.rows(columns), _moved(system, scheme.instants(steps)))
-        observed *= system.load_size
-        observed += 0.0
-        overflow = bound_overflow(observed, system.load_size)
-    return Result(
-        **times_of(scheme, steps, began, ready),
-        columns=dict(zip(columns, observed, strict=True)),
+        observed = stepper.run(steps, rows, _moved(system, scheme.instants(steps))) * system.load_size
+    return linear_result(
+        scheme,
+        (began, ready),
+        names,
+        observed,
+        system.load_size,
         unknowns=len(equations.F),
         nonzeros=stepper.stages[-1].factor.nonzeros,
         factorisations=len(stepper.stages),
         solves=steps * sum(1 + solver.corrections for solver in stepper.stages),
-        notes=_savings(system, equations) + overflow,
+        notes=_savings(system, equations),
     )
 
 
@@ -284,11 +299,7 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
             break
         count *= 2
     carried = (equations.pressure @ forces) * (shapes.T @ F) / squares
-    frequencies = np.sqrt(squares).tolist()
-    return tuple(
-        Mode(frequencies[i], float(shares[i]), scalar_eigenvalues(scheme, frequencies[i]), float(carried[i]))
-        for i in np.argsort(-shares, kind="stable")
-    )
+    return modes_of(scheme, np.sqrt(squares), shares, carried, np.argsort(-shares, kind="stable"))
 
 
 def _pushed(system: BlockSystem, equations: Equations) -> Array:
@@ -320,7 +331,7 @@ def lowest_modes(
     def flexibility(right: Array) -> Array:
         return solve(np.ravel(right), still)[0]
 
-    if n <= _DENSE or count >= n - 1:
+    if n <= harmonic.DENSE or count >= n - 1:
         root = np.linalg.cholesky(M.toarray())
         values, vectors = eigh(root.T @ np.array([flexibility(column) for column in root.T]).T)
         order = np.argsort(-values)[:count]
@@ -336,14 +347,6 @@ def lowest_modes(
 
 def highest_frequency(system: BlockSystem) -> float:
     """Return the largest natural frequency [rad/s], which limits a conditionally stable scheme."""
-    from scipy.linalg import eigh
-    from scipy.sparse.linalg import eigsh
-
     e = system.reached
-    M = e.blockwise(e.mass)
     K = e.blockwise(e.elastic) + e.B.T @ e.kappa @ e.B
-    if len(e.F) <= _DENSE:
-        return float(np.sqrt(eigh(K.toarray(), M.toarray(), eigvals_only=True)[-1]))
-    start = np.random.default_rng(0).standard_normal(len(e.F))
-    squares = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
-    return float(np.sqrt(squares[0]))
+    return largest_frequency(K.tocsr(), e.blockwise(e.mass))

@@ -153,7 +153,7 @@ class Equations:
     @cached_property
     def at_rest(self) -> Callable[[Array, Array], tuple[Array, Array]]:
         """The solver (F, g) -> (D, lambda) of Ke D + B' lambda = F, B D - C lambda = g, factorised once."""
-        return saddle(self.blockwise(self.elastic), self.B, self.C, float(np.max(np.abs(self.elastic))))
+        return saddle(self.blockwise(self.elastic), self.B, self.C, modulus_of(self))
 
     def reduced(self) -> Equations:
         """Return the equations without the unknowns and gaps that no load can reach.
@@ -194,6 +194,11 @@ class Equations:
             else:
                 by_D[i] = self.observers[name]
         return by_D, by_force
+
+
+def modulus_of(equations: Equations) -> float:
+    """Return the largest modulus, by which forces are scaled to the size of displacements."""
+    return float(np.max(np.abs(equations.elastic)))
 
 
 @dataclass

@@ -321,6 +321,6 @@ def test_a_function_or_a_number_that_was_replaced_counts(fresh, monkeypatch):
 
 
 def test_a_seeded_fault_is_never_compiled_away(always, monkeypatch):
-    monkeypatch.setattr(unilateral_step, "velocity_corrector", lambda scheme, P, f, f1: scheme.gg * P)
+    monkeypatch.setattr(unilateral_step, "velocity_corrector", lambda stage, P, f, f_g, f1: stage.gg * P)
     model = replace(random_model(1), contact=Unilateral(1e9))
     assert compiled.PLAIN in solve_unilateral(model, SCHEMES[0], 3).notes[-1]

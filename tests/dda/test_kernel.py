@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import dda
 from dda import Unilateral
 from dda.contact import kernel
 from dda.contact.kernel import (
@@ -141,11 +140,3 @@ def test_two_contacts_in_mean_and_difference_are_those_in_their_own_slides(p_s):
             size = 1e-11 * np.max(np.abs(C)) * np.max(after.normal)
             assert w == pytest.approx(-after.normal / 1e3, abs=size)
             assert s == pytest.approx(-after.shear / p_s, rel=1e-9, abs=size)
-
-
-def test_results_by_their_old_names_are_the_new_one_and_warn():
-    for name in ("UnilateralResult", "OpeningResult"):
-        with pytest.warns(DeprecationWarning, match=f"dda.{name} is dda.ContactResult now"):
-            assert getattr(dda, name) is dda.ContactResult
-    with pytest.raises(AttributeError, match="NoSuchName"):
-        _ = dda.NoSuchName

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from faults.seams import Seam
 
+from dda.scheme.stage import Stage
+
 
 @dataclass(frozen=True)
 class Fault:
@@ -22,13 +24,15 @@ class Fault:
 
 
 def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[..., Callable[..., object]]:
-    """Hand a function a changed scheme."""
+    """Hand a function a changed scheme, or a stage, whose weights of accelerations still add up to what they did."""
 
     def wrap(sound: Callable[..., object]) -> Callable[..., object]:
         def faulty(*arguments: object, **named: object) -> object:
             scheme = arguments[position]
             values = {name: of_one_kind(change, getattr(scheme, name)) for name, change in changes.items()}
-            changed = replace(scheme, **values)
+            if isinstance(scheme, Stage) and "delta" in values:
+                values["g_0"] = scheme.g_0 + scheme.delta - values["delta"]  # type: ignore[operator]
+            changed = scheme._replace(**values) if isinstance(scheme, Stage) else replace(scheme, **values)
             return sound(*arguments[:position], changed, *arguments[position + 1 :], **named)
 
         return faulty

@@ -24,7 +24,7 @@ from dda.one_block import gap_form, solution, unilateral_step
 from dda.one_block import response as dda_vibration
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
-from dda.scheme import blocked, newmark
+from dda.scheme import blocked, harmonic, newmark
 from dda.system import glued, joints, subdivision, system
 from dda.system import solution as system_solution
 from fem_reference.column import mesh as line_mesh
@@ -115,7 +115,7 @@ SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
-SYSTEM_DENSE = Seam(system_solution, system_solution._DENSE)
+SYSTEM_DENSE = Seam(harmonic, harmonic.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
 GLUED_EDGES = Seam(glued, glued.shared_edges)
@@ -166,9 +166,10 @@ RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 COLUMN_INERTIA = Seam(column_equations, column_equations.inertia)
 COLUMN_STIFFNESS = Seam(column_equations, column_equations.stiffness)
 COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.dashpot_matrix)
-COLUMN_PREDICTORS = Seam(column_stepping, column_stepping.predictors)
+COLUMN_PREDICTOR = Seam(column_stepping, column_stepping.predictor)
+COLUMN_VELOCITY = Seam(column_stepping, column_stepping.velocity_corrector)
 COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
-COLUMN_SPRINGS = Seam(column_equations, column_equations.opening_stiffness)
+COLUMN_SPRINGS = Seam(column_equations, column_equations.spring_stiffness)
 COLUMN_RUN = Seam(column_stepping.Stepper, column_stepping.Stepper.run)
 CONTACT_EQUATIONS = Seam(column_contacts, column_contacts.step_equations)
 CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_contact_column)

@@ -15,7 +15,7 @@ import pytest
 import scipy.linalg
 from conftest import beside
 from faults import seams
-from faults.fault import Fault, late, no_damping, of_first, thousandth, times, told, with_scheme
+from faults.fault import Fault, late, no_damping, no_discount, of_first, thousandth, times, told, with_scheme
 from faults.kill_matrix import cases_of, check_kill_matrix
 
 import dda
@@ -82,16 +82,6 @@ def deeper(sound: Callable[..., object]) -> Callable[..., object]:
     return lambda modulus, density, depth, w2, state: sound(modulus, density, 1.01 * depth, w2, state)
 
 
-def slower(sound: Callable[..., tuple[np.ndarray, np.ndarray]]) -> Callable[..., tuple[np.ndarray, np.ndarray]]:
-    """Forget the kinetic discount in the displacement, of the two formulas that have it."""
-
-    def faulty(scheme: object, D: np.ndarray, V: np.ndarray, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        displaced, moving = sound(scheme, D, V, A)
-        return displaced + (1 - scheme.gg) * scheme.step * V, moving  # type: ignore[attr-defined]
-
-    return faulty
-
-
 WAVES = [
     Fault("blocks: inertia 1e-7 heavy", DDA, seams.COLUMN_INERTIA, times(1 + 1e-7)),
     Fault("blocks: stiffness 1e-7 high", DDA, seams.COLUMN_STIFFNESS, times(1 + 1e-7)),
@@ -99,8 +89,8 @@ WAVES = [
     Fault("springs: 0.1 % soft", DDA, seams.COLUMN_SPRINGS, times(0.999)),
     Fault("base: dashpot 1e-7 strong", DDA, seams.COLUMN_BASE, a_hair_more),
     Fault("steps: delta 0.1 % high in the matrix", DDA, seams.COLUMN_EFFECTIVE, with_scheme(0, delta=thousandth)),
-    Fault("steps: delta 0.1 % high", DDA, seams.COLUMN_PREDICTORS, with_scheme(0, delta=thousandth)),
-    Fault("steps: gg in one formula of two", DDA, seams.COLUMN_PREDICTORS, slower),
+    Fault("steps: delta 0.1 % high", DDA, seams.COLUMN_VELOCITY, with_scheme(0, delta=thousandth)),
+    Fault("steps: gg in one formula of two", DDA, seams.COLUMN_PREDICTOR, no_discount(0)),
     Fault("steps: one late", DDA, seams.COLUMN_RUN, late),
     Fault("steps: 2 % high", DDA, seams.COLUMN_RUN, times(1.02)),
     Fault("fem: delta 0.1 % high", ("fem",), seams.FEM_VELOCITY, with_scheme(2, delta=thousandth)),

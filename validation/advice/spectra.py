@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dda.scheme import spectral, viscous
+from dda.scheme import roots as scheme_roots
+from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
 from validation.advice.plain import PlainAnswer
@@ -77,7 +78,7 @@ def number(value: float) -> float | None:
 def damping_ratio(scene: Scene, frequency: float) -> float:
     """Return xi of the scene's scheme at a frequency [rad/s]; NaN where a root is not positive."""
     if scene.damping.present:
-        return viscous.damping_ratio(_viscous_scheme(scene), frequency)
+        return scheme_roots.damping_ratio(_viscous_scheme(scene), frequency * scene.time.step)
     t = scene.time
     if t.scheme != "newmark":
         return Stepping.of(scene).damping_ratio(frequency * t.step)
@@ -122,7 +123,7 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     total = numerical
     if scene.damping.present:
         total = damping_ratio(scene, frequency)
-        roots = np.array(viscous.eigenvalues(_viscous_scheme(scene), frequency))
+        roots = np.array(scheme_roots.eigenvalues(_viscous_scheme(scene), omega))
         radius = float(np.max(np.abs(roots)))
         elongation = _elongation(omega, roots)
     return ModeDamping(
