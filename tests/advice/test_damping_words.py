@@ -36,7 +36,7 @@ def of_scheme(omega: float, gg: float) -> tuple[float, float, float]:
 
 
 def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> None:
-    found = json.loads(typed("damping", scene_file, *OPTIONS, "--json").stdout)
+    found = json.loads(typed("advise", "damping", scene_file, *OPTIONS, "--json").stdout)
     w = frequencies()[0]
     xi, radius, elongation = of_scheme(0.002 * w, 0.98)
     own = of_scheme(0.002 * w, 1.0)[0]
@@ -58,7 +58,7 @@ def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> 
 
 def test_each_of_two_answers_has_its_own_errors(scene_file: Path) -> None:
     """Both sides of the maximum of 37 %: the larger step is further from the continuum."""
-    found = json.loads(typed("advise", scene_file, "--damping", "0.35", "--json").stdout)
+    found = json.loads(typed("advise", "step", scene_file, "--damping", "0.35", "--json").stdout)
     case, errors = load_scene(scene_file), [solution["errors"] for solution in found["solutions"]]
     for told, error in zip(found["solutions"], errors, strict=True):
         steps = round(0.1 / told["value"])

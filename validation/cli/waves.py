@@ -1,4 +1,4 @@
-"""The commands of frequencies: ``response`` and ``rayleigh``."""
+"""The parts of ``advise`` on frequencies: ``response`` and ``rayleigh``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import SceneArgument, SetOption, app, one_case
+from validation.cli.app import SceneArgument, SetOption, one_case, parts
 from validation.cli.printing.output import columns, echo
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ EXACT = "exact in time"
 CONTINUA = ("continuum", "layers")  # solvers that are exact in space too: of a block, of a column
 
 
-@app.command()
+@parts.command()
 def response(
     scene: SceneArgument,
     solver: Annotated[str, typer.Option("--solver", help="Solver whose model is used.", metavar="NAME")] = "dda",
@@ -42,7 +42,7 @@ def response(
 ) -> None:
     """Show how a scene answers a load or a base that vibrates, over frequency; no step is run.
 
-    Example: [bold]dda-validate response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
+    Example: [bold]dda-validate advise response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
     """
     from validation.advice.response import response as answer
     from validation.runs.files import check_ending
@@ -154,7 +154,7 @@ def _amplitude(peak: Peak) -> str:
     return f"{peak.amplitude:.6g}" if peak.is_bounded else "unbounded"
 
 
-@app.command()
+@parts.command()
 def rayleigh(
     scene: Annotated[str | None, typer.Argument(help="Scene whose scheme is translated; or give --dt.")] = None,
     assignments: SetOption = None,
@@ -179,7 +179,7 @@ def rayleigh(
 ) -> None:
     """Translate the damping that a time step hides into Rayleigh's a0 and a1, or what you want into dt, delta and gg.
 
-    Example: [bold]dda-validate rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
+    Example: [bold]dda-validate advise rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
 
     C = a0 M + a1 K, as other codes take it. In reverse, say what you want: --ratio 2=0.05 --ratio 20=0.05, or --a0
     and --a1.
