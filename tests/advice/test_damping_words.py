@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from conftest import typed
 
 from validation import load_scene, solve
-from validation.advice import advice
 
 OPTIONS = ("--set", "time.gg=0.98")
 
@@ -67,10 +65,3 @@ def test_each_of_two_answers_has_its_own_errors(scene_file: Path) -> None:
         want = np.linalg.norm(a - b) / np.linalg.norm(b)
         assert error["continuum"]["displacement"] == pytest.approx(want, rel=1e-9)
         assert error["window"] == pytest.approx(steps * told["value"])
-
-
-def solution(**changes: Any) -> advice.Solution:
-    values = {"value": 0.003, "damping": 0.05, "settling_steps": 40, "settling_seconds": 0.12,
-              "settling_from": "envelope", "alpha": 0.6, "delta": 1.1, "step": 0.003, "gg": 0.97, "gg_rate": 10.15,
-              "settings": {"time.step": 0.003}, "contact": None}  # fmt: skip
-    return advice.Solution(**(values | changes))

@@ -108,6 +108,12 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands() -> None:
         motion = solve(free.with_values({"contact.gap": gap, "time.steps": plain.steps}), "dda").displacement
         rebound = (motion[-1] - motion[-2]) / (3.0 * plain.settings["time.step"])
         assert abs(rebound - own) <= 0.05
+        if phase < 0.5:
+            exact = solve(
+                free.with_values({"contact.gap": gap, "time.steps": plain.steps}), "block-events"
+            ).displacement
+            off = np.linalg.norm(motion - exact) / np.linalg.norm(exact)
+            assert off == pytest.approx(plain.displacement_error, rel=0.5)
 
 
 def test_a_quake_is_followed_in_the_contact_force_too() -> None:
@@ -115,6 +121,13 @@ def test_a_quake_is_followed_in_the_contact_force_too() -> None:
     (finer,) = recommend(PAPER, "quake", 0.01)
     assert offer.is_reached and finer.is_reached and finer.steps > offer.steps
     assert "sideways" in offer.condition and finer.force_error is not None and finer.force_error <= 0.01
+
+
+def test_seconds_of_many_steps_follow_from_two_short_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(goals, "_seconds", lambda scene, solver, steps: 0.5 + 0.002 * steps)
+    assert goals.estimated_seconds(PAPER, "dda", 100_000) == pytest.approx(200.5)
+    assert goals.estimated_seconds(PAPER, "dda", 3) == pytest.approx(0.506)
+    assert goals.estimated_seconds(SLOPE, "bar", 3) is None
 
 
 def test_a_block_that_slides_is_judged_by_a_rigid_one() -> None:

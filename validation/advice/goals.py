@@ -162,17 +162,24 @@ def recommend(scene: Scene, goal: str, error: float, frequency: float | None = N
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
     sprung = scene.with_values({"contact.stiffness": springs(scene, error), "time.start": "zero"})
-    block = closed(sprung)
+    block = closed(at_rest(sprung))
     slides = sliding(scene)
     if goal == "static" and slides is not None and not slides.stands:
         return (_slide(scene, error),)
     if goal == "static":
         return (_static(sprung, block, error),)
     if goal == "impact":
-        return _impacts(block, error)
+        return _impacts(block, error, abs(scene.block.velocity))
     if goal == "quake":
         return (_driven(block, goal, error, frequency or QUAKE, ("x", "y")),)
     return (_driven(block, goal, error, frequency or default_frequency(scene), ("y",)),)
+
+
+def at_rest(scene: Scene) -> Scene:
+    """Return a scene whose block stands still and upright, as a contact that stays closed has it."""
+    if scene.block.velocity == scene.block.tilt == 0:
+        return scene
+    return scene.with_values({"block.velocity": 0.0, "block.tilt": 0.0})
 
 
 def _rounded(value: float) -> float:
@@ -339,11 +346,11 @@ def _longest_step(run: Callable[[int], Candidate], coarsest: int, error: float) 
 # ---- impact ---------------------------------------------------------------------------------------------------------
 
 
-def _impacts(block: Scene, error: float) -> tuple[Recommendation, ...]:
+def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendation, ...]:
     extras.require("the exact motion of an impact", *extras.EXACT)
     if block.block.rectangle is None:
         raise InputError("needs an upright rectangle", source=block.name, field="--goal", value="impact")
-    speed = abs(block.block.velocity) or 1.0
+    speed = own_speed or 1.0
     transit = spectra.transit(block)
     contact_time = landing.own_landing(landing.stiffness_ratio(block)).duration * transit
     finest = contact_time / FINEST_OF_CONTACT
@@ -355,7 +362,7 @@ def _impacts(block: Scene, error: float) -> tuple[Recommendation, ...]:
     if exact is None:
         raise InputError("has no exact motion of a landing", source=block.name, field="--goal", value="impact")
     flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])
-    speed_in_words = "its own speed" if block.block.velocity else "any speed"
+    speed_in_words = "its own speed" if own_speed else "any speed"
     condition = f"lands flat at {speed_in_words} without load, anywhere in a step; force: its restitution"
     reference = ("block-events, one strain", 0.0)
     offers = []

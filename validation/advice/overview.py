@@ -117,7 +117,7 @@ def overview(
 
 def _facts(scene: Scene) -> Iterator[Fact]:
     """Yield what the step, the springs and the discount do."""
-    block = closed(scene)
+    block = closed(goals.at_rest(scene))
     if scene.load.slope:
         block = block.with_values({"load.slope": 0.0})  # the modes that its weight across the base reaches
     analysis = damping(block)
