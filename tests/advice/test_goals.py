@@ -1,4 +1,4 @@
-"""What `advise` recommends, against runs made apart: modal sums, closed forms and independent histories."""
+"""What `advise` recommends, against closed forms, an elastic bar by its transform and runs made apart."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_a_quake_is_followed_in_the_contact_force_too() -> None:
 
 
 def test_seconds_of_many_steps_follow_from_two_short_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(goals, "_seconds", lambda scene, solver, steps: 0.5 + 0.002 * steps)
+    monkeypatch.setattr(goals, "seconds_of", lambda scene, solver, steps: 0.5 + 0.002 * steps)
     assert goals.estimated_seconds(PAPER, "dda", 100_000) == pytest.approx(200.5)
     assert goals.estimated_seconds(PAPER, "dda", 3) == pytest.approx(0.506)
     assert goals.estimated_seconds(SLOPE, "bar", 3) is None

@@ -161,7 +161,11 @@ def recommend(scene: Scene, goal: str, error: float, frequency: float | None = N
     InputError
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
-    sprung = scene.with_values({"contact.stiffness": springs(scene, error), "time.start": "zero"})
+    values: dict[str, Any] = {"contact.stiffness": springs(scene, error)}
+    values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
+    if scene.time.scheme != "newmark":
+        values |= CONSTANT  # explicit steps have a start of their own
+    sprung = scene.with_values(values)
     block = closed(at_rest(sprung))
     slides = sliding(scene)
     if goal == "static" and slides is not None and not slides.stands:
@@ -475,12 +479,13 @@ def estimated_seconds(scene: Scene, solver: str, steps: int) -> float | None:
     if get_solver(solver).refusal(scene):
         return None
     if steps <= 4 * SHORT:
-        return _seconds(scene, solver, steps)
-    shorter, longer = (_seconds(scene, solver, count) for count in (SHORT, 4 * SHORT))
+        return seconds_of(scene, solver, steps)
+    shorter, longer = (seconds_of(scene, solver, count) for count in (SHORT, 4 * SHORT))
     return longer + (steps - 4 * SHORT) * max(longer - shorter, 0.0) / (3 * SHORT)
 
 
-def _seconds(scene: Scene, solver: str, steps: int) -> float:
+def seconds_of(scene: Scene, solver: str, steps: int) -> float:
+    """Return how long a run of some steps takes [s]."""
     start = time.perf_counter()
     solve(scene.with_values({"time.steps": steps}), solver)
     return time.perf_counter() - start
