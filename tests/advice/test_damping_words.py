@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from conftest import typed
 
 from validation import load_scene, solve
-from validation.advice import advice
 
 OPTIONS = ("--set", "time.gg=0.98")
 
@@ -36,7 +34,7 @@ def of_scheme(omega: float, gg: float) -> tuple[float, float, float]:
 
 
 def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> None:
-    found = json.loads(typed("damping", scene_file, *OPTIONS, "--json").stdout)
+    found = json.loads(typed("advise", "damping", scene_file, *OPTIONS, "--json").stdout)
     w = frequencies()[0]
     xi, radius, elongation = of_scheme(0.002 * w, 0.98)
     own = of_scheme(0.002 * w, 1.0)[0]
@@ -58,7 +56,7 @@ def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> 
 
 def test_each_of_two_answers_has_its_own_errors(scene_file: Path) -> None:
     """Both sides of the maximum of 37 %: the larger step is further from the continuum."""
-    found = json.loads(typed("advise", scene_file, "--damping", "0.35", "--json").stdout)
+    found = json.loads(typed("advise", "step", scene_file, "--damping", "0.35", "--json").stdout)
     case, errors = load_scene(scene_file), [solution["errors"] for solution in found["solutions"]]
     for told, error in zip(found["solutions"], errors, strict=True):
         steps = round(0.1 / told["value"])
@@ -67,10 +65,3 @@ def test_each_of_two_answers_has_its_own_errors(scene_file: Path) -> None:
         want = np.linalg.norm(a - b) / np.linalg.norm(b)
         assert error["continuum"]["displacement"] == pytest.approx(want, rel=1e-9)
         assert error["window"] == pytest.approx(steps * told["value"])
-
-
-def solution(**changes: Any) -> advice.Solution:
-    values = {"value": 0.003, "damping": 0.05, "settling_steps": 40, "settling_seconds": 0.12,
-              "settling_from": "envelope", "alpha": 0.6, "delta": 1.1, "step": 0.003, "gg": 0.97, "gg_rate": 10.15,
-              "settings": {"time.step": 0.003}, "contact": None}  # fmt: skip
-    return advice.Solution(**(values | changes))

@@ -131,12 +131,5 @@ def test_ratios_out_of_reach_and_out_of_range_are_refused() -> None:
     ):
         with pytest.raises(InputError, match=rule):
             rayleigh.points(texts, a0, None)
-    for values, rule in (
-        ({}, "dt: is required"),
-        ({"step": -1.0}, "step: must be"),
-        ({"step": 1.0, "gg": 2.0}, "gg: must be"),
-    ):
-        with pytest.raises(InputError, match=rule):
-            rayleigh.scheme_of(values)
     with pytest.raises(InputError, match="--from, --to"):
         rayleigh.check_band(3.0, 2.0, 0.01)

@@ -43,11 +43,11 @@ def stack(tmp_path: Path) -> Path:
 
 
 def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack: Path) -> None:
-    data = json.loads(typed("contact", stack, "--json").stdout)
+    data = json.loads(typed("advise", "contact", stack, "--json").stdout)
     run = data["runs"]["dda"]
     assert run["contact.most_solves"] == 8.0 == data["limits"]["solves"]  # the first impact closes one in each solve
     assert run["contact.p99_solves"] == 8.0 and 1 < run["contact.mean_solves"] < 8
-    page = typed("contact", stack)
+    page = typed("advise", "contact", stack)
     assert page.returncode == 0
     lines = page.stdout.splitlines()
     assert any(line.split()[:6] == ["most", "solves", "in", "a", "step", "8"] for line in lines)
@@ -57,7 +57,7 @@ def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack: P
 def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
     path = tmp_path / "limited.toml"
     path.write_text(STACK.format(more="solve_limit = 6"))
-    done = typed("contact", path)
+    done = typed("advise", "contact", path)
     assert done.returncode == NUMERICAL_FAILURE
     assert "needs more solves than its limit" in done.stdout
     assert "ALARM solve limit" in done.stdout

@@ -34,7 +34,7 @@ def test_a_smaller_error_asks_for_a_smaller_step_and_a_smaller_penetration_for_s
 def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
     stop = ("contact.stiffness=inf", "contact.shear_stiffness=0", 'contact.rule="impact"', "contact.restitution=0.5")
     sets = [word for value in (*stop, "time.step=0.001", "time.steps=8") for word in ("--set", value)]
-    done = typed("contact", "unlocked-average", *sets, "--json")
+    done = typed("advise", "contact", "unlocked-average", *sets, "--json")
     assert done.returncode == 0, done.stderr
     page = json.loads(done.stdout)
     assert page["needed"] is None
@@ -72,7 +72,7 @@ def test_each_line_of_the_table_has_its_own_metric_in_its_own_unit() -> None:
 def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     ended = made_row("dda", outcome=Outcome.NO_CONTACT_STATE, notes=("at step 3",))
     monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
-    done = typed("contact", "unlocked-constant", *SHORT)
+    done = typed("advise", "contact", "unlocked-constant", *SHORT)
     assert done.returncode == 3
     assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
 
@@ -118,10 +118,10 @@ def test_when_a_block_first_opens_and_lands(
 @pytest.mark.long
 def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked() -> None:
     slope = ("field-sliding", "--set", "load.slope=30", "--set", "contact.friction=20", "--set", "time.steps=74")
-    hops = typed("contact", *slope, "--set", "contact.gap=0.5").stdout
+    hops = typed("advise", "contact", *slope, "--set", "contact.gap=0.5").stdout
     assert "hops        the exact block is open for 98.7 % of the time and moves 0.7038 m" in hops
     assert "by 0.49635 m" in hops and "penetration below" not in hops
-    stays = typed("contact", *slope, "--penetration", "1e-3").stdout
+    stays = typed("advise", "contact", *slope, "--penetration", "1e-3").stdout
     assert "hops  " not in stays and "A gap may open faster than it closed without any gain of energy" in stays
     assert "a restitution within 0.05 of the block's own" in stays and "below 0.001 m" in stays
 

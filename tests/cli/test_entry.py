@@ -16,15 +16,24 @@ from validation.cli import entry
 SET = "--set"
 STEP = (SET, "time.step=0.002")
 OUT_OF_RANGE = {
-    "points": ("response", "figures-3-4", *STEP, "--points", "100000000000000"),
-    "frequencies": ("response", "figures-3-4", *STEP, "--to", "1e300"),
-    "denormal step": ("response", "figures-3-4", SET, "time.step=1e-320"),
-    "huge wave": ("advise", "figures-3-4", *STEP, "--fmax", "1e200"),
-    "endless wave": ("advise", "figures-3-4", *STEP, "--fmax", "1e-200"),
-    "huge step": ("rayleigh", "--dt", "1e300"),
-    "tiny step": ("damping", "figures-3-4", SET, "time.step=1e-300"),
-    "huge springs": ("damping", "figures-3-4", *STEP, SET, "contact.stiffness=1e300"),
-    "huge velocity": ("contact", "unlocked-constant", SET, "block.velocity=1e200", *STEP, SET, "time.steps=20"),
+    "points": ("advise", "response", "figures-3-4", *STEP, "--points", "100000000000000"),
+    "frequencies": ("advise", "response", "figures-3-4", *STEP, "--to", "1e300"),
+    "denormal step": ("advise", "response", "figures-3-4", SET, "time.step=1e-320"),
+    "huge wave": ("advise", "wave", "figures-3-4", *STEP, "--fmax", "1e200"),
+    "endless wave": ("advise", "wave", "figures-3-4", *STEP, "--fmax", "1e-200"),
+    "huge step": ("advise", "rayleigh", "figures-3-4", SET, "time.step=1e300"),
+    "tiny step": ("advise", "damping", "figures-3-4", SET, "time.step=1e-300"),
+    "huge springs": ("advise", "damping", "figures-3-4", *STEP, SET, "contact.stiffness=1e300"),
+    "huge velocity": (
+        "advise",
+        "contact",
+        "unlocked-constant",
+        SET,
+        "block.velocity=1e200",
+        *STEP,
+        SET,
+        "time.steps=20",
+    ),
 }
 
 

@@ -20,7 +20,7 @@ def test_a_wave_of_two_steps_a_period_is_answered() -> None:
 
 
 def test_what_the_steps_show_of_an_alias_is_no_peak() -> None:
-    done = typed("response", "figures-3-4", "--set", "time.step=0.02", "--to", "200", "--points", "4000")
+    done = typed("advise", "response", "figures-3-4", "--set", "time.step=0.02", "--to", "200", "--points", "4000")
     peaks = [float(line.split()[2]) for line in done.stdout.splitlines() if line.startswith("as stepped")]
     assert peaks
     assert max(peaks) <= 25.0

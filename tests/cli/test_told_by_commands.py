@@ -11,7 +11,6 @@ import typer
 
 from validation import load_scene, response
 from validation.advice import rayleigh
-from validation.advice.rayleigh import scheme_of
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
 from validation.cli.printing import tables
@@ -20,6 +19,7 @@ from validation.report.figures import response as figures
 from validation.report.render.terminal import STYLES, lines
 from validation.report.scene import numbers
 from validation.runs.run import Outcome, Run
+from validation.theory.stepping import Stepping
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 SITE = load_scene("waves-site").with_values({"time.steps": 10})
@@ -83,7 +83,7 @@ def test_ratios_are_drawn_under_their_own_names(monkeypatch: pytest.MonkeyPatch,
     caught: dict[str, Any] = {}
     monkeypatch.setattr(figures, "ratio_figure", lambda frequency, lines: caught.update(lines, f=frequency))
     monkeypatch.setattr(figures, "save_as", lambda figure, path: path)
-    scheme = scheme_of({"step": 0.01, "gg": 0.9})
+    scheme = Stepping(0.01, 0.5, 1.0, 0.9)
     cli_waves._draw_ratios(scheme, (1.0, 30.0), tmp_path / "r.svg")
     f = caught.pop("f")
     wanted = {

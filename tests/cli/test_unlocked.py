@@ -13,7 +13,7 @@ ONE = ("--set", "contact.stiffness=1e9")
 
 
 def test_what_is_written_for_linear_scenes_refuses_it() -> None:
-    for words in (["damping", "unlocked"], ["solve", "unlocked", "--solver", "dda-textbook"]):
+    for words in (["advise", "damping", "unlocked"], ["solve", "unlocked", "--solver", "dda-textbook"]):
         assert "unilateral contact" in refused(*words, *ONE)
 
 

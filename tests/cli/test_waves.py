@@ -23,7 +23,20 @@ def said(*arguments: str) -> str:
 def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option: list[str], exact: bool) -> None:
     path = tmp_path / "r.csv"
     said(
-        "response", *CASE, "--solver", "bar", "--from", "2", "--to", "180", "--points", "7", "--csv", str(path), *option
+        "advise",
+        "response",
+        *CASE,
+        "--solver",
+        "bar",
+        "--from",
+        "2",
+        "--to",
+        "180",
+        "--points",
+        "7",
+        "--csv",
+        str(path),
+        *option,
     )
     header, *_ = path.read_text().splitlines()
     assert header == "frequency,displacement,displacement_phase,contact_pressure,contact_pressure_phase"
@@ -33,7 +46,7 @@ def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option:
 
 def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_noted_beyond_half_the_sampling() -> None:
     options = ["--from", "1", "--to", "200", "--points", "200"]
-    lines = said("response", *CASE, *options).splitlines()
+    lines = said("advise", "response", *CASE, *options).splitlines()
     for label, exact in (("as stepped", False), ("exact in time", True)):
         found = response(SCENE, np.linspace(1, 200, 200), "dda", exact)
         ((f, moved), *_), ((g, pressed), *_) = found.peaks("displacement"), found.peaks("contact_pressure")
@@ -42,7 +55,11 @@ def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_not
         assert first.split()[-4:] == numbers
     assert lines[1].split() == ["peak", "[Hz]", "displacement", "[m]", "peak", "[Hz]", "contact", "pressure", "[Pa]"]
     assert not [line for line in lines if "alias" in line]
-    (note,) = [line for line in said("response", *CASE, "--to", "251", "--points", "2").splitlines() if "alias" in line]
+    (note,) = [
+        line
+        for line in said("advise", "response", *CASE, "--to", "251", "--points", "2").splitlines()
+        if "alias" in line
+    ]
     assert "above 250 Hz, 1 / (2 dt)" in note
 
 
@@ -50,10 +67,10 @@ def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_not
 def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(tmp_path: Path) -> None:
     for ending in ("svg", "pdf", "png"):
         path = tmp_path / f"r.{ending}"
-        text = said("response", *CASE, "--to", "300", "--points", "120", "--figure", str(path))
+        text = said("advise", "response", *CASE, "--to", "300", "--points", "120", "--figure", str(path))
         assert path.stat().st_size > 5000
     assert (tmp_path / "r.pdf").read_bytes()[:4] == b"%PDF"
     assert "exact in time" in text
     assert "no step is run" in text
     assert "above 250 Hz, 1 / (2 dt), the steps see a load as its alias" in text
-    assert "alias" not in said("response", *CASE, "--points", "5", "--log")
+    assert "alias" not in said("advise", "response", *CASE, "--points", "5", "--log")

@@ -103,7 +103,10 @@ def test_commands_and_options_of_a_page_exist(page: str) -> None:
                 continue
             words = shlex.split(part)
             if words[0].endswith("dda-validate"):
-                known = {option for parameter in commands()[words[1]].params for option in parameter.opts}
+                command = commands()[words[1]]
+                if words[1] == "advise":
+                    command = command.commands.get(words[2], command.commands["everything"])
+                known = {option for parameter in command.params for option in parameter.opts}
                 assert {word for word in words if word.startswith("--")} <= known, line
 
 
@@ -123,8 +126,8 @@ def test_the_tables_of_readme_are_those_of_the_code() -> None:
     assert set(first_cells("study")) <= set(study_names())
     shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
     shown = re.findall(r"^dda-validate ([a-z-]+)", shell[2], re.M)
-    others = README.partition("The others, each on its page: ")[2].partition("\n\n")[0]
-    assert len(shown) == 8 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
+    others = README.partition("The other commands, each on its page: ")[2].partition("\n\n")[0]
+    assert len(shown) == 9 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
 
 
 # ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------

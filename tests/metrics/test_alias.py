@@ -58,8 +58,8 @@ def test_a_motion_that_does_not_swing_has_no_alias() -> None:
 
 def test_damping_and_the_reports_tables_say_so(tmp_path: Path) -> None:
     assert damping(figure(0.01)).alias is None  # nothing of references was asked for
-    shown = typed("damping", "figures-3-4", "--set", "time.step=0.01", cwd=tmp_path).stdout
+    shown = typed("advise", "damping", "figures-3-4", "--set", "time.step=0.01", cwd=tmp_path).stdout
     assert "alias: the continuum's first mode, 327.682 rad/s, lies beyond pi / dt = 314.159 rad/s" in shown
     assert "300.636 rad/s instead" in shown
-    assert "alias" not in typed("damping", "figures-3-4", "--set", "time.step=0.002", cwd=tmp_path).stdout
+    assert "alias" not in typed("advise", "damping", "figures-3-4", "--set", "time.step=0.002", cwd=tmp_path).stdout
     assert cell(ALIAS) == "alias" and "beyond π/Δt" in word_notes([ALIAS])[0]

@@ -188,8 +188,9 @@ def test_commands_warn_on_standard_error_once(tmp_path: Path) -> None:
     scene = tmp_path / "mine.toml"
     scene.write_text("\n".join([*lines, "[load]", "pressure = 5e6", "[time]", "step = 0.002", "steps = 5\n"]))
     results = ["--results", str(tmp_path / "results")]
-    for words in (["show"], ["solve"], ["damping"], ["advise", "--damping", "0.05"], ["rayleigh"], ["run", *results]):
-        done = typed(words[0], str(scene), *words[1:])
+    parts = [["advise", "damping"], ["advise", "step", "--damping", "0.05"], ["advise", "rayleigh"]]
+    for words in (["show"], ["solve"], *parts, ["run", *results]):
+        done = typed(*words, str(scene))
         assert re.findall(r"^warning: mine: (\S+)", done.stderr, re.M) == ["block.density"], words
         assert done.returncode == 0, words
     data = json.loads(typed("show", str(scene), "--json").stdout)

@@ -54,7 +54,7 @@ def limited() -> Iterator[None]:
         ("solve {pipe}", ""),
         ("run {scene} --set fem.mesh={pipe}", "fem: mesh: "),
         ("compare {scene} {pipe}", ""),
-        ("damping {scene} --set fem.mesh={pipe}", "fem: mesh: "),
+        ("advise damping {scene} --set fem.mesh={pipe}", "fem: mesh: "),
         ("solve {scene} --set load.base_motion={pipe}", "load: base_motion: "),
         ("solve {scene} --solver fem --set fem.mesh={pipe}", "fem: mesh: "),
     ],

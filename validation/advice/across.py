@@ -244,7 +244,7 @@ def _offer(
     else:
         settings |= {"time.alpha": stepping.alpha, "time.delta": stepping.delta}
         settings |= {} if present.scheme == "newmark" else {"time.scheme": "newmark"}
-    rebound = _rebound(stepping.stages, min(max(impact * dt, LEAST_IMPACT), IMPACTS[-1]))
+    rebound = rebound_of(stepping.stages, min(max(impact * dt, LEAST_IMPACT), IMPACTS[-1]))
     offer = Offer(
         _named(stepping),
         settings,
@@ -258,7 +258,7 @@ def _offer(
         stepping.spectral_radius(highest * dt),
         stepping.solves / dt / (present.solves / present.step) if present.solves else None,
         {"mean": rebound.mean, "least": rebound.least, "most": rebound.most},
-        max(_rebound(stepping.stages, W).most for W in IMPACTS),
+        max(rebound_of(stepping.stages, W).most for W in IMPACTS),
         rebound.most > 1 + GAIN,
         overshoot.rise_of(stepping, modes),
         (),
@@ -272,7 +272,7 @@ def _number(stepping: Stepping, omega_dt: float) -> float | None:
 
 
 @functools.lru_cache(maxsize=4096)
-def _rebound(stages: Stages, omega: float) -> ReboundStatistics:
+def rebound_of(stages: Stages, omega: float) -> ReboundStatistics:
     """Return the rebound of a rigid mass at W = w_c dt, to which a discount adds nothing."""
     return rebound_statistics(spring_steps(stages, omega))
 

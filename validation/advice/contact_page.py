@@ -1,4 +1,4 @@
-"""What `dda-validate contact` says of a block or a column: its runs side by side, and what would do better."""
+"""What `dda-validate advise contact` says of a block or a column: its runs side by side, and what would do better."""
 
 from __future__ import annotations
 
@@ -54,6 +54,11 @@ def exact() -> str:
     return of_role(Role.LIMIT)
 
 
+def elements() -> str:
+    """Return the reference that takes most scenes: elements, where an exact bar takes a few."""
+    return max(by_role(Role.REFERENCE), key=lambda name: len(get_solver(name).handles))
+
+
 def scenes(scene: Scene) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
 
@@ -62,10 +67,10 @@ def scenes(scene: Scene) -> dict[str, Scene]:
     InputError
         The contact is locked, or the scene has a column.
     """
-    features.refuse_column(scene, "contact")
+    features.refuse_column(scene, "advise contact")
     if features.UNILATERAL not in features.of(scene):
         raise InputError(
-            "must be unilateral for the command contact",
+            "must be unilateral for advise contact",
             source=scene.name,
             field="contact.law",
             value="locked, which neither opens nor lands",

@@ -18,7 +18,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,8 @@ from numpy.typing import ArrayLike
 from validation.advice.limits import Limit
 from validation.errors import InputError
 from validation.runs.history import Array
+from validation.scenes import features
+from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
 
 STARTS = 20  # steps, or delta, from which a scheme is looked for
@@ -79,21 +81,21 @@ def _difference(a: float, b: float) -> float:
     return 0.0 if abs(a - b) <= 1e-14 * max(abs(a), abs(b)) else a - b
 
 
-def scheme_of(values: Mapping[str, float]) -> Stepping:
-    """Return the scheme of some numbers (step, alpha, delta, gg), those of constant acceleration where they are absent.
+def scheme_of(scene: Scene) -> Stepping:
+    """Return the scheme of a scene, which must be Newmark's.
 
     Raises
     ------
     InputError
-        The step is absent, or a number is out of range.
+        It is another, or the scene has rigid boxes, which nothing strains.
     """
-    if "step" not in values:
-        raise InputError("is required", field="dt", value="none", advice="name a scene or give --dt")
-    for name, value in values.items():
-        not_negative = Limit(name, "must be finite and not negative", ends=(0.0,))
-        (Limit(name, "must be finite and positive") if name == "step" else not_negative).check(value)
-    Limit("gg", "must be from 0 to 1", below=1.0, ends=(0.0, 1.0)).check(values.get("gg"))
-    return Stepping(values["step"], values.get("alpha", 0.5), values.get("delta", 1.0), values.get("gg", 1.0))
+    if scene.rigid is not None:
+        features.refuse_column(scene, "advise rayleigh")
+    stepping = Stepping.of(scene)
+    if stepping.scheme != "newmark":
+        rule = "must be newmark, whose damping near w dt = 0 has the form of Rayleigh's"
+        raise InputError(rule, source=scene.name, field="time.scheme", value=repr(stepping.scheme))
+    return stepping
 
 
 def points(texts: Sequence[str], a0: float | None, a1: float | None) -> list[Point]:

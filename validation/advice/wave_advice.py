@@ -10,7 +10,7 @@ solver's own model of these blocks, whose glue, joints and contact springs may b
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -327,7 +327,7 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     is_newmark = scheme.scheme == "newmark"
     if 2 * scheme.alpha >= scheme.delta >= 0.5 if is_newmark else scheme.scheme != "leapfrog":
         return lambda step: True
-    highest = highest_frequency(_advised_scene(scene, path))
+    highest = highest_frequency(advised_scene(scene, [layer.blocks for layer in path.layers]))
 
     def is_stable(step: float) -> bool:
         return step * highest <= scheme.at(step).critical_omega
@@ -335,15 +335,14 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     return is_stable
 
 
-def _advised_scene(scene: Scene, path: _WavePath) -> Scene:
-    """Return the scene with the advised blocks."""
-    counts = [layer.blocks for layer in path.layers]
+def advised_scene(scene: Scene, counts: Sequence[int]) -> Scene:
+    """Return the scene with the advised blocks, a number for each layer."""
     if scene.column is not None:
         layers = [
             layer.model_dump() | {"blocks": blocks} for layer, blocks in zip(scene.column.layer, counts, strict=True)
         ]
         return scene.with_values({"column.layer": layers})
-    if scene.block.subdivide is None and counts == [1]:
+    if scene.block.subdivide is None and counts[0] == 1:
         return scene
     columns = 1 if scene.block.subdivide is None else scene.block.subdivide[0]
     return scene.with_values({"block.subdivide": [columns, counts[0]]})

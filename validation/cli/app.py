@@ -6,9 +6,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
@@ -28,6 +29,27 @@ app: typer.Typer = typer.Typer(
     help="Cross-validation of Discontinuous Deformation Analysis (DDA) against finite elements and exact solutions "
     "on the two-block model.\n\nExample: [bold]dda-validate run core && dda-validate report[/bold]",
 )
+
+
+class AdviceGroup(TyperGroup):
+    """The parts of ``advise``; where none is named, all that they say is summed up of the scene that is."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Put the part that sums up before words that begin with none."""
+        if args and args[0] not in (*self.commands, "--help"):
+            args = ["everything", *args]
+        return super().parse_args(ctx, args)
+
+
+parts: typer.Typer = typer.Typer(
+    cls=AdviceGroup,
+    rich_markup_mode="rich",
+    help="Say what step, springs and discount of a scene really do, and which to take.\n\n"
+    "Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002[/bold]\n\n"
+    "advise SCENE sums up and is the part everything; --goal, --error, --frequency and --json are options of it. "
+    "advise PART SCENE shows one part in full.",
+)
+app.add_typer(parts, name="advise")
 
 
 def _print_version(requested: bool) -> None:

@@ -1,4 +1,4 @@
-"""The command ``contact``: when a block opens and lands, what its steps make of it, and what would do better."""
+"""The part ``contact`` of ``advise``: when a block opens and lands, and which steps and springs would do better."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from validation.cli.app import (
     SceneArgument,
     SetOption,
     _progress,
-    app,
     one_case,
+    parts,
     refuse_bad_input,
 )
 from validation.cli.printing.output import broken, echo_answer
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Progress = Callable[[int, int, str], None]  # of the runs done, how many there are at most, and what the next one is
 
 
-@app.command()
+@parts.command()
 def contact(
     scene: SceneArgument,
     error: Annotated[
@@ -49,10 +49,10 @@ def contact(
 ) -> int:
     """Show when a block opens and lands, against the exact motions, and which step and springs would do better.
 
-    Example: [bold]dda-validate contact unlocked-constant --set time.step=0.001 --set time.steps=50[/bold]
+    Example: [bold]dda-validate advise contact unlocked-constant --set time.step=0.001 --set time.steps=50[/bold]
 
     The contact must be unilateral; --set contact.law=unilateral unlocks a locked scene. Of a column whose contacts
-    open or slip it says the solves of the open-close iteration, and which to allow: contact columns-weight
+    open or slip it says the solves of the open-close iteration, and which to allow: advise contact columns-weight
     """
     from validation.advice import contact_page
     from validation.advice.columns import limits
@@ -62,7 +62,7 @@ def contact(
     case = one_case(scene, assignments)
     bounds = limits(case)
     if bounds is not None and (error is not None or penetration is not None):
-        features.refuse_column(case, "contact with --restitution-error or --penetration")
+        features.refuse_column(case, "advise contact with --restitution-error or --penetration")
     scenes = contact_page.scenes(case) if bounds is None else contact_page.column_scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)

@@ -12,11 +12,12 @@ from functools import cache
 import typer
 
 from validation.cli import (
+    advise,
     claims,
     compare,
     contact,
-    damping,
     judge,
+    new,
     report,
     run,
     show,
@@ -24,7 +25,7 @@ from validation.cli import (
     waves,
     work,
 )
-from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app
+from validation.cli.app import BAD_INPUT, INTERRUPTED, PASSED, app, parts
 from validation.cli.printing.output import echo, prepare, silence
 from validation.cli.signals import end, interruptible
 from validation.errors import InputError
@@ -33,10 +34,11 @@ from validation.runs.text import printable
 
 COMMANDS = (
     run,
+    new,
     show,
     report,
     claims,
-    damping,
+    advise,
     contact,
     compare,
     judge,
@@ -45,10 +47,10 @@ COMMANDS = (
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
-    "Scenes and runs": ("list", "show", "run", "solve"),
+    "Scenes and runs": ("new", "list", "show", "run", "solve"),
     "Results": ("report", "rows", "claims", "diff"),
     "Your own code or program": ("judge", "compare", "export-pack"),
-    "Time step, springs and damping": ("advise", "damping", "contact", "response", "rayleigh"),
+    "Time step, springs and damping": ("advise",),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (
@@ -57,13 +59,16 @@ OUT_OF_RANGE = (
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
-for command in app.registered_commands:
+for command in (*app.registered_commands, *parts.registered_commands):
     command.name = command.name or getattr(command.callback, "__name__", "")
-    command.rich_help_panel = next(group for group, names in GROUPS.items() if command.name in names)
+    panels = [group for group, names in GROUPS.items() if command.name in names]
+    command.rich_help_panel = panels[0] if panels else None  # the parts of a command stand in one
     # typer keeps the line breaks of a docstring, which are not those of a terminal
     paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
 app.registered_commands.sort(key=lambda command: ORDER.index(command.name or ""))
+(group,) = app.registered_groups
+group.rich_help_panel = next(name for name, names in GROUPS.items() if group.name in names)
 
 
 @interruptible()

@@ -1,4 +1,4 @@
-"""The commands of frequencies: ``response`` and ``rayleigh``."""
+"""The parts of ``advise`` on frequencies: ``response`` and ``rayleigh``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import SceneArgument, SetOption, app, one_case
+from validation.cli.app import SceneArgument, SetOption, one_case, parts
 from validation.cli.printing.output import columns, echo
 from validation.runs.numbers import share_text
 
@@ -28,7 +28,7 @@ EXACT = "exact in time"
 CONTINUA = ("continuum", "layers")  # solvers that are exact in space too: of a block, of a column
 
 
-@app.command()
+@parts.command()
 def response(
     scene: SceneArgument,
     solver: Annotated[str, typer.Option("--solver", help="Solver whose model is used.", metavar="NAME")] = "dda",
@@ -43,7 +43,7 @@ def response(
 ) -> None:
     """Show how a scene answers a load or a base that vibrates, over frequency; no step is run.
 
-    Example: [bold]dda-validate response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
+    Example: [bold]dda-validate advise response figures-3-4 --set time.step=0.002 --from 1 --figure response.svg[/bold]
     """
     from validation.advice.response import response as answer
     from validation.runs.files import check_ending
@@ -155,14 +155,10 @@ def _amplitude(peak: Peak) -> str:
     return f"{peak.amplitude:.6g}" if peak.is_bounded else "unbounded"
 
 
-@app.command()
+@parts.command()
 def rayleigh(
-    scene: Annotated[str | None, typer.Argument(help="Scene whose scheme is translated; or give --dt.")] = None,
+    scene: SceneArgument,
     assignments: SetOption = None,
-    dt: Annotated[float | None, typer.Option("--dt", help="Time step.", metavar="S")] = None,
-    alpha: Annotated[float | None, typer.Option("--alpha", help="The scheme's alpha.")] = None,
-    delta: Annotated[float | None, typer.Option("--delta", help="The scheme's delta.")] = None,
-    gg: Annotated[float | None, typer.Option("--gg", help="Discount of a step.")] = None,
     a0: Annotated[
         float | None, typer.Option("--a0", help="In reverse: the mass damping you want.", metavar="1/S")
     ] = None,
@@ -180,7 +176,7 @@ def rayleigh(
 ) -> None:
     """Translate the damping that a time step hides into Rayleigh's a0 and a1, or what you want into dt, delta and gg.
 
-    Example: [bold]dda-validate rayleigh --dt 0.01 --gg 0.99 --from 1 --to 20[/bold]
+    Example: [bold]dda-validate advise rayleigh figures-3-4 --set time.step=0.01 --set time.gg=0.99 --to 20[/bold]
 
     C = a0 M + a1 K, as other codes take it. In reverse, say what you want: --ratio 2=0.05 --ratio 20=0.05, or --a0
     and --a1.
@@ -191,39 +187,24 @@ def rayleigh(
     from validation.runs.files import check_ending
 
     check_ending(figure, "--figure")
-    case = None if scene is None else one_case(scene, assignments)
-    scheme = _scheme(case, {"step": dt, "alpha": alpha, "delta": delta, "gg": gg})
+    case = one_case(scene, assignments)
+    scheme = advice.scheme_of(case)
     points: list[tuple[float, float]] = []
     if ratios or a0 is not None or a1 is not None:
         points = advice.points(ratios or [], a0, a1)
         scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
     ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
-    tables = None if case is None else case.damping
-    if tables is not None and tables.present:
+    tables = case.damping
+    if tables.present:
         rayleigh_terms = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
         echo(f"note: the scene's own damping tables, {rayleigh_terms}, come on top of what the step hides")
-    if tables is not None and tables.kinetic == "adaptive":
+    if tables.kinetic == "adaptive":
         echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
     band = low or ends[0], high or ends[1]
     advice.check_band(*band, scheme.step)
     _print_scheme(scheme, band)
     if figure is not None:
         _draw_ratios(scheme, band, figure)
-
-
-def _scheme(scene: Scene | None, options: dict[str, float | None]) -> Stepping:
-    """Return the scheme of a scene, or of the options, which go before it."""
-    from validation.advice.rayleigh import scheme_of
-    from validation.scenes.features import refuse_column
-    from validation.theory.stepping import Stepping
-
-    values = {name: value for name, value in options.items() if value is not None}
-    if scene is not None:
-        if scene.rigid is not None:
-            refuse_column(scene, "rayleigh")
-        stepping = Stepping.of(scene)
-        values = {name: getattr(stepping, name) for name in options} | values
-    return scheme_of(values)
 
 
 def _back(target: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:

@@ -152,9 +152,9 @@ def refuse_nonlinear(scene: Scene, what: str) -> None:
         return
     advice = None
     if not set(present).isdisjoint(OF_MOVING_COLUMN):
-        advice = "dda-validate contact shows what opens and slips"
+        advice = "dda-validate advise contact shows what opens and slips"
     elif UNILATERAL in present:
-        advice = 'dda-validate contact shows how it opens and lands; contact.law = "locked" keeps it closed'
+        advice = 'dda-validate advise contact shows how it opens and lands; contact.law = "locked" keeps it closed'
     rule = f"{what} for linear scenes only"
     raise InputError(rule, source=scene.name, value=f"one with {', '.join(present)}", advice=advice)
 

@@ -81,7 +81,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     step = closed.step_for(scenes[0], 0.05)
     example = f": for 5\u00a0% at p = 1E, dt = {milliseconds(step)}" if step else ""
-    command = "advise my-block.toml --damping 0.05 --solve-for dt"
+    command = "advise step my-block.toml --damping 0.05 --solve-for dt"
     return [
         Heading("Decision 1: which time step?", 2),
         _rule(PAGE.text("step-rule", example=example), command),
@@ -157,7 +157,7 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     return [
         Heading("Decision 2: which spring stiffness?", 2),
-        _rule(spring_rule(groups, base), "damping my-block.toml --set contact.stiffness=1e10"),
+        _rule(spring_rule(groups, base), "advise damping my-block.toml --set contact.stiffness=1e10"),
         histories.saved(chart_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
         spring_table(groups, base),
         Paragraph(PAGE.text("ringing")),
@@ -237,7 +237,7 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
             "at steps with ω₁ dt below 1. "
             f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
             "step never converges.",
-            "advise my-block.toml --damping 0.05 --solve-for gg",
+            "advise step my-block.toml --damping 0.05 --solve-for gg",
         ),
         PAGE.figure("discount", [chart], directory, ratios=damping_at_steps(at_rate, RATE_STEPS), turns=turns),
         discount_table(base),

@@ -1,5 +1,5 @@
 "use strict";
-// The step, discount or scheme for a damping ratio: the search of `dda-validate advise`.
+// The step, discount or scheme for a damping ratio: the search of `dda-validate advise step`.
 const adviser = (() => {
   const { contact_frequency, damping_ratio, dda_frequency, spectral_radius } = damping;
 

@@ -52,7 +52,7 @@
       ["period elongation", ...both.map((mode) => percent(mode.period_elongation))],
       ["stable up to dt [s]", written(limit), ""],
       ["travel time of the wave [s]", written(transit), ""],
-    ], command("damping figures-3-4", s));
+    ], command("advise damping figures-3-4", s));
     const { values, reach } = adviser.advise(s, s, s.target, s.solve_for);
     const unit = s.solve_for === "dt" ? " s" : "", name = { dt: "dt", gg: "gg", scheme: "δ" }[s.solve_for];
     const alpha = (value) => s.solve_for === "scheme" ? `, α = ${written(adviser.family(value), 8)}` : "";
@@ -61,7 +61,7 @@
       ...(values.length ? [] : [["set", "no value does"]]),
       ...(reach ? [["least that can be had", percent(reach.least)],
         ["greatest that can be had", `${percent(reach.greatest)} at ${name} = ${written(reach.greatest_at)}${unit}`]] : []),
-    ], command(`advise figures-3-4 --damping ${s.target} --solve-for ${s.solve_for}`, s));
+    ], command(`advise step figures-3-4 --damping ${s.target} --solve-for ${s.solve_for}`, s));
     answer.dataset.values = JSON.stringify({ modes, values });
   }
 

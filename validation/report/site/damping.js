@@ -1,5 +1,5 @@
 "use strict";
-// The damping of a step: pure functions of numbers, named as in Python, and what `dda-validate damping` says of a block.
+// The damping of a step: pure functions of numbers, named as in Python, and what `dda-validate advise damping` says of a block.
 const damping = (() => {
   // ---- dda.scheme.spectral: one mode under the Newmark scheme, Omega = w dt, X = Omega^2 / (1 + alpha Omega^2) ------
 

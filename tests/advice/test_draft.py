@@ -1,0 +1,89 @@
+"""What `new` writes: a scene that loads and runs, with springs and steps by their closed forms."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from conftest import refused, typed
+
+from validation import damping, load_scene, solve
+from validation.advice.draft import KINDS, ROCKS, draft
+from validation.errors import InputError
+from validation.runs.run import Outcome
+from validation.scenes.plausibility import plausibility_warnings
+
+
+def default(question: str, value: float) -> float:
+    return value
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("rock", ["granite", "shale"])
+def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock: str, tmp_path: Path) -> None:
+    done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
+    assert done.returncode == 0 and "next: dda-validate advise mine.toml" in done.stdout
+    scene = load_scene(tmp_path / "mine.toml")
+    assert not [*plausibility_warnings(scene)]
+    short = scene.with_values({"time.steps": 3})
+    for solver in scene.run.solvers:
+        assert solve(short, solver).outcome is Outcome.COMPLETED
+    before = (tmp_path / "mine.toml").read_bytes()
+    assert "mine.toml" in refused("new", "mine.toml", cwd=tmp_path)
+    assert (tmp_path / "mine.toml").read_bytes() == before
+
+
+def test_springs_and_step_of_a_block_are_those_that_the_comments_say(tmp_path: Path) -> None:
+    path = tmp_path / "block.toml"
+    path.write_text(draft({"width": 3.0, "height": 2.0, "rock": "sandstone", "pressure": 2e6}, default))
+    scene = load_scene(path)
+    assert scene.contact.stiffness == pytest.approx(2e10 * 3.0 / (2.0 * 0.05))
+    assert damping(scene).modes[0].damping == pytest.approx(0.05, abs=0.005)
+    assert (scene.block.density, scene.load.pressure, scene.load.gravity) == (2300.0, 2e6, 9.81)
+
+
+def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path: Path) -> None:
+    path = tmp_path / "column.toml"
+    path.write_text(draft({"kind": "column", "height": 100.0, "frequency": 200.0}, default))
+    scene = load_scene(path)
+    assert scene.column is not None
+    (layer,) = scene.column.layer
+    speed = math.sqrt(layer.young / (2.5 * layer.density))
+    assert layer.blocks == math.ceil(10 * 100.0 * 200.0 / speed)
+    assert scene.time.step == pytest.approx(1 / (40 * 200.0), rel=0.05)
+    assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
+
+
+def test_what_no_option_says_is_asked() -> None:
+    questions: list[str] = []
+
+    def answer(question: str, value: float) -> float:
+        questions.append(question)
+        return 2 * value
+
+    text = draft({"kind": "slope", "width": 3.0}, answer)
+    assert len(questions) == 3 and "slope = 60.0" in text and "width = 3.0" in text
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"kind": "wall"}, "--kind"),
+        ({"rock": "cheese"}, "--rock"),
+        ({"width": -1.0}, "--width"),
+        ({"kind": "slope", "slope": 90.0}, "--slope"),
+        ({"kind": "slope", "friction": -1.0}, "--friction"),
+        ({"kind": "beam", "frequency": 5.0}, "--frequency"),
+        ({"pressure": math.nan}, "--pressure"),
+    ],
+)
+def test_what_is_refused(options: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError) as error:
+        draft(options, default)
+    assert error.value.field == field
+
+
+def test_rocks_have_waves_of_rock() -> None:
+    for rock in ROCKS.values():
+        assert 2000 < math.sqrt(rock["young"] / rock["density"]) < 6000

@@ -1,0 +1,213 @@
+"""What `advise` recommends, against closed forms, an elastic bar by its transform and runs made apart."""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import typed
+
+from validation import damping, load_scene, solve
+from validation.advice import goals
+from validation.advice.cuts import of_beam, of_column
+from validation.advice.goals import Candidate, Recommendation, recommend
+from validation.advice.overview import overview
+from validation.errors import InputError
+from validation.scenes.scene import Scene, parse_assignment
+from validation.solvers.registry import get_solver
+from validation.theory import landing
+
+GRANITE = {
+    "block.side": 1.2,
+    "block.density": 2650.0,
+    "block.young": 5e10,
+    "block.poisson": 0.25,
+    "load.pressure": 0.0,
+    "load.gravity": 9.81,
+    "time.step": 1e-3,
+}
+PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002})
+SLOPE = load_scene("slope-drag").with_values({"time.gg": 0.98, "time.step": 0.001, "time.steps": 200})
+
+
+def granite() -> Scene:
+    return PAPER.with_values(GRANITE)
+
+
+def with_settings(scene: Scene, offer: Recommendation, **values: object) -> Scene:
+    return scene.with_values(offer.settings | values)
+
+
+def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its_steps() -> None:
+    (offer,) = recommend(granite(), "static", 0.05)
+    case = with_settings(granite(), offer, **{"time.steps": offer.steps + 20})
+    elements = get_solver("fem").static(case.with_values({"fem.elements": 12}))["displacement"]
+    rest = solve(case, "dda").displacement[offer.steps - 1 :]
+    assert np.all(np.abs(rest / get_solver("dda").static(case)["displacement"] - 1) <= goals.RESTED)
+    assert abs(rest[-1] / elements - 1) == pytest.approx(offer.displacement_error, abs=0.012)
+    assert offer.is_reached and offer.settings["block.subdivide"] == [2, 2]  # of one strain a third is missing
+    modulus, width, height = 5e10, 1.2, 1.2
+    assert offer.settings["contact.stiffness"] == pytest.approx(modulus * width / (height * 0.05))
+
+
+def bar_on_a_moving_base(scene: Scene, frequency: float, times: np.ndarray) -> np.ndarray:
+    """Return the displacement of the middle of an elastic bar on springs whose base moves as Ricker's wavelet.
+
+    With u = U cosh(s y / c) from the free top, the springs say 2 p (X - u) = E a u' at the foot; the transform is
+    inverted along a line of real part sigma, where nothing is undamped.
+    """
+    side, young = scene.block.side or 0.0, scene.block.young
+    c = math.sqrt(young / scene.block.density)
+    stiffness = 2 * scene.contact.stiffness
+    step = times[0]
+    instants = step * np.arange(8 * len(times))
+    a = (np.pi * (frequency * instants - 1.5)) ** 2
+    base = np.where(instants <= times[-1], (1 - 2 * a) * np.exp(-a), 0.0)
+    sigma = 12 / instants[-1]
+    s = sigma + 2j * np.pi * np.fft.fftfreq(len(instants), step)
+    turn = s * side / c
+    top = stiffness / (stiffness * np.cosh(turn) + young * turn * np.sinh(turn))
+    middle = np.fft.ifft(top * np.cosh(turn / 2) * np.fft.fft(base * np.exp(-sigma * instants)))
+    return np.real(np.exp(sigma * instants) * middle)[1 : len(times) + 1]
+
+
+def test_a_wave_is_as_far_from_the_elastic_bar_as_it_says(tmp_path: Path) -> None:
+    (offer,) = recommend(PAPER, "wave", 0.05, 15.0)
+    assert offer.is_reached and max(offer.displacement_error, offer.force_error or 0.0) <= 0.05
+    fine = offer.settings["time.step"] / 16 * np.arange(1, 16 * offer.steps + 1)
+    a = (np.pi * (15.0 * np.r_[0.0, fine, fine[-1] + fine[0]] - 1.5)) ** 2
+    table = np.column_stack([np.r_[0.0, fine, fine[-1] + fine[0]], (1 - 2 * a) * np.exp(-a)])
+    np.savetxt(tmp_path / "base.csv", table, "%.17g", ",", header="time,y", comments="")
+    values = {"load.pressure": 0.0, "load.gravity": 0.0, "load.base_motion": str(tmp_path / "base.csv")}
+    case = with_settings(PAPER, offer, **values, **{"time.steps": offer.steps})
+    exact = bar_on_a_moving_base(case, 15.0, fine)[15::16]
+    error = np.linalg.norm(solve(case, "dda").displacement - exact) / np.linalg.norm(exact)
+    assert error == pytest.approx(offer.displacement_error, rel=0.05)
+
+
+def test_a_step_is_not_taken_whose_error_is_small_by_chance() -> None:
+    """Errors of step and blocks may cancel at one step; the candidate at half of it shows it."""
+    errors = {32: 0.5, 16: 0.01, 8: 0.3, 4: 0.04, 2: 0.03, 1: 0.03}
+    chosen = goals._longest_step(lambda every: Candidate({}, 32 // every, errors[every], None), 32, 0.05)
+    assert chosen.steps == 8
+
+
+def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands() -> None:
+    plain, conserving = recommend(PAPER, "impact", 0.05)
+    assert conserving.settings["contact.rule"] == "energy-conserving"
+    assert plain.is_reached and conserving.is_reached and conserving.steps < plain.steps
+    landing_scene = with_settings(PAPER, plain, **{"contact.law": "unilateral", "block.velocity": -3.0})
+    own = landing.own_landing(landing.stiffness_ratio(landing_scene)).restitution
+    free = landing_scene.with_values({"load.pressure": 0.0, "load.gravity": 0.0, "time.start": "zero"})
+    for phase in (0.1, 0.6):  # others than those that were run
+        gap = 3.0 * phase * plain.settings["time.step"]
+        motion = solve(free.with_values({"contact.gap": gap, "time.steps": plain.steps}), "dda").displacement
+        rebound = (motion[-1] - motion[-2]) / (3.0 * plain.settings["time.step"])
+        assert abs(rebound - own) <= 0.05
+        if phase < 0.5:
+            exact = solve(
+                free.with_values({"contact.gap": gap, "time.steps": plain.steps}), "block-events"
+            ).displacement
+            off = np.linalg.norm(motion - exact) / np.linalg.norm(exact)
+            assert off == pytest.approx(plain.displacement_error, rel=0.5)
+
+
+def test_a_quake_is_followed_in_the_contact_force_too() -> None:
+    (offer,) = recommend(PAPER, "quake", 0.05)
+    (finer,) = recommend(PAPER, "quake", 0.01)
+    assert offer.is_reached and finer.is_reached and finer.steps > offer.steps
+    assert "sideways" in offer.condition and finer.force_error is not None and finer.force_error <= 0.01
+
+
+def test_seconds_of_many_steps_follow_from_two_short_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(goals, "seconds_of", lambda scene, solver, steps: 0.5 + 0.002 * steps)
+    assert goals.estimated_seconds(PAPER, "dda", 100_000) == pytest.approx(200.5)
+    assert goals.estimated_seconds(PAPER, "dda", 3) == pytest.approx(0.506)
+    assert goals.estimated_seconds(SLOPE, "bar", 3) is None
+
+
+def test_a_block_that_slides_is_judged_by_a_rigid_one() -> None:
+    (offer,) = recommend(SLOPE, "static", 0.02)
+    assert offer.goal == "slide" and offer.settings["time.gg"] == 1.0 and offer.is_reached
+    case = with_settings(SLOPE, offer, **{"time.steps": offer.steps})
+    columns = ["horizontal_displacement", "contact_pressure"]
+    history = solve(case.with_values({"run.columns": columns}), "dda").history
+    assert history is not None
+    slope, friction = math.radians(28.9), math.radians(15.0)
+    distance = 9.81 * (math.sin(slope) - math.tan(friction) * math.cos(slope)) * offer.duration**2 / 2
+    assert abs(abs(history.columns[columns[0]][-1]) / distance - 1) == pytest.approx(offer.displacement_error, abs=1e-6)
+    present = overview(SLOPE, ()).present  # with a discount that brakes it
+    assert present is not None and present.displacement > 0.1
+
+
+@pytest.mark.parametrize(
+    ("scene", "goal"),
+    [(PAPER.with_values({"load.pressure": 0.0}), "static"), (load_scene("quadrilateral"), "impact")],
+)
+def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene: Scene, goal: str) -> None:
+    with pytest.raises(InputError) as error:
+        recommend(scene, goal, 0.05)
+    answer = overview(scene, (goal, "wave"))
+    assert answer.refused == {goal: error.value.rule}
+    assert [offer.goal for offer in answer.recommendations] == ["wave"]
+
+
+def test_the_present_settings_are_told_with_their_numbers() -> None:
+    facts = {fact.subject: fact.sentence for fact in overview(PAPER, ()).facts}
+    numbers = {name: [float(text) for text in re.findall(r"-?\d+\.?\d*(?:e[-+]?\d+)?", facts[name])] for name in facts}
+    first = damping(PAPER).modes[0]
+    assert numbers["first mode"] == pytest.approx(
+        [first.frequency, first.omega_dt, 100 * (first.damping or 0)], rel=5e-3
+    )
+    assert numbers["springs"][1] == pytest.approx(100.0)  # p = E on a square
+    assert "discount" not in facts and "gains nothing" in facts["switching"]
+    gaining = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11, "time.gg": 0.99})
+    facts = {fact.subject: fact.sentence for fact in overview(gaining, ()).facts}
+    assert "may gain energy" in facts["switching"] and "0.99" in facts["discount"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("figures-3-4", "--set", "time.step=0.002", "--set", "time.gg=0.98"),
+        ("slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.01", "--set", "time.steps=20"),
+    ],
+)
+def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
+    page = typed("advise", *words, "--goal", "static").stdout
+    commands = re.findall(r"(?:more on .*|next): dda-validate (.*)$", page, re.M)
+    assert len(commands) == 5
+    for command in commands[:-1]:
+        assert typed(*shlex.split(command)).returncode == 0, command
+    settings = dict(map(parse_assignment, re.findall(r"--set (\S+)", commands[-1])))
+    assert load_scene(words[0]).with_values(settings).time.gg == 1.0
+
+
+# ---- columns and beams ----------------------------------------------------------------------------------------------
+
+
+def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
+    scene = load_scene("waves-base").expand()[0]
+    _, offer = of_column(scene, 0.05, None)
+    case = with_settings(scene, offer, **{"time.steps": offer.steps, "run.columns": ["displacement"]})
+    a, b = (solve(case, name).displacement for name in ("dda", "layers"))
+    assert np.linalg.norm(a - b) / np.linalg.norm(b) == pytest.approx(offer.displacement_error, rel=1e-9)
+    assert offer.is_reached and "50 Hz" in offer.condition
+    with pytest.raises(InputError):
+        of_column(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
+
+
+def test_a_beam_of_squares_that_lock_is_cut_into_triangles() -> None:
+    scene = load_scene("beams-squares").expand()[0].with_values({"plane.subdivide": [1, 8]})
+    sentence, offer = of_beam(scene, 0.3)
+    assert offer.settings["plane.pattern"] == "triangles" and offer.is_reached
+    case = with_settings(scene, offer)
+    euler = 1e4 * 8**3 / (3 * 1e9 / 12)  # and 2 % of shear
+    assert get_solver("dda").static(case)["displacement"] / euler == pytest.approx(
+        1 - offer.displacement_error, abs=0.03
+    )
+    assert float(sentence.split("by ")[1].split()[0]) > 90

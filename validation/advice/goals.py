@@ -1,0 +1,491 @@
+"""What a block should be run with for a goal: candidates are run by `dda`, the cheapest that keeps the error stays.
+
+static
+    The loads of the scene act at once; a candidate is judged by the steps until displacement and contact force stay
+    within a hundredth of their limits. What remains is the model's: its static displacement against that of elements.
+    A block that slides has no rest: its own motion is judged by the distance of a rigid block.
+wave, quake
+    The base moves as Ricker's wavelet of a frequency, upwards, of a quake sideways as well. A candidate is judged by
+    its history against that of elements under average acceleration with a finer step.
+impact
+    The block lands flat and without load, at four places of a step. A candidate is judged by the worst of them, by its
+    history and its restitution against `block-events`, which is exact in time.
+
+The springs of every candidate give way by no more than the error of what the block itself shortens down to its
+centroid under the same force, E a / (p h).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.advice.coarse import closed
+from validation.advice.contact_page import elements, own
+from validation.advice.contact_page import exact as exact_solver
+from validation.advice.friction import sliding
+from validation.advice.limits import Limit, check_choice
+from validation.advice.plain import PlainAnswer
+from validation.advice.spectra import dda_modes
+from validation.errors import InputError
+from validation.metrics.columns import settling_step
+from validation.runs import extras
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.scenes.scene import Scene
+from validation.solvers.registry import get_solver, solve
+from validation.theory import friction, landing, spectra, statics
+
+GOALS = ("static", "wave", "impact", "quake")
+CONSTANT = {"time.scheme": "newmark", "time.alpha": 0.5, "time.delta": 1.0, "time.gg": 1.0}
+AVERAGE = {"time.scheme": "newmark", "time.alpha": 0.25, "time.delta": 0.5, "time.gg": 1.0}
+CONSERVING = AVERAGE | {"contact.rule": "energy-conserving"}
+STIFFEST = {"time.scheme": "newmark", "time.alpha": 1.0, "time.delta": 1.5, "time.gg": 1.0}  # no root left at w dt >> 1
+RESTED = 0.01  # of the static value, within which a quantity has settled
+STATIC_STEPS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)  # w dt of the first mode
+MOST_SETTLING = 400  # steps of a candidate
+COARSEST = 10  # steps of a period of the wavelet; the finest candidate takes 2^(REFINEMENTS - 1) times as many
+REFINEMENTS = 6
+WAVELENGTHS = 20.0  # heights of the block in the wave that is taken where none is requested
+ALONG = "horizontal_displacement"  # along the base
+RIGID_BLOCK = "a rigid block on its slope"
+QUAKE = 5.0  # Hz of the wavelet of a quake where none is requested
+ONSET = 1.5  # periods after which the wavelet peaks: it begins with less than 1e-8 of its height
+DURATION = 4.0  # periods of a run
+AMPLITUDE = 1e-3  # m of the wavelet; the motion is linear
+PHASES = (0.0, 0.25, 0.5, 0.75)  # of a step, at which the block lands
+FEWEST_SLIDE, FINEST_SLIDE = 32, 1024  # steps over the time that a block slides, of the coarsest and finest candidate
+LONGEST_SLIDE = 1000  # steps of the scene that are run of it, at most
+FEWEST_OF_CONTACT = 2  # steps of the first contact of a landing, of the coarsest candidate
+FINEST_OF_CONTACT = 512  # and of the finest
+ELEMENTS = 8  # per side of the reference, of degree two
+SHORT = 60  # steps of the shorter of two runs that are timed; the longer has four times as many
+NO_LOADS = {f"load.{name}": 0.0 for name in ("gravity", "pressure", "traction", "eccentricity", "slope", "ramp")}
+
+
+@dataclass(frozen=True)
+class Recommendation(PlainAnswer):
+    """Settings for a goal, and what is left when `dda` is run with them."""
+
+    goal: str
+    condition: str  # under which the numbers hold, in words
+    settings: dict[str, Any]  # for Scene.with_values
+    is_reached: bool  # whether both errors are within the requested one
+    displacement_error: float  # against the reference [-]
+    force_error: float | None  # of the contact pressure, or of an impact of the restitution [-]; None if not compared
+    reference: str
+    uncertainty: float  # of the reference itself [-]
+    steps: int  # for `duration`
+    duration: float  # that is run for the goal [s]
+    seconds: dict[str, float | None]  # solver -> estimate of what it takes; None where it does not apply
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Settings that were run."""
+
+    settings: dict[str, Any]
+    steps: int
+    displacement_error: float
+    force_error: float | None
+
+    @property
+    def work(self) -> int:
+        """Steps times blocks, in which candidates are ranked."""
+        blocks: list[int] = self.settings.get("block.subdivide", [1])
+        return self.steps * math.prod(blocks)
+
+    @property
+    def error(self) -> float:
+        """The greater of both [-]."""
+        return max(self.displacement_error, self.force_error or 0.0)
+
+
+def springs(scene: Scene, error: float) -> float:
+    """Return the p at which springs give way by a share of what the block shortens down to its centroid [N/m].
+
+    Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid.
+    """
+    modulus, _ = statics.moduli(scene)
+    return _rounded(modulus * scene.block.base_length / (statics.height(scene) * error))
+
+
+def yielding(scene: Scene) -> float:
+    """Return what the present springs give way by, over what the block shortens down to its centroid [-]."""
+    modulus, _ = statics.moduli(scene)
+    return modulus * scene.block.base_length / (statics.height(scene) * scene.contact.stiffness)
+
+
+def default_frequency(scene: Scene) -> float:
+    """Return the frequency of a wave `WAVELENGTHS` heights of the block long [Hz]."""
+    return _rounded(1 / (WAVELENGTHS * spectra.transit(scene)))
+
+
+def check(goal: str | None, error: float, frequency: float | None) -> None:
+    """Refuse a goal, an error or a frequency that is none, by the options of the command line.
+
+    Raises
+    ------
+    InputError
+        With the rule.
+    """
+    if goal is not None:
+        check_choice("--goal", goal, GOALS)
+    Limit("--error", "must be above 0 and below 1", below=1.0).check(error)
+    Limit("--frequency").check(frequency)
+
+
+def recommend(scene: Scene, goal: str, error: float, frequency: float | None = None) -> tuple[Recommendation, ...]:
+    """Return what a block should be run with for a goal; of an impact also with energy-conserving contact.
+
+    Parameters
+    ----------
+    scene
+        A scene of a block, without a sweep.
+    goal
+        One of `GOALS`.
+    error
+        Requested relative error of displacement and contact force [-].
+    frequency
+        Of the wave or the quake [Hz].
+
+    Raises
+    ------
+    InputError
+        The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
+    """
+    values: dict[str, Any] = {"contact.stiffness": springs(scene, error)}
+    values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
+    if scene.time.scheme != "newmark":
+        values |= CONSTANT  # explicit steps have a start of their own
+    sprung = scene.with_values(values)
+    block = closed(at_rest(sprung))
+    slides = sliding(scene)
+    if goal == "static" and slides is not None and not slides.stands:
+        return (_slide(scene, error),)
+    if goal == "static":
+        return (_static(sprung, block, error),)
+    if goal == "impact":
+        return _impacts(block, error, abs(scene.block.velocity))
+    if goal == "quake":
+        return (_driven(block, goal, error, frequency or QUAKE, ("x", "y")),)
+    return (_driven(block, goal, error, frequency or default_frequency(scene), ("y",)),)
+
+
+def at_rest(scene: Scene) -> Scene:
+    """Return a scene whose block stands still and upright, as a contact that stays closed has it."""
+    if scene.block.velocity == scene.block.tilt == 0:
+        return scene
+    return scene.with_values({"block.velocity": 0.0, "block.tilt": 0.0})
+
+
+def _rounded(value: float) -> float:
+    """Return two digits of a number, which is as much as a rule of thumb has."""
+    return float(f"{value:.1e}")
+
+
+# ---- static ---------------------------------------------------------------------------------------------------------
+
+
+def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
+    """Return the rows and the step with which a block comes to rest in the fewest steps.
+
+    Parameters
+    ----------
+    scene
+        With the contact as it is stated, which may open on the way.
+    block
+        The same with closed contact, which has static values.
+    error
+        Requested.
+    """
+    if block.load.base_motion is not None or not get_solver(own()).static(block)[DISPLACEMENT]:
+        raise InputError("needs a load with a static answer", source=block.name, field="--goal", value="static")
+    coarse, fine = (get_solver(elements()).static(meshed) for meshed in _meshes(block))
+    for pieces in _pieces(block):
+        cut = _cut(block, pieces)
+        limits = get_solver(own()).static(block.with_values(cut))
+        errors = [abs(limits[name] / fine[name] - 1) for name in (DISPLACEMENT, PRESSURE)]
+        if max(errors) <= error:
+            break
+    first = dda_modes(block)[0].frequency
+    candidates = []
+    for scheme, omega_dt in itertools.product((CONSTANT, STIFFEST), STATIC_STEPS):
+        settings = scheme | cut | {"time.step": _rounded(omega_dt / first)}
+        history = _history(scene, own(), settings | {"time.steps": MOST_SETTLING})
+        if history is None:
+            continue
+        rests = [settling_step(history.columns[name], limits[name], RESTED) for name in (DISPLACEMENT, PRESSURE)]
+        steps = [rest for rest in rests if isinstance(rest, float)]
+        if len(steps) == len(rests):
+            candidates.append(Candidate(settings, int(max(steps)), *errors))
+    if not candidates:
+        rule = f"comes to rest in {MOST_SETTLING} steps at none of those that were tried"
+        raise InputError(rule, source=block.name, field="--goal", value="static")
+    best = min(candidates, key=lambda candidate: candidate.steps)
+    condition = "loads at once; at rest when displacement and force stay within 1 % of their limits"
+    reference = ("static elements", abs(coarse[DISPLACEMENT] / fine[DISPLACEMENT] - 1))
+    duration = best.steps * float(best.settings["time.step"])
+    return recommendation(scene, "static", condition, best, error, reference, duration)
+
+
+def _slide(scene: Scene, error: float) -> Recommendation:
+    """Return the longest step with which a block slides as far as a rigid one, on its own springs."""
+    duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
+    finest = duration / FINEST_SLIDE
+    plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+
+    def run(every: int) -> Candidate:
+        settings = CONSTANT | {"time.step": every * finest}
+        steps = FINEST_SLIDE // every
+        errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
+        return Candidate(settings, steps, *errors)
+
+    best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
+    condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
+    return recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration)
+
+
+def slide_errors(scene: Scene) -> tuple[float, float] | None:
+    """Return how far `dda` is from a rigid block that slides: of the distance, and of the mean contact pressure [-].
+
+    Undamped stiff springs may let the exact block hop, which then slides farther; a rigid block stays on its slope.
+    None where the run did not complete.
+    """
+    history = _history(scene, own(), {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+    if history is None:
+        return None
+    distance = abs(float(history.columns[ALONG][-1])) / friction.run_out(scene, scene.time.duration)
+    pressure = scene.block.mass * friction.across(scene) / scene.block.base_length
+    return abs(distance - 1), abs(float(np.mean(history.columns[PRESSURE])) / pressure - 1)
+
+
+# ---- wave and quake -------------------------------------------------------------------------------------------------
+
+
+def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple[str, ...]) -> Recommendation:
+    duration = DURATION / frequency
+    finest = 1 / (frequency * COARSEST * 2 ** (REFINEMENTS - 1))
+    with tempfile.TemporaryDirectory() as folder:
+        record = Path(folder) / "wavelet.csv"
+        _write_wavelet(record, frequency, duration, finest, axes)
+        columns = [DISPLACEMENT, PRESSURE, *([ALONG] if "x" in axes else [])]
+        driven = block.with_values(NO_LOADS | {"load.base_motion": str(record), "run.columns": columns})
+        fine = AVERAGE | {"time.step": finest, "time.steps": round(duration / finest)}
+        coarser, exact = (_history(meshed, elements(), fine) for meshed in _meshes(driven))
+        if exact is None or coarser is None:
+            raise InputError("the elements have no motion to compare with", source=block.name, field="goal", value=goal)
+        best = _cheapest(driven, error, exact, finest)
+        uncertainty = difference(coarser, exact, DISPLACEMENT)
+        along = "upwards" if axes == ("y",) else "upwards and sideways"
+        condition = f"base moves {along} as Ricker's wavelet of {frequency:.4g} Hz, contact closed"
+        reference = ("elements, fine in time", uncertainty)
+        return recommendation(driven, goal, condition, best, error, reference, duration)
+
+
+def _write_wavelet(path: Path, frequency: float, duration: float, step: float, axes: tuple[str, ...]) -> None:
+    """Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base."""
+    times = np.arange(round(duration / step) + 2) * step
+    a = (np.pi * (frequency * times - ONSET)) ** 2
+    motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
+    table = np.column_stack([times, *[motion - motion[0]] * len(axes)])
+    np.savetxt(path, table, delimiter=",", header=",".join(("time", *axes)), comments="")
+
+
+def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Candidate:
+    """Return the candidate with the fewest steps times blocks that keeps the error, or that with the least error."""
+    tried: list[Candidate] = []
+    for pieces in _pieces(driven):
+        good = []
+        for scheme in (AVERAGE, CONSTANT):
+
+            def run(every: int, scheme: Mapping[str, Any] = scheme, pieces: int = pieces) -> Candidate:
+                steps = len(exact.time) // every
+                settings = {**scheme, **_cut(driven, pieces), "time.step": every * finest}
+                history = _history(driven, own(), settings | {"time.steps": steps})
+                if history is None:
+                    return Candidate(settings, steps, math.inf, math.inf)
+                errors = [difference(history, exact, name, every) for name in (DISPLACEMENT, PRESSURE)]
+                return Candidate(settings, steps, *errors)
+
+            tried.append(run(1))
+            if tried[-1].error <= error:
+                good.append(_longest_step(run, 2 ** (REFINEMENTS - 1), error))
+        if good:
+            return min(good, key=lambda candidate: candidate.work)
+    return min(tried, key=lambda candidate: candidate.error)
+
+
+def _longest_step(run: Callable[[int], Candidate], coarsest: int, error: float) -> Candidate:
+    """Return the candidate with the longest step that keeps the error and keeps it at half that step too.
+
+    An error of the step and one of the blocks may cancel at one step and at no other.
+
+    Parameters
+    ----------
+    run
+        Returns the candidate of a multiple of the finest step.
+    coarsest
+        Multiple to begin with, a power of two.
+    error
+        Requested.
+    """
+    candidate = run(coarsest)
+    while coarsest > 1:
+        coarsest //= 2
+        finer = run(coarsest)
+        if max(candidate.error, finer.error) <= error:
+            return candidate
+        candidate = finer
+    return candidate
+
+
+# ---- impact ---------------------------------------------------------------------------------------------------------
+
+
+def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendation, ...]:
+    extras.require("the exact motion of an impact", *extras.EXACT)
+    if block.block.rectangle is None:
+        raise InputError("needs an upright rectangle", source=block.name, field="--goal", value="impact")
+    speed = own_speed or 1.0
+    transit = spectra.transit(block)
+    contact_time = landing.own_landing(landing.stiffness_ratio(block)).duration * transit
+    finest = contact_time / FINEST_OF_CONTACT
+    duration = 3 * contact_time + 4 * transit  # the block is in flight again, whatever its springs
+    values = NO_LOADS | {"contact.law": "unilateral", "contact.friction": None, "block.velocity": -speed}
+    falling = block.with_values(values | {"run.columns": [DISPLACEMENT, PRESSURE]})
+    steps = math.ceil(duration / finest)
+    exact = _history(falling, exact_solver(), AVERAGE | {"time.step": finest, "time.steps": steps})
+    if exact is None:
+        raise InputError("has no exact motion of a landing", source=block.name, field="--goal", value="impact")
+    flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])
+    speed_in_words = "its own speed" if own_speed else "any speed"
+    condition = f"lands flat at {speed_in_words} without load, anywhere in a step; force: its restitution"
+    reference = ("block-events, one strain", 0.0)
+    offers = []
+    for method in (CONSTANT, CONSERVING):
+        if method is CONSERVING and block.block.poisson != 0:
+            continue  # its base slides, which the rule does not take with springs of shear
+
+        def run(every: int, method: Mapping[str, Any] = method) -> Candidate:
+            settings = {**method, "time.step": every * finest}
+            errors = [_landing_errors(falling, settings, flight, every, phase, speed) for phase in PHASES]
+            return Candidate(settings, steps // every, *np.max(errors, axis=0).tolist())
+
+        best = _longest_step(run, FINEST_OF_CONTACT // FEWEST_OF_CONTACT, error)
+        offers.append(recommendation(falling, "impact", condition, best, error, reference, duration))
+    return tuple(offers)
+
+
+def _landing_errors(
+    falling: Scene, settings: Mapping[str, Any], flight: Array, every: int, phase: float, speed: float
+) -> tuple[float, float]:
+    """Return the errors of displacement and restitution of a block that lands at a phase of its first step.
+
+    `flight` is the exact displacement at every `every`-th part of a step from the landing on.
+    """
+    before = round(phase * every)  # instants of the exact motion until the landing
+    step = settings["time.step"]
+    count = (len(flight) - 1) // every
+    gap = before / every * step * speed
+    history = _history(falling, own(), {**settings, "contact.gap": gap, "time.steps": count})
+    if history is None:
+        return math.inf, math.inf
+    displacement = history.columns[DISPLACEMENT]
+    exact = flight[every - before :: every][:count] - gap
+    difference = float(np.linalg.norm(displacement - exact) / np.linalg.norm(exact))
+    rebounds = [float(motion[-1] - motion[-2]) / (step * speed) for motion in (displacement, exact)]
+    return difference, abs(rebounds[0] - rebounds[1])
+
+
+# ---- what all share -------------------------------------------------------------------------------------------------
+
+
+def _pieces(scene: Scene) -> list[int]:
+    """Return into how many pieces each side of a block may be cut; a block of another outline stays whole."""
+    return [1, 2, 4] if scene.block.rectangle is not None else [1]
+
+
+def _cut(scene: Scene, pieces: int) -> dict[str, Any]:
+    """Return the settings that cut each present block upwards, and sideways where it strains sideways."""
+    if pieces == 1:
+        return {}
+    across, upwards = scene.block.subdivide or (1, 1)
+    sideways = pieces if scene.block.poisson else 1
+    return {"block.subdivide": [across * sideways, upwards * pieces]}
+
+
+def _history(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:
+    """Return the history of a run with some values; None where it did not complete."""
+    run = solve(scene.with_values(dict(values)), solver)
+    return run.history if run.outcome.value == "completed" else None
+
+
+def _meshes(scene: Scene) -> tuple[Scene, Scene]:
+    """Return a scene on two meshes, the finer last; a mesh of the user's is all there is."""
+    if scene.fem.mesh is not None:
+        return scene, scene
+    return scene.with_values({"fem.elements": ELEMENTS // 2}), scene.with_values({"fem.elements": ELEMENTS})
+
+
+def difference(history: History, exact: History, column: str, every: int = 1) -> float:
+    """Return the difference of a column over the exact one, by root mean squares, at each `every`-th exact instant."""
+    reference = exact.columns[column][every - 1 :: every]
+    difference = history.columns[column][: len(reference)] - reference
+    scale = float(np.linalg.norm(reference))
+    if scale == 0:
+        return math.inf if np.any(difference) else 0.0
+    return float(np.linalg.norm(difference)) / scale
+
+
+def recommendation(
+    scene: Scene,
+    goal: str,
+    condition: str,
+    chosen: Candidate,
+    error: float,
+    reference: tuple[str, float],
+    duration: float,
+) -> Recommendation:
+    """Return a candidate as what is recommended, timed on the scene that it was run on."""
+    case = scene.with_values(chosen.settings)
+    steps = math.ceil(duration / case.time.step * (1 - 1e-9))
+    return Recommendation(
+        goal,
+        condition,
+        chosen.settings | ({"contact.stiffness": scene.contact.stiffness} if scene.kind == "block" else {}),
+        chosen.error <= error,
+        chosen.displacement_error,
+        chosen.force_error,
+        *reference,
+        steps,
+        duration,
+        {solver: estimated_seconds(case, solver, steps) for solver in (own(), elements())},
+    )
+
+
+def estimated_seconds(scene: Scene, solver: str, steps: int) -> float | None:
+    """Return about how long some steps of a solver take, with their set-up [s]; None where it does not apply.
+
+    Many steps are not run: two short runs are timed, of which the longer has four times the steps of the shorter.
+    """
+    if get_solver(solver).refusal(scene):
+        return None
+    if steps <= 4 * SHORT:
+        return seconds_of(scene, solver, steps)
+    shorter, longer = (seconds_of(scene, solver, count) for count in (SHORT, 4 * SHORT))
+    return longer + (steps - 4 * SHORT) * max(longer - shorter, 0.0) / (3 * SHORT)
+
+
+def seconds_of(scene: Scene, solver: str, steps: int) -> float:
+    """Return how long a run of some steps takes [s]."""
+    start = time.perf_counter()
+    solve(scene.with_values({"time.steps": steps}), solver)
+    return time.perf_counter() - start

@@ -1,0 +1,264 @@
+"""The command ``advise``: all about a scene at once, and its parts ``damping``, ``step``, ``schemes`` and ``wave``."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import shlex
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from validation.cli.app import JsonOption, SceneArgument, SetOption, _progress, one_case, parts
+from validation.cli.printing.output import broken, columns, echo_answer
+from validation.runs.numbers import number_text, share_text
+
+if TYPE_CHECKING:
+    from validation.advice.advice import Solution
+    from validation.advice.spectra import Damping
+    from validation.scenes.scene import Scene
+
+Answer = tuple[Any, Iterable[str]]  # plain data, and the lines that say it
+TargetOption = Annotated[float, typer.Option("--damping", help="Target damping ratio, 0.05 for 5 %.", min=0.0)]
+
+
+@parts.command()
+def everything(
+    scene: SceneArgument,
+    goal: Annotated[
+        str | None,
+        typer.Option("--goal", help="Only static, wave, impact or quake, and its settings as --set.", metavar="GOAL"),
+    ] = None,
+    error: Annotated[
+        float, typer.Option("--error", help="Allowed error of displacement and contact force, 0.05 for 5 %.")
+    ] = 0.05,
+    frequency: Annotated[
+        float | None,
+        typer.Option(
+            "--frequency",
+            help="Of the wave or the quake. (a wave ten blocks long and 5 Hz if absent)",
+            metavar="HZ",
+        ),
+    ] = None,
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what step, springs and discount of a scene really do, and which to take for what, each as run by dda.
+
+    Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002[/bold]
+
+    Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --goal wave --frequency 20 --error 0.1[/bold]
+
+    Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
+    """
+    from validation.advice.goals import check
+
+    check(goal, error, frequency)
+    words = shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
+    case = one_case(scene, assignments)
+    with _progress("advise", between_calls=True) as progress:
+        if case.kind == "block":
+            from validation.advice.goals import GOALS
+            from validation.advice.overview import lines, overview
+            from validation.advice.plain import plain
+
+            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress)
+            data: Any = plain(answer.as_dict())
+            text: Iterable[str] = lines(case, words, answer)
+        else:
+            data, text = _of_blocks(case, words, error, frequency)
+    echo_answer(data, map(broken, text), as_json)
+
+
+def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) -> Answer:
+    """Say into how many blocks to cut a column or a beam; of contacts that open or slip, what solving them takes."""
+    from dataclasses import asdict
+
+    from validation.advice.columns import advised, column_alarms, limits, rest
+    from validation.advice.cuts import of_beam, of_column
+    from validation.advice.overview import Overview, recommended
+    from validation.advice.plain import plain
+    from validation.scenes.features import refuse_column
+
+    bounds = limits(case)
+    if bounds is not None:
+        resting = rest(case)
+        alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
+        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
+        return plain(data), (*advised(case, bounds, resting), *alarms)
+    if case.kind == "rigid":
+        refuse_column(case, "advise")
+    sentence, offer = of_beam(case, error) if case.kind == "plane" else of_column(case, error, frequency)
+    answer = Overview(case.name, error, (), None, (offer,), {})
+    return plain({"sentence": sentence, **answer.as_dict()}), (sentence, "", *recommended(source, answer))
+
+
+@parts.command()
+def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOption = False) -> None:
+    """Show the damping that a scene really has, mode by mode: total, algorithmic, kinetic and viscous.
+
+    Example: [bold]dda-validate advise damping figures-3-4 --set time.step=0.002[/bold]
+    """
+    from validation.advice.spectra import damping as analyse
+
+    analysis = analyse(one_case(scene, assignments), references=True)
+    echo_answer(analysis.as_dict(), _damping_lines(analysis), as_json)
+
+
+@parts.command()
+def step(
+    scene: SceneArgument,
+    target: TargetOption,
+    solve_for: Annotated[
+        str,
+        typer.Option(
+            "--solve-for",
+            help="What to vary: dt, gg, or scheme (delta, with alpha = (1/2 + delta)^2 / 4).",
+            metavar="NAME",
+        ),
+    ] = "dt",
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find the step, the discount or the scheme that damps the first axial mode as you want.
+
+    Example: [bold]dda-validate advise step figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
+    """
+    from validation.advice.advice import advise as solve_for_damping
+    from validation.advice.advice import expected_errors
+
+    case = one_case(scene, assignments)
+    with _progress("advise", between_calls=True):
+        advice = solve_for_damping(case, target, solve_for)
+        data = advice.as_dict()
+        lines = [broken(advice.sentence)]
+        for solution, plain_solution in zip(advice.solutions, data["solutions"], strict=True):
+            plain_solution["errors"] = expected_errors(case, solution)
+            lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
+            lines.append(columns([(f"  {key}", value) for key, value in _facts(solution, plain_solution["errors"])]))
+    echo_answer(data, lines, as_json)
+
+
+@parts.command()
+def schemes(
+    scene: SceneArgument,
+    target: TargetOption,
+    at: Annotated[
+        float | None, typer.Option("--at", help="Frequency of that damping; the first mode's if absent.", metavar="HZ")
+    ] = None,
+    no_gain: Annotated[
+        bool | None, typer.Option("--no-gain/--gain", help="Impacts must gain nothing; so if the contact opens.")
+    ] = None,
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Show each time scheme at the step that has a damping ratio at a frequency, the recommended first.
+
+    Example: [bold]dda-validate advise schemes figures-3-4 --set time.step=0.002 --damping 0.05 --at 5 --no-gain[/bold]
+    """
+    from validation.advice.across import advise_across
+
+    with _progress("advise", between_calls=True):
+        advice = advise_across(one_case(scene, assignments), target, at, no_gain)
+    offers = advice.offers
+    heads = [f"xi at {float(hertz):.4g} Hz" for hertz in (offers[0].hidden if offers else ())]
+    rows: list[tuple[str, ...]] = [("", "dt [s]", *heads, "first mode", "contact", "solves", "rebound", "at any step")]
+    for offer in offers:
+        ratios = map(_percent, (*offer.hidden.values(), offer.first_mode, offer.contact_mode))
+        numbers = (number_text(number, 3) for number in (offer.cost, offer.rebound["most"], offer.greatest_rebound))
+        rows.append((offer.name, f"{offer.step:.5g}", *ratios, *numbers))
+    notes = [f"{offer.name}: {'; '.join(offer.fears)}" for offer in offers if offer.fears]
+    notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
+    legend = "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
+    lines = [f"{broken(advice.sentence)}\n", columns(rows), legend, *map(broken, notes)]
+    echo_answer(advice.as_dict(), lines, as_json)
+
+
+@parts.command()
+def wave(
+    scene: SceneArgument,
+    fmax: Annotated[float, typer.Option("--fmax", help="Highest frequency of a wave that must arrive.", metavar="HZ")],
+    loss: Annotated[float, typer.Option("--loss", help="Share of the wave's amplitude that may be lost.")] = 0.1,
+    wavelengths: Annotated[
+        float | None,
+        typer.Option("--wavelengths", help="Wavelengths that the wave travels; without it the height of the column."),
+    ] = None,
+    phase_error: Annotated[
+        float, typer.Option("--phase-error", help="Fraction of a period by which the wave may arrive early or late.")
+    ] = 0.05,
+    assignments: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find the blocks and the step with which a wave arrives.
+
+    Example: [bold]dda-validate advise wave figures-3-4 --set time.step=0.01 --fmax 20 --wavelengths 10[/bold]
+    """
+    from validation.advice.wave_advice import advise_wave
+
+    with _progress("advise", between_calls=True):
+        advice = advise_wave(one_case(scene, assignments), fmax, loss, wavelengths, phase_error)
+    rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
+    for name, passage in (("present", advice.present), ("advised", advice.advised)):
+        if passage is not None:
+            heights = ", ".join(f"{height:.5g}" for height in passage.heights)
+            shares = share_text(passage.loss, 4), f"{passage.delay:+.4g}", _percent(passage.damping)
+            rows.append((name, heights, f"{passage.step:.6g}", *shares))
+    lines = [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
+    echo_answer(advice.as_dict(), lines, as_json)
+
+
+def _damping_lines(analysis: Damping) -> Iterator[str]:
+    """Yield the damping of every mode, and the first modes of the references."""
+    yield f"{broken(analysis.sentence)}\n\ngg = {analysis.gg:.6g} per step{_rate(analysis.gg_rate)}"
+    has_tables = any(mode.viscous for mode in analysis.modes)
+    shares = ("algorithmic", "kinetic", "viscous") if has_tables else ("algorithmic", "kinetic")
+    rows: list[tuple[str, ...]] = [("mode", "w [rad/s]", "w dt", "xi [%]", *shares, "|lambda|", "w/w' - 1")]
+    for mode in analysis.modes:
+        ratios = [number_text(getattr(mode, part), factor=100) for part in ("damping", *shares)]
+        elongation = number_text(mode.period_elongation, 3)
+        radius = f"{mode.spectral_radius:.6g}"
+        rows.append((mode.name, f"{mode.frequency:.6g}", f"{mode.omega_dt:.4g}", *ratios, radius, elongation))
+    for name, values in analysis.references.items():
+        ratio = number_text(values["damping"], factor=100)
+        rows.append((f"{name}, first", f"{values['frequency']:.6g}", "", ratio, *[""] * (len(shares) + 2)))
+    yield columns(rows)
+    if analysis.alias is not None:
+        first = analysis.references["bar"]["frequency"] or 0.0
+        alias_note = (
+            f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = "
+            f"{math.pi / analysis.step:.6g} rad/s; samples every dt show {analysis.alias:.6g} rad/s instead"
+        )
+        yield f"\n{broken(alias_note)}"
+
+
+def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    from validation.advice.advice import NO_STATIC
+    from validation.advice.spectra import runs
+
+    settles = f"never (from the {solution.settling_from})"
+    if solution.settling_from == NO_STATIC:
+        settles = f"nowhere: the loads have {NO_STATIC}"
+    elif solution.settling_steps is not None:
+        steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
+        settles = f"{steps} (from the {solution.settling_from})"
+    yield "damping ratio", share_text(solution.damping, 6)
+    yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
+    yield "displacement settles", settles
+    if solution.contact is not None:
+        yield "contact mode", runs(solution.contact)
+    for name in ("fem", "continuum"):
+        values = error.get(name, {})
+        differences = [f"{key} {share_text(value)}" for key, value in values.items() if isinstance(value, float)]
+        text = "; ".join(map(str, values.values()))
+        if differences:
+            text = f"{', '.join(differences)} over {error['window']:.4g} s (relative L2)"
+        yield f"differs from {name} by", text
+
+
+def _rate(gg_rate: float | None) -> str:
+    return "" if gg_rate is None else f", c = {gg_rate:.4g} 1/s"
+
+
+def _percent(value: float | None, none: str = "real roots") -> str:
+    return none if value is None else number_text(value, factor=100, unit=" %")
