@@ -15,6 +15,8 @@ from validation.report.front.first import first_page, verdict_line
 from validation.report.front.groups import paper_scene
 from validation.report.references import PAPER, identity
 
+OVERVIEW_SCENES = 25  # lines of a table that leave room on a page for what the gates found
+
 
 def front_pages(
     groups: Groups,
@@ -32,7 +34,9 @@ def front_pages(
         judged = [verdict_line(verdicts)] if verdicts else []
         if len(groups) == 1:  # whose page begins here, with its alarms
             return [imprint, *judged, *failures]
-        return [imprint, Heading("Scenes"), overview(groups), *judged, *failures]
+        # More scenes than a page has lines for are those of studies, whose chapters begin with what came out.
+        scenes = [Heading("Scenes"), overview(groups)] if len(groups) <= OVERVIEW_SCENES else []
+        return [imprint, *scenes, *judged, *failures]
     return [
         imprint,
         *first_page(groups, paper, verdicts, directory),
