@@ -8,16 +8,13 @@ searched: the boundary of the paper's (14), with |lambda| at infinity from 1 dow
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
-from validation.advice.alternatives import alternative
 from validation.advice.limits import check_choice
 from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
@@ -82,7 +79,6 @@ class Advice(PlainAnswer):
     greatest: float | None  # greatest xi [1]
     greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
-    instead: dict[str, float] | None = None  # settings with another parameter that give the target
 
 
 def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
@@ -196,14 +192,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         reach = (least, search.value(float(at_least)), greatest, search.value(float(at_greatest)))
     solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
     text = _sentence(scene, solve_for, damping, solutions, reach)
-    answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    if solutions:
-        return answer
-    makes = {
-        kind: functools.partial(make, frequency=modes[0].frequency, highest=highest) for kind, make in SEARCHES.items()
-    }
-    instead, words = alternative(scene, solve_for, damping, makes, modes[0].frequency)
-    return replace(answer, sentence=f"{answer.sentence} {words}", instead=instead)
+    return Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
 
 
 def _solution(scene: Scene, search: Search, s: float) -> Solution:
@@ -261,32 +250,6 @@ def _crossing(radius: float, level: float) -> float:
     if level >= 1 or radius <= 0:
         return 1.0
     return math.log(level) / math.log(radius) if radius < 1 else math.inf
-
-
-def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> dict[str, Any]:
-    """Return the relative L2 differences of DDA from finite elements and continuum at a solution.
-
-    The window is the scene's own duration, whatever dt is, cut where it would take more than `longest` steps.
-    """
-    from validation.metrics.catalogue import pair
-
-    steps = max(2, min(longest, round(scene.time.duration / solution.step)))
-    columns = ["displacement", "contact_pressure"]
-    case = scene.with_values(solution.settings | {"time.steps": steps, "run.columns": columns})
-    dda = solve(case, "dda").history
-    errors: dict[str, Any] = {"window": steps * case.time.step}
-    for name in ("fem", "continuum"):
-        if reason := get_solver(name).refusal(case):
-            errors[name] = {"not applicable": reason}
-            continue
-        try:
-            reference = solve(case, name).history
-        except InputError as error:
-            errors[name] = {"not applicable": str(error)}
-            continue
-        if dda is not None and reference is not None:
-            errors[name] = {q: pair(f"{q}.l2", dda, reference) for q in ("displacement", "pressure")}
-    return errors
 
 
 # ---- the sentence -------------------------------------------------------------------------------------------------

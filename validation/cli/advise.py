@@ -55,7 +55,7 @@ def everything(
     from validation.advice.goals import check
 
     check(goal, error, frequency)
-    words = shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
+    words = _words(scene, assignments)
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True) as progress:
         if case.kind == "block":
@@ -69,6 +69,11 @@ def everything(
         else:
             data, text = _of_blocks(case, words, error, frequency)
     echo_answer(data, map(broken, text), as_json)
+
+
+def _words(scene: str, assignments: list[str] | None) -> str:
+    """Return a scene with values set as a command line has it."""
+    return shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
 
 
 def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) -> Answer:
@@ -126,18 +131,17 @@ def step(
     Example: [bold]dda-validate advise step figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
     """
     from validation.advice.advice import advise as solve_for_damping
-    from validation.advice.advice import expected_errors
 
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True):
         advice = solve_for_damping(case, target, solve_for)
-        data = advice.as_dict()
-        lines = [broken(advice.sentence)]
-        for solution, plain_solution in zip(advice.solutions, data["solutions"], strict=True):
-            plain_solution["errors"] = expected_errors(case, solution)
-            lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
-            lines.append(columns([(f"  {key}", value) for key, value in _facts(solution, plain_solution["errors"])]))
-    echo_answer(data, lines, as_json)
+    lines = [broken(advice.sentence)]
+    for solution in advice.solutions:
+        lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
+        lines.append(columns([(f"  {key}", value) for key, value in _facts(solution)]))
+    if not advice.solutions:
+        lines.append(f"more: dda-validate advise schemes {_words(scene, assignments)} --damping {target:g}")
+    echo_answer(advice.as_dict(), lines, as_json)
 
 
 @parts.command()
@@ -232,7 +236,7 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
         yield f"\n{broken(alias_note)}"
 
 
-def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _facts(solution: Solution) -> Iterator[tuple[str, str]]:
     from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 
@@ -247,13 +251,6 @@ def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str
     yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
-    for name in ("fem", "continuum"):
-        values = error.get(name, {})
-        differences = [f"{key} {share_text(value)}" for key, value in values.items() if isinstance(value, float)]
-        text = "; ".join(map(str, values.values()))
-        if differences:
-            text = f"{', '.join(differences)} over {error['window']:.4g} s (relative L2)"
-        yield f"differs from {name} by", text
 
 
 def _rate(gg_rate: float | None) -> str:
