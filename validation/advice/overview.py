@@ -80,6 +80,7 @@ def overview(
     error: float = 0.05,
     frequency: float | None = None,
     progress: Callable[[int, int, str], None] = lambda *_: None,
+    keep_springs: bool = False,
 ) -> Overview:
     """Return what the settings of a block do, and what to take for goals.
 
@@ -95,6 +96,8 @@ def overview(
         Of the wave and the quake [Hz].
     progress
         Is told what has been done, how much there is, and what comes next.
+    keep_springs
+        Whether the springs are those of a real joint, and stay.
 
     Raises
     ------
@@ -111,7 +114,7 @@ def overview(
     for number, goal in enumerate(chosen, 1):
         progress(number, len(chosen) + 1, goal)
         try:
-            recommendations += goals.recommend(scene, goal, error, frequency)
+            recommendations += goals.recommend(scene, goal, error, frequency, keep_springs)
         except InputError as reason:
             refused[goal] = reason.rule
     return Overview(scene.name, error, facts, present, tuple(recommendations), refused)
@@ -221,7 +224,7 @@ def lines(scene: Scene, source: str, answer: Overview) -> Iterator[str]:
 def recommended(source: str, answer: Overview) -> Iterator[str]:
     """Yield what to take, its conditions, and what to type next."""
     if answer.recommendations:
-        how = "each as run by dda, seconds estimated; springs of a real joint keep their p"
+        how = "each as run by dda, seconds estimated; for springs of a real joint add --keep-springs"
         yield f"What to take for an error of {share_text(answer.error)}, {how}"
         yield in_columns(_table(answer))
     for goal, offer in {offer.goal: offer for offer in answer.recommendations}.items():

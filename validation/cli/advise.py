@@ -41,6 +41,9 @@ def everything(
             metavar="HZ",
         ),
     ] = None,
+    keep_springs: Annotated[
+        bool, typer.Option("--keep-springs", help="Of a block: they are those of a real joint, and stay.")
+    ] = False,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -63,7 +66,7 @@ def everything(
             from validation.advice.overview import lines, overview
             from validation.advice.plain import plain
 
-            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress)
+            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress, keep_springs)
             data: Any = plain(answer.as_dict())
             text: Iterable[str] = lines(case, words, answer)
         else:
