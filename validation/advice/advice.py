@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
+from validation.advice.friction import left_of_a_distance
 from validation.advice.limits import check_choice
 from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
@@ -26,6 +27,7 @@ from validation.advice.spectra import (
     mode_damping,
     mode_names,
     runs,
+    steps_to,
 )
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
@@ -34,7 +36,6 @@ from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
-from validation.theory.friction import distance_share
 
 LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
@@ -234,22 +235,15 @@ def _settling(case: Scene) -> tuple[int | None, str]:
     if static == 0:
         return None, NO_STATIC
     modes = [(mode.spectral_radius, abs(mode.share)) for mode in dda_modes(case)]
-    last = [_crossing(radius, 0.01 / (GAIN * share)) for radius, share in modes if share > 0]
+    last = [steps_to(0.01 / (GAIN * share), radius) for radius, share in modes if share > 0]
     ramp = case.load.ramp / case.time.step  # steps until the load stands in full
     if max(last) + ramp > LONGEST:
-        rough = ramp + max(_crossing(radius, 0.01 / share) for radius, share in modes if share > 0)
+        rough = ramp + max(steps_to(0.01 / share, radius) for radius, share in modes if share > 0)
         return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
     steps = max(10, math.ceil(ramp + max(last)) + 10)
     run = solve(case.with_values({"time.steps": steps}), "dda")
     step = settling_step(run.displacement, static)
     return (int(step) if isinstance(step, float) else None), "history"
-
-
-def _crossing(radius: float, level: float) -> float:
-    """Step at which radius^n falls below a level."""
-    if level >= 1 or radius <= 0:
-        return 1.0
-    return math.log(level) / math.log(radius) if radius < 1 else math.inf
 
 
 # ---- the sentence -------------------------------------------------------------------------------------------------
@@ -306,7 +300,6 @@ def _fixed_settings(scene: Scene, solve_for: str, solution: Solution) -> str:
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        share = 100 * distance_share(solution.value, solution.step, 1.0)
-        drag = f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
-        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {drag}"
+        left = left_of_a_distance(solution.value, solution.step)
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {left}"
     return ""

@@ -23,7 +23,6 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 from validation.theory import landing
-from validation.theory.friction import distance_share
 from validation.theory.stepping import Stepping
 
 DEFAULT_PENETRATION = 1e-4  # where none is requested [m]
@@ -253,11 +252,9 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
             f"{stepped['low']:.3g} to {stepped['high']:.3g} by phase; the block's own is {stepped['own']:.3g}"
         )
     if scene.time.gg_rate is None and scene.time.discount < 1:
-        share = 100 * distance_share(scene.time.discount, scene.time.step, 1.0)
-        yield (
-            f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
-            f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
-        )
+        loses = "the smaller dt, the more speed a landing loses"
+        left = friction.left_of_a_distance(scene.time.discount, scene.time.step)
+        yield f"  gg = {scene.time.discount:g} acts per step: {loses}; {left}"
 
 
 def _depth(need: Mapping[str, Any], penetration: float) -> str:

@@ -69,6 +69,12 @@ class Sliding:
         return "takes the whole velocity" if self.rate is None else f"is a drag of {self.rate:.3g} 1/s"
 
 
+def left_of_a_distance(gg: float, step: float) -> str:
+    """Say what a discount leaves of the distance that is covered in a second."""
+    share = 100 * friction.distance_share(gg, step, 1.0)
+    return f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
+
+
 def sliding(scene: Scene) -> Sliding | None:
     """Return what follows for a block with friction under its own weight, None for another one."""
     alone = scene.load.pressure == scene.load.traction == 0 and scene.load.base_motion is None

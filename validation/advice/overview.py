@@ -15,11 +15,11 @@ from validation.advice.across import GAIN, rebound_of
 from validation.advice.coarse import closed
 from validation.advice.contact_page import elements, own
 from validation.advice.contact_page import exact as exact_solver
+from validation.advice.friction import left_of_a_distance, sliding
 from validation.advice.friction import lines as friction_lines
-from validation.advice.friction import sliding
 from validation.advice.goals import AVERAGE, Recommendation
 from validation.advice.plain import Line, PlainAnswer, in_columns
-from validation.advice.spectra import CONTACT, damping, first_mode, runs
+from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
 from validation.errors import InputError
 from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -29,7 +29,6 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver, solve
 from validation.theory import landing
-from validation.theory.friction import distance_share
 from validation.theory.stepping import Stepping
 
 LONGEST = 400  # steps of the scene that its own error is measured over
@@ -130,7 +129,10 @@ def _facts(scene: Scene) -> Iterator[Fact]:
     yield Fact("first mode", f"{first.frequency:.4g} rad/s, w dt = {first.omega_dt:.3g}: {runs(first)}", "damping")
     for mode in analysis.modes:
         if mode.name == CONTACT:
-            sentence = f"{mode.frequency:.4g} rad/s: {runs(mode)}{_ringing(mode.spectral_radius)}"
+            sentence = f"{mode.frequency:.4g} rad/s: {runs(mode)}"
+            steps = steps_to(FADED, mode.spectral_radius)
+            if math.isfinite(steps):
+                sentence += f"; rings down to 1 % in {math.ceil(steps)} steps"
             yield Fact("contact mode", sentence, "damping")
     finer = first_mode(block, elements()).get("frequency")
     if finer:
@@ -144,21 +146,12 @@ def _facts(scene: Scene) -> Iterator[Fact]:
         yield Fact("springs", sentence, "contact")
     t = scene.time
     if t.discount < 1:
-        left = 100 * distance_share(t.discount, t.step, 1.0)
-        drag = f"in flight or sliding it leaves {left:.3g} % of the distance of a second"
-        sentence = f"gg = {t.discount:.6g} acts per step; {drag}"
+        sentence = f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"
         yield Fact("discount", sentence, "rayleigh")
     if scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness):
         most = rebound_of(Stepping.of(scene).stages, landing.contact_frequency(scene) * t.step).most
         may = "may gain energy" if most > 1 + GAIN else "gains nothing"
         yield Fact("switching", f"a landing on these springs at this step {may}: rebound at most {most:.3g}", "schemes")
-
-
-def _ringing(radius: float) -> str:
-    """Say how long a mode rings."""
-    if not 0 < radius < 1:
-        return ""
-    return f"; rings down to 1 % in {math.ceil(math.log(FADED) / math.log(radius))} steps"
 
 
 def _present_error(scene: Scene) -> PresentError | None:
