@@ -16,7 +16,7 @@ import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
 from validation.advice.friction import left_of_a_distance
-from validation.advice.limits import check_choice
+from validation.advice.limits import check_choice, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
@@ -29,7 +29,6 @@ from validation.advice.spectra import (
     runs,
     steps_to,
 )
-from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
 from validation.runs.numbers import share_text
@@ -37,7 +36,6 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
-LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 NO_STATIC = "no static displacement"  # in place of where a settling is from
@@ -166,15 +164,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     >>> [round(s.value, 6) for s in advise(scene, damping=0.05, solve_for="dt").solutions]
     [0.000584]
     """
-    if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
-        raise InputError("must be a damping ratio of at least 0", field="damping", value=repr(damping))
-    if damping > LARGEST_RATIO:
-        raise InputError(
-            f"must be a damping ratio from 0 to {LARGEST_RATIO:g}, where 1 is critical",
-            field="damping",
-            value=f"{damping:g}",
-            advice=f"{damping:g} % is {damping / 100:g}",
-        )
+    check_ratio(damping, 0.0)
     check_choice("solve_for", solve_for, KINDS)
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
