@@ -119,7 +119,7 @@ def answer(
         "needed": None if need is None else need._asdict(),
         "hidden_from": landing.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
-        "sliding": friction.as_dict(slides),
+        "sliding": None if slides is None else slides.as_dict(),
         "alarms": [alarm.record() for alarm in alarms],
     }
 

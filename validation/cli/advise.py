@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from validation.advice.spectra import Damping
     from validation.scenes.scene import Scene
 
-Answer = tuple[Any, Iterable[str]]  # plain data, and the lines that say it
+Answer = tuple[dict[str, Any], Iterable[str]]  # plain data, and the lines that say it
 TargetOption = Annotated[float, typer.Option("--damping", help="Target damping ratio, 0.05 for 5 %.", min=0.0)]
 
 
@@ -64,11 +64,10 @@ def everything(
         if case.kind == "block":
             from validation.advice.goals import GOALS
             from validation.advice.overview import lines, overview
-            from validation.advice.plain import plain
 
             answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress, keep_springs)
-            data: Any = plain(answer.as_dict())
             text: Iterable[str] = lines(case, words, answer)
+            data = answer.as_dict()
         else:
             data, text = _of_blocks(case, words, error, frequency)
     echo_answer(data, map(broken, text), as_json)
@@ -86,7 +85,6 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
     from validation.advice.columns import advised, column_alarms, limits, rest
     from validation.advice.cuts import of_beam, of_column
     from validation.advice.overview import Overview, recommended
-    from validation.advice.plain import plain
     from validation.scenes.features import refuse_column
 
     bounds = limits(case)
@@ -94,12 +92,12 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
         resting = rest(case)
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
         data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
-        return plain(data), (*advised(case, bounds, resting), *alarms)
+        return data, (*advised(case, bounds, resting), *alarms)
     if case.kind == "rigid":
         refuse_column(case, "advise")
     sentence, offer = of_beam(case, error) if case.kind == "plane" else of_column(case, error, frequency)
     answer = Overview(case.name, error, (), None, (offer,), {})
-    return plain({"sentence": sentence, **answer.as_dict()}), (sentence, "", *recommended(source, answer))
+    return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(source, answer))
 
 
 @parts.command()
@@ -111,7 +109,7 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
     from validation.advice.spectra import damping as analyse
 
     analysis = analyse(one_case(scene, assignments), references=True)
-    echo_answer(analysis.as_dict(), _damping_lines(analysis), as_json)
+    echo_answer(analysis, _damping_lines(analysis), as_json)
 
 
 @parts.command()
@@ -144,7 +142,7 @@ def step(
         lines.append(columns([(f"  {key}", value) for key, value in _facts(solution)]))
     if not advice.solutions:
         lines.append(f"more: dda-validate advise schemes {_words(scene, assignments)} --damping {target:g}")
-    echo_answer(advice.as_dict(), lines, as_json)
+    echo_answer(advice, lines, as_json)
 
 
 @parts.command()
@@ -179,7 +177,7 @@ def schemes(
     notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
     legend = "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
     lines = [f"{broken(advice.sentence)}\n", columns(rows), legend, *map(broken, notes)]
-    echo_answer(advice.as_dict(), lines, as_json)
+    echo_answer(advice, lines, as_json)
 
 
 @parts.command()
@@ -212,7 +210,7 @@ def wave(
             shares = share_text(passage.loss, 4), f"{passage.delay:+.4g}", _percent(passage.damping)
             rows.append((name, heights, f"{passage.step:.6g}", *shares))
     lines = [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
-    echo_answer(advice.as_dict(), lines, as_json)
+    echo_answer(advice, lines, as_json)
 
 
 def _damping_lines(analysis: Damping) -> Iterator[str]:

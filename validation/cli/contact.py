@@ -47,7 +47,6 @@ def contact(
     """
     from validation.advice import contact_page
     from validation.advice.columns import limits
-    from validation.advice.plain import plain
     from validation.scenes import features
 
     case = one_case(scene, assignments)
@@ -64,7 +63,7 @@ def contact(
         else:
             data = contact_page.column_answer(case, rows, bounds)
             lines = map(broken, contact_page.column_page(case, bounds, data, absent))
-    echo_answer(plain(data | {"absent": absent}), lines, as_json)
+    echo_answer(data | {"absent": absent}, lines, as_json)
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 
