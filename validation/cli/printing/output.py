@@ -48,7 +48,7 @@ def echo_json(data: Any) -> None:
 def echo_answer(answer: PlainAnswer | dict[str, Any], lines: Iterable[str], as_json: bool) -> None:
     """Print an answer as plain data, or its lines."""
     if as_json:
-        echo_json(plain(answer if isinstance(answer, dict) else answer.as_dict()))
+        echo_json(plain(answer.as_dict() if isinstance(answer, PlainAnswer) else answer))
         return
     for line in lines:
         echo(line)
