@@ -71,7 +71,7 @@ def test_a_discount_of_nothing_has_no_rate(tmp_path: Path) -> None:
     case = SLIDES.with_values({"time.gg": 0.0, "time.steps": 20})
     found = advice.sliding(case)
     assert found is not None and found.rate is None and "takes the whole velocity" in found.drag
-    json.dumps(advice.as_dict(found), allow_nan=False)
+    json.dumps(found.as_dict(), allow_nan=False)
     assert raised(case, tmp_path) == {advice.BRAKES}
 
 

@@ -96,8 +96,10 @@ def test_a_step_is_not_taken_whose_error_is_small_by_chance() -> None:
     assert chosen.steps == 8
 
 
-def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands() -> None:
-    plain, conserving = recommend(PAPER, "impact", 0.05)
+@pytest.mark.parametrize("keep_springs", [False, True])
+def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs: bool) -> None:
+    plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
+    assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
     assert conserving.settings["contact.rule"] == "energy-conserving"
     assert plain.is_reached and conserving.is_reached and conserving.steps < plain.steps
     landing_scene = with_settings(PAPER, plain, **{"contact.law": "unilateral", "block.velocity": -3.0})

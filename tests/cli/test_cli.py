@@ -15,13 +15,6 @@ from conftest import OVERFLOW, SCENE, refused, typed
 from validation.runs.files import read_csv
 
 
-def test_solve_writes_a_history(scene_file: Path, tmp_path: Path) -> None:
-    done = typed("solve", scene_file, "--solver", "dda", "--csv", tmp_path / "h.csv")
-    assert done.returncode == 0, done.stderr
-    assert (tmp_path / "h.csv").read_text().startswith("time,displacement,contact_pressure\n0.002,")
-    assert len(read_csv(tmp_path / "h.csv").time) == 50
-
-
 def test_fields_are_written_for_paraview(scene_file: Path, tmp_path: Path) -> None:
     done = typed("solve", scene_file, "--solver", "fem", "--fields", tmp_path / "f.vtu")
     assert done.returncode == 0, done.stderr

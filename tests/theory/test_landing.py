@@ -180,47 +180,6 @@ def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -
     assert landing._Settling.of(undamped, free_gap) is None
 
 
-@pytest.mark.parametrize("ratio", [0.1, 10.0])
-@pytest.mark.parametrize("scheme", thinned([SCHEMES[0], SCHEMES[1], SCHEMES[2], SCHEMES[4]], 3))
-def test_the_allowed_step_keeps_the_own_restitution_of_dda_and_a_longer_one_does_not(
-    ratio: float, scheme: dict[str, Any]
-) -> None:
-    error = 0.05
-    stepping = Stepping.of(on_springs(ratio, **scheme))
-    found = landing.allowed_steps(stepping, 2 * ratio, TRANSIT, error)
-    assert found.longest is not None and found.shortest is None
-    own = landing.own_landing(2 * ratio).restitution
-    phases = np.linspace(0, 1, 201)
-    largest = {}
-    for factor in (0.5, 0.8, 1.0, 1.02, 1.05, 1.2):
-        step = factor * found.longest
-        off = np.abs(landing.restitutions(stepping, 2 * ratio, step, TRANSIT, phases) - own)
-        largest[factor] = off.max()
-        if factor in (1.0, 1.2):
-            worst = min(float(phases[int(np.argmax(off))]), 0.999)  # at 1 the step before ends on the springs
-            by_dda = stepped_by_dda(ratio, scheme, step, worst)
-            assert abs(by_dda - own) == pytest.approx(off.max(), abs=2e-3)
-    assert max(largest[factor] for factor in (0.5, 0.8, 1.0)) < 1.03 * error  # a kink may lie between two phases
-    assert max(largest[factor] for factor in (1.02, 1.05, 1.2)) > error  # the error rises, not in every stretch
-
-
-def test_a_discount_per_step_leaves_an_interval_of_steps_or_none() -> None:
-    """Gg = 0.9999: too many steps take too much, too long ones as well; gg = 0.99 has none that keeps 2 %."""
-    stepping = Stepping(1.0, 0.5, 1.0, 0.9999)
-    found = landing.allowed_steps(stepping, 2.0, TRANSIT, 0.05)
-    assert found.shortest is not None and found.longest is not None and found.shortest < found.longest
-
-    def off(step: float) -> float:
-        return landing.stepped_landing(stepping, 2.0, step, TRANSIT).error
-
-    assert off(0.9 * found.shortest) > 0.05 > off(1.1 * found.shortest)
-    assert off(0.9 * found.longest) < 0.05 < off(1.1 * found.longest)
-    none = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, 0.99), 2.0, TRANSIT, 0.02)
-    assert none.longest is None and none.best > 0.15
-    rate = landing.allowed_steps(Stepping(1.0, 0.5, 1.0, rate=1.0), 2.0, TRANSIT, 0.05)
-    assert rate.longest is not None and rate.shortest is None  # a rate has a limit as dt tends to 0
-
-
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:
     for depth in (1e-3, 5e-3):
         p = landing.springs_for(UNLOADED, 1.0, depth)

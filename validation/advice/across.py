@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 
 from validation.advice import overshoot
-from validation.advice.advice import LARGEST_RATIO
 from validation.advice.coarse import closed
-from validation.advice.limits import Limit
+from validation.advice.limits import Limit, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency
 from validation.errors import InputError
@@ -117,10 +116,7 @@ def advise_across(
     >>> advice.offers[0].name, round(1e3 * advice.offers[0].step, 2)
     ('chung-hulbert (rho_inf = 0)', 19.06)
     """
-    if not (isinstance(damping, int | float) and LEAST_RATIO <= damping <= LARGEST_RATIO):
-        rule = f"must be a damping ratio from {LEAST_RATIO:g} to {LARGEST_RATIO:g}"
-        advice = f"{damping:g} % is {damping / 100:g}" if damping > LARGEST_RATIO else None
-        raise InputError(rule, field="damping", value=f"{damping:g}", advice=advice)
+    check_ratio(damping, LEAST_RATIO)
     Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
     block = _closed_block(scene)

@@ -8,17 +8,15 @@ searched: the boundary of the paper's (14), with |lambda| at infinity from 1 dow
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from dda.scheme.spectral import damping_ratio, spectral_radius
-from validation.advice.alternatives import alternative
-from validation.advice.limits import check_choice
+from validation.advice.friction import left_of_a_distance
+from validation.advice.limits import check_choice, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.search import FLAT, Search
 from validation.advice.spectra import (
@@ -29,17 +27,15 @@ from validation.advice.spectra import (
     mode_damping,
     mode_names,
     runs,
+    steps_to,
 )
-from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.runs.history import Array
 from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
-from validation.theory.friction import distance_share
 
-LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
 KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 NO_STATIC = "no static displacement"  # in place of where a settling is from
@@ -82,7 +78,6 @@ class Advice(PlainAnswer):
     greatest: float | None  # greatest xi [1]
     greatest_at: float | None  # dt [s], gg [1] or delta [1] there
     sentence: str
-    instead: dict[str, float] | None = None  # settings with another parameter that give the target
 
 
 def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
@@ -169,15 +164,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     >>> [round(s.value, 6) for s in advise(scene, damping=0.05, solve_for="dt").solutions]
     [0.000584]
     """
-    if not (isinstance(damping, int | float) and math.isfinite(damping) and damping >= 0):
-        raise InputError("must be a damping ratio of at least 0", field="damping", value=repr(damping))
-    if damping > LARGEST_RATIO:
-        raise InputError(
-            f"must be a damping ratio from 0 to {LARGEST_RATIO:g}, where 1 is critical",
-            field="damping",
-            value=f"{damping:g}",
-            advice=f"{damping:g} % is {damping / 100:g}",
-        )
+    check_ratio(damping, 0.0)
     check_choice("solve_for", solve_for, KINDS)
     features.refuse_damping(scene, "advise")
     modes = dda_modes(scene)
@@ -196,14 +183,7 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
         reach = (least, search.value(float(at_least)), greatest, search.value(float(at_greatest)))
     solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
     text = _sentence(scene, solve_for, damping, solutions, reach)
-    answer = Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
-    if solutions:
-        return answer
-    makes = {
-        kind: functools.partial(make, frequency=modes[0].frequency, highest=highest) for kind, make in SEARCHES.items()
-    }
-    instead, words = alternative(scene, solve_for, damping, makes, modes[0].frequency)
-    return replace(answer, sentence=f"{answer.sentence} {words}", instead=instead)
+    return Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
 
 
 def _solution(scene: Scene, search: Search, s: float) -> Solution:
@@ -245,48 +225,15 @@ def _settling(case: Scene) -> tuple[int | None, str]:
     if static == 0:
         return None, NO_STATIC
     modes = [(mode.spectral_radius, abs(mode.share)) for mode in dda_modes(case)]
-    last = [_crossing(radius, 0.01 / (GAIN * share)) for radius, share in modes if share > 0]
+    last = [steps_to(0.01 / (GAIN * share), radius) for radius, share in modes if share > 0]
     ramp = case.load.ramp / case.time.step  # steps until the load stands in full
     if max(last) + ramp > LONGEST:
-        rough = ramp + max(_crossing(radius, 0.01 / share) for radius, share in modes if share > 0)
+        rough = ramp + max(steps_to(0.01 / share, radius) for radius, share in modes if share > 0)
         return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
     steps = max(10, math.ceil(ramp + max(last)) + 10)
     run = solve(case.with_values({"time.steps": steps}), "dda")
     step = settling_step(run.displacement, static)
     return (int(step) if isinstance(step, float) else None), "history"
-
-
-def _crossing(radius: float, level: float) -> float:
-    """Step at which radius^n falls below a level."""
-    if level >= 1 or radius <= 0:
-        return 1.0
-    return math.log(level) / math.log(radius) if radius < 1 else math.inf
-
-
-def expected_errors(scene: Scene, solution: Solution, longest: int = 5000) -> dict[str, Any]:
-    """Return the relative L2 differences of DDA from finite elements and continuum at a solution.
-
-    The window is the scene's own duration, whatever dt is, cut where it would take more than `longest` steps.
-    """
-    from validation.metrics.catalogue import pair
-
-    steps = max(2, min(longest, round(scene.time.duration / solution.step)))
-    columns = ["displacement", "contact_pressure"]
-    case = scene.with_values(solution.settings | {"time.steps": steps, "run.columns": columns})
-    dda = solve(case, "dda").history
-    errors: dict[str, Any] = {"window": steps * case.time.step}
-    for name in ("fem", "continuum"):
-        if reason := get_solver(name).refusal(case):
-            errors[name] = {"not applicable": reason}
-            continue
-        try:
-            reference = solve(case, name).history
-        except InputError as error:
-            errors[name] = {"not applicable": str(error)}
-            continue
-        if dda is not None and reference is not None:
-            errors[name] = {q: pair(f"{q}.l2", dda, reference) for q in ("displacement", "pressure")}
-    return errors
 
 
 # ---- the sentence -------------------------------------------------------------------------------------------------
@@ -343,7 +290,6 @@ def _fixed_settings(scene: Scene, solve_for: str, solution: Solution) -> str:
     if solve_for == "dt" and t.discount < 1:
         return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
     if solve_for == "gg":
-        share = 100 * distance_share(solution.value, solution.step, 1.0)
-        drag = f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
-        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {drag}"
+        left = left_of_a_distance(solution.value, solution.step)
+        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {left}"
     return ""

@@ -15,7 +15,6 @@ whose contacts open or slip in `.columns`.
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
@@ -25,6 +24,7 @@ from validation.advice.coarse import coarse_alarms
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.advice.overshoot import overshoot_alarms
+from validation.advice.spectra import FLIPPING, steps_to
 from validation.metrics.catalogue import pair as pair_metric
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
@@ -39,7 +39,6 @@ TENSION = "hidden tension"
 RINGING = "contact ringing"
 DISCOUNT = "fixed discount"
 AGREES = 0.5  # relative L2 below which two histories share more than half of the motion
-FLIPPING = -0.9  # real part of a root below which a mode flips every step and keeps over 0.9 of its amplitude
 
 
 class Cases(Protocol):
@@ -123,7 +122,7 @@ def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
     radius = number(row, "contact.spectral_radius")
     if root is None or radius is None or root > FLIPPING:
         return
-    steps = math.log(100) / -math.log(radius) if 0 < radius < 1 else math.inf
+    steps = steps_to(0.01, radius)
     decay = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
     yield alarm(RINGING, scene.name, {"root": root, "radius": radius}, decay=decay)
 

@@ -9,7 +9,6 @@ import contextlib
 import itertools
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -87,16 +86,12 @@ def discounts(scene: Scene, dt: Array) -> Array:
 
 def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float | None]]:
     t = scene.time
-    omega = frequency * dt
+    total = _ratios(scene, frequency, dt)
+    algorithmic = _ratios(scene.with_values({"time.gg": 1.0}), frequency, dt)
     if t.scheme == "newmark":
-        gg = discounts(scene, dt)
-        total = damping_ratio(omega, t.alpha, t.delta, gg)
-        algorithmic = damping_ratio(omega, t.alpha, t.delta, 1.0)
-        radius = spectral_radius(omega, t.alpha, t.delta, gg)
+        radius = spectral_radius(frequency * dt, t.alpha, t.delta, discounts(scene, dt))
     else:
         stepping = Stepping.of(scene)
-        total = _ratios(stepping, frequency, dt)
-        algorithmic = _ratios(replace(stepping, gg=1.0, rate=None), frequency, dt)
         radius = np.array([stepping.at(float(step)).spectral_radius(frequency * float(step)) for step in dt])
     parts = {"algorithmic": _listed(algorithmic), "kinetic": _listed(total - algorithmic)}
     if scene.damping.present:
@@ -106,8 +101,12 @@ def _curves(scene: Scene, frequency: float, dt: Array) -> dict[str, list[float |
     return {"total": _listed(total), **parts, "spectral_radius": _listed(radius)}
 
 
-def _ratios(stepping: Stepping, frequency: float, dt: Array) -> Array:
-    """Return the damping ratio of a mode over dt."""
+def _ratios(scene: Scene, frequency: float, dt: Array) -> Array:
+    """Return the damping ratio of a mode over dt, without damping tables."""
+    t = scene.time
+    if t.scheme == "newmark":
+        return np.asarray(damping_ratio(frequency * dt, t.alpha, t.delta, discounts(scene, dt)))
+    stepping = Stepping.of(scene)
     return np.array([stepping.at(float(step)).damping_ratio(frequency * float(step)) for step in dt])
 
 
@@ -124,16 +123,13 @@ def _viscous(scene: Scene, frequency: float, dt: Array) -> tuple[Array, Array]:
 
 def _limits(scene: Scene, first: float, dt: Array) -> dict[str, float]:
     """Return the dt of the limits that exist within the range [s]."""
-    t = scene.time
-    fine = np.geomspace(dt[0], dt[-1], 20_001)
-    if t.scheme == "newmark":
-        total = damping_ratio(first * fine, t.alpha, t.delta, discounts(scene, fine))
-    else:
-        fine = dt
-        total = _ratios(Stepping.of(scene), first, dt)
+    fine = dt
     if scene.damping.present:
-        fine = dt
         total, _ = _viscous(scene, first, dt)
+    else:
+        if scene.time.scheme == "newmark":  # by a closed form, which is quick
+            fine = np.geomspace(dt[0], dt[-1], 20_001)
+        total = _ratios(scene, first, fine)
     limits = {}
     if np.isnan(total).any() and np.isfinite(total[0]):
         limits["real roots"] = float(fine[int(np.argmax(np.isnan(total)))])

@@ -23,10 +23,8 @@ from validation.solvers import opened
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 from validation.theory import landing
-from validation.theory.friction import distance_share
 from validation.theory.stepping import Stepping
 
-DEFAULT_ERROR = 0.05  # of the restitution, where none is requested [-]
 DEFAULT_PENETRATION = 1e-4  # where none is requested [m]
 ALONG = "horizontal.final"  # displacement along the base at the end [m]
 MEAN_RATE = "contact.restitution_mean"
@@ -85,7 +83,6 @@ def scenes(scene: Scene) -> dict[str, Scene]:
 def answer(
     scene: Scene,
     rows: Mapping[str, Row],
-    error: float | None = None,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
 ) -> dict[str, Any]:
@@ -97,25 +94,20 @@ def answer(
         The scene.
     rows
         Its rows by solver, without the solvers that do not apply.
-    error, penetration
-        The requested restitution error [-] and penetration [m]; None where the user requests none: then those of
-        `DEFAULT_ERROR` and `DEFAULT_PENETRATION`, but no advice on landings to a block that slides.
+    penetration
+        The requested penetration [m]; None where the user requests none: then `DEFAULT_PENETRATION`, but no advice on
+        landings to a block that slides.
     probe
         How deep the exact block goes on springs p [m], None where there is no answer.
     """
     speed = landing_speed(scene, rows)
     stepped_landing = contact.restitution(scene)
     slides = friction.sliding(scene)
-    stated = {"restitution_error": error, "penetration": penetration}
-    requested = any(value is not None for value in stated.values())
-    limits = {
-        "restitution_error": DEFAULT_ERROR if error is None else error,
-        "penetration": DEFAULT_PENETRATION if penetration is None else penetration,
-    }
+    depth = DEFAULT_PENETRATION if penetration is None else penetration
     need = None
     has_springs = scene.contact.rule != "impact"  # an impact law is one of rigid contact
-    if has_springs and (requested or slides is None):
-        need = contact.needed(scene, speed, limits["restitution_error"], limits["penetration"], probe)
+    if has_springs and (penetration is not None or slides is None):
+        need = contact.needed(scene, speed, depth, probe)
     alarms = itertools.chain.from_iterable(alarms_of(scene, rows) for alarms_of in ALARMS)
     return {
         "scene": scene.name,
@@ -123,11 +115,11 @@ def answer(
         "contact_frequency": landing.contact_frequency(scene),
         "restitution_now": None if stepped_landing is None else asdict(stepped_landing),
         "landing_speed": speed,
-        "asked": limits | {"stated": [name for name, value in stated.items() if value is not None]},
-        "needed": None if need is None else contact.as_dict(need),
+        "asked": {"penetration": depth, "stated": penetration is not None},
+        "needed": None if need is None else need._asdict(),
         "hidden_from": landing.hidden_from(scene),
         "runs": {name: measured(row) for name, row in rows.items()},
-        "sliding": friction.as_dict(slides),
+        "sliding": None if slides is None else slides.as_dict(),
         "alarms": [alarm.record() for alarm in alarms],
     }
 
@@ -241,16 +233,11 @@ def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> 
 
 def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     need = data["needed"]
-    limits = data["asked"]
-    error = limits["restitution_error"]
-    depth = limits["penetration"]
+    depth = data["asked"]["penetration"]
     load = abs(opened.resultant_load(scene))
-    why = "Asked for" if limits["stated"] else "For accuracies that are usual (set --restitution-error, --penetration)"
-    yield (
-        f"{why}: a restitution within {error:g} of the block's own (both over the speed of approach) and a penetration "
-        f"below {depth:g} m, "
-        f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N."
-    )
+    why = "Asked for" if data["asked"]["stated"] else "For an accuracy that is usual (set --penetration)"
+    landing_at = f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N"
+    yield f"{why}: a penetration below {depth:g} m, {landing_at}."
     yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
     ratio = need["stiffness"] / scene.block.young
     if ratio > MODERATE:
@@ -258,39 +245,16 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
             f"              that is {ratio:.4g} E, for the penetration of a landing, p ~ (V / x)^2; at rest springs of "
             f"{MODERATE:g} E give way by {load / (2 * MODERATE * scene.block.young):.2g} m"
         )
-    if data["landing_speed"] > 0:
-        yield from _step_lines(scene, data)
-    if scene.time.gg_rate is None and scene.time.discount < 1:
-        share = 100 * distance_share(scene.time.discount, scene.time.step, 1.0)
+    stepped = data["restitution_now"]
+    if data["landing_speed"] > 0 and stepped is not None:
         yield (
-            f"  gg = {scene.time.discount:g} acts per step: the smaller dt, the more speed a landing loses; "
-            f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
+            f"  at present  an unloaded landing leaves the centre of mass {stepped['mean']:.3g} of its speed, "
+            f"{stepped['low']:.3g} to {stepped['high']:.3g} by phase; the block's own is {stepped['own']:.3g}"
         )
-
-
-def _step_lines(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines on time steps and on the restitution that they leave."""
-    need = data["needed"]
-    for words, steps in (("time step   at that p", need["steps"]), ("            at present", need["steps_now"])):
-        yield f"  {words}: {_allowed(steps, scene.time.discount)}"
-    for words, stepped in (("with these", need["restitution"]), ("at present", data["restitution_now"])):
-        if stepped is not None:
-            yield (
-                f"  {words}  an unloaded landing leaves the centre of mass {stepped['mean']:.3g} of its speed, "
-                f"{stepped['low']:.3g} to {stepped['high']:.3g} by phase; the block's own is {stepped['own']:.3g}"
-            )
-
-
-def _allowed(steps: Mapping[str, Any] | None, gg: float) -> str:
-    """Return in words which steps are allowed."""
-    if steps is None:
-        return "not known for this scheme, contact rule, outline or rigid stop"
-    if steps["longest"] is None:
-        discount = f" with gg = {gg:g}" if gg < 1 else ""
-        return f"none{discount}; the least difference is {steps['best']:.3g}, at dt = {steps['best_step']:.3g} s"
-    if steps["shortest"] is None:
-        return f"dt <= {steps['longest']:.3g} s"
-    return f"dt from {steps['shortest']:.3g} s, below which gg takes more, to {steps['longest']:.3g} s"
+    if scene.time.gg_rate is None and scene.time.discount < 1:
+        loses = "the smaller dt, the more speed a landing loses"
+        left = friction.left_of_a_distance(scene.time.discount, scene.time.step)
+        yield f"  gg = {scene.time.discount:g} acts per step: {loses}; {left}"
 
 
 def _depth(need: Mapping[str, Any], penetration: float) -> str:

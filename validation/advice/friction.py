@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from validation.advice.alarm import Alarm, alarm, first_row, number
+from validation.advice.plain import PlainAnswer
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -44,7 +44,7 @@ STATES = (Outcome.NO_CONTACT_STATE, Outcome.SEVERAL_CONTACT_STATES)
 
 
 @dataclass(frozen=True)
-class Sliding:
+class Sliding(PlainAnswer):
     """What follows of a scene with friction before anything is run."""
 
     threshold: float  # slope at which it begins to slide [deg]
@@ -69,6 +69,12 @@ class Sliding:
         return "takes the whole velocity" if self.rate is None else f"is a drag of {self.rate:.3g} 1/s"
 
 
+def left_of_a_distance(gg: float, step: float) -> str:
+    """Say what a discount leaves of the distance that is covered in a second."""
+    share = 100 * friction.distance_share(gg, step, 1.0)
+    return f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
+
+
 def sliding(scene: Scene) -> Sliding | None:
     """Return what follows for a block with friction under its own weight, None for another one."""
     alone = scene.load.pressure == scene.load.traction == 0 and scene.load.base_motion is None
@@ -91,11 +97,6 @@ def sliding(scene: Scene) -> Sliding | None:
         rate,
         friction.time_constant(scene),
     )
-
-
-def as_dict(slides: Sliding | None) -> dict[str, Any] | None:
-    """Return plain data for JSON."""
-    return None if slides is None else asdict(slides)
 
 
 def lines(scene: Scene, slides: Sliding) -> Iterator[str]:

@@ -11,8 +11,8 @@ impact
     The block lands flat and without load, at four places of a step. A candidate is judged by the worst of them, by its
     history and its restitution against `block-events`, which is exact in time.
 
-The springs of every candidate give way by no more than the error of what the block itself shortens down to its
-centroid under the same force, E a / (p h).
+Unless they are to stay, the springs of every candidate give way by no more than the error of what the block itself
+shortens down to its centroid under the same force, E a / (p h).
 """
 
 from __future__ import annotations
@@ -142,7 +142,9 @@ def check(goal: str | None, error: float, frequency: float | None) -> None:
     Limit("--frequency").check(frequency)
 
 
-def recommend(scene: Scene, goal: str, error: float, frequency: float | None = None) -> tuple[Recommendation, ...]:
+def recommend(
+    scene: Scene, goal: str, error: float, frequency: float | None = None, keep_springs: bool = False
+) -> tuple[Recommendation, ...]:
     """Return what a block should be run with for a goal; of an impact also with energy-conserving contact.
 
     Parameters
@@ -155,13 +157,17 @@ def recommend(scene: Scene, goal: str, error: float, frequency: float | None = N
         Requested relative error of displacement and contact force [-].
     frequency
         Of the wave or the quake [Hz].
+    keep_springs
+        Whether the springs are those of a real joint, and stay.
 
     Raises
     ------
     InputError
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
-    values: dict[str, Any] = {"contact.stiffness": springs(scene, error)}
+    values: dict[str, Any] = {}
+    if not keep_springs or math.isinf(scene.contact.stiffness):  # a rigid stop has none to keep
+        values = {"contact.stiffness": springs(scene, error)}
     values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
     if scene.time.scheme != "newmark":
         values |= CONSTANT  # explicit steps have a start of their own

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from validation.errors import InputError
 from validation.runs.numbers import stated_text
 
+LARGEST_RATIO = 2.0  # of critical damping; a larger target was meant in per cent
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -32,6 +34,19 @@ class Limit:
         if value is None or self.above < value < self.below or value in self.ends:
             return
         raise InputError(self.rule, field=self.field, value=stated_text(value), advice=self.advice)
+
+
+def check_ratio(damping: float, least: float) -> None:
+    """Refuse a target damping ratio out of `least` to `LARGEST_RATIO`.
+
+    Raises
+    ------
+    InputError
+        With the rule.
+    """
+    advice = f"{damping:g} % is {damping / 100:g}" if damping > LARGEST_RATIO else None
+    rule = f"must be a damping ratio from {least:g} to {LARGEST_RATIO:g}, where 1 is critical"
+    Limit("damping", rule, least, LARGEST_RATIO, (least, LARGEST_RATIO), advice).check(damping)
 
 
 def check_choice(field: str, value: str, choices: Iterable[str]) -> None:

@@ -15,11 +15,11 @@ from validation.advice.across import GAIN, rebound_of
 from validation.advice.coarse import closed
 from validation.advice.contact_page import elements, own
 from validation.advice.contact_page import exact as exact_solver
+from validation.advice.friction import left_of_a_distance, sliding
 from validation.advice.friction import lines as friction_lines
-from validation.advice.friction import sliding
 from validation.advice.goals import AVERAGE, Recommendation
 from validation.advice.plain import Line, PlainAnswer, in_columns
-from validation.advice.spectra import CONTACT, damping, first_mode, runs
+from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
 from validation.errors import InputError
 from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -29,7 +29,6 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver, solve
 from validation.theory import landing
-from validation.theory.friction import distance_share
 from validation.theory.stepping import Stepping
 
 LONGEST = 400  # steps of the scene that its own error is measured over
@@ -80,6 +79,7 @@ def overview(
     error: float = 0.05,
     frequency: float | None = None,
     progress: Callable[[int, int, str], None] = lambda *_: None,
+    keep_springs: bool = False,
 ) -> Overview:
     """Return what the settings of a block do, and what to take for goals.
 
@@ -95,6 +95,8 @@ def overview(
         Of the wave and the quake [Hz].
     progress
         Is told what has been done, how much there is, and what comes next.
+    keep_springs
+        Whether the springs are those of a real joint, and stay.
 
     Raises
     ------
@@ -111,7 +113,7 @@ def overview(
     for number, goal in enumerate(chosen, 1):
         progress(number, len(chosen) + 1, goal)
         try:
-            recommendations += goals.recommend(scene, goal, error, frequency)
+            recommendations += goals.recommend(scene, goal, error, frequency, keep_springs)
         except InputError as reason:
             refused[goal] = reason.rule
     return Overview(scene.name, error, facts, present, tuple(recommendations), refused)
@@ -127,7 +129,10 @@ def _facts(scene: Scene) -> Iterator[Fact]:
     yield Fact("first mode", f"{first.frequency:.4g} rad/s, w dt = {first.omega_dt:.3g}: {runs(first)}", "damping")
     for mode in analysis.modes:
         if mode.name == CONTACT:
-            sentence = f"{mode.frequency:.4g} rad/s: {runs(mode)}{_ringing(mode.spectral_radius)}"
+            sentence = f"{mode.frequency:.4g} rad/s: {runs(mode)}"
+            steps = steps_to(FADED, mode.spectral_radius)
+            if math.isfinite(steps):
+                sentence += f"; rings down to 1 % in {math.ceil(steps)} steps"
             yield Fact("contact mode", sentence, "damping")
     finer = first_mode(block, elements()).get("frequency")
     if finer:
@@ -141,21 +146,12 @@ def _facts(scene: Scene) -> Iterator[Fact]:
         yield Fact("springs", sentence, "contact")
     t = scene.time
     if t.discount < 1:
-        left = 100 * distance_share(t.discount, t.step, 1.0)
-        drag = f"in flight or sliding it leaves {left:.3g} % of the distance of a second"
-        sentence = f"gg = {t.discount:.6g} acts per step; {drag}"
+        sentence = f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"
         yield Fact("discount", sentence, "rayleigh")
     if scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness):
         most = rebound_of(Stepping.of(scene).stages, landing.contact_frequency(scene) * t.step).most
         may = "may gain energy" if most > 1 + GAIN else "gains nothing"
         yield Fact("switching", f"a landing on these springs at this step {may}: rebound at most {most:.3g}", "schemes")
-
-
-def _ringing(radius: float) -> str:
-    """Say how long a mode rings."""
-    if not 0 < radius < 1:
-        return ""
-    return f"; rings down to 1 % in {math.ceil(math.log(FADED) / math.log(radius))} steps"
 
 
 def _present_error(scene: Scene) -> PresentError | None:
@@ -221,7 +217,7 @@ def lines(scene: Scene, source: str, answer: Overview) -> Iterator[str]:
 def recommended(source: str, answer: Overview) -> Iterator[str]:
     """Yield what to take, its conditions, and what to type next."""
     if answer.recommendations:
-        how = "each as run by dda, seconds estimated; springs of a real joint keep their p"
+        how = "each as run by dda, seconds estimated; for springs of a real joint add --keep-springs"
         yield f"What to take for an error of {share_text(answer.error)}, {how}"
         yield in_columns(_table(answer))
     for goal, offer in {offer.goal: offer for offer in answer.recommendations}.items():

@@ -140,6 +140,13 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     )
 
 
+def steps_to(level: float, radius: float) -> float:
+    """Return the step at which an amplitude that keeps a share `radius` per step falls to a level."""
+    if level >= 1 or radius <= 0:
+        return 1.0
+    return math.log(level) / math.log(radius) if radius < 1 else math.inf
+
+
 def _elongation(omega: float, roots: ComplexArray) -> float:
     """Return w/w' - 1 of two eigenvalues, NaN where a root is not positive."""
     if np.any((roots.imag == 0) & (roots.real <= 0)):

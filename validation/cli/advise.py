@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from validation.advice.spectra import Damping
     from validation.scenes.scene import Scene
 
-Answer = tuple[Any, Iterable[str]]  # plain data, and the lines that say it
+Answer = tuple[dict[str, Any], Iterable[str]]  # plain data, and the lines that say it
 TargetOption = Annotated[float, typer.Option("--damping", help="Target damping ratio, 0.05 for 5 %.", min=0.0)]
 
 
@@ -41,6 +41,9 @@ def everything(
             metavar="HZ",
         ),
     ] = None,
+    keep_springs: Annotated[
+        bool, typer.Option("--keep-springs", help="Of a block: they are those of a real joint, and stay.")
+    ] = False,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -55,20 +58,24 @@ def everything(
     from validation.advice.goals import check
 
     check(goal, error, frequency)
-    words = shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
+    words = _words(scene, assignments)
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True) as progress:
         if case.kind == "block":
             from validation.advice.goals import GOALS
             from validation.advice.overview import lines, overview
-            from validation.advice.plain import plain
 
-            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress)
-            data: Any = plain(answer.as_dict())
+            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress, keep_springs)
             text: Iterable[str] = lines(case, words, answer)
+            data = answer.as_dict()
         else:
             data, text = _of_blocks(case, words, error, frequency)
     echo_answer(data, map(broken, text), as_json)
+
+
+def _words(scene: str, assignments: list[str] | None) -> str:
+    """Return a scene with values set as a command line has it."""
+    return shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
 
 
 def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) -> Answer:
@@ -78,7 +85,6 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
     from validation.advice.columns import advised, column_alarms, limits, rest
     from validation.advice.cuts import of_beam, of_column
     from validation.advice.overview import Overview, recommended
-    from validation.advice.plain import plain
     from validation.scenes.features import refuse_column
 
     bounds = limits(case)
@@ -86,12 +92,12 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
         resting = rest(case)
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
         data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
-        return plain(data), (*advised(case, bounds, resting), *alarms)
+        return data, (*advised(case, bounds, resting), *alarms)
     if case.kind == "rigid":
         refuse_column(case, "advise")
     sentence, offer = of_beam(case, error) if case.kind == "plane" else of_column(case, error, frequency)
     answer = Overview(case.name, error, (), None, (offer,), {})
-    return plain({"sentence": sentence, **answer.as_dict()}), (sentence, "", *recommended(source, answer))
+    return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(source, answer))
 
 
 @parts.command()
@@ -103,7 +109,7 @@ def damping(scene: SceneArgument, assignments: SetOption = None, as_json: JsonOp
     from validation.advice.spectra import damping as analyse
 
     analysis = analyse(one_case(scene, assignments), references=True)
-    echo_answer(analysis.as_dict(), _damping_lines(analysis), as_json)
+    echo_answer(analysis, _damping_lines(analysis), as_json)
 
 
 @parts.command()
@@ -126,18 +132,17 @@ def step(
     Example: [bold]dda-validate advise step figures-3-4 --set time.step=0.002 --damping 0.05 --solve-for gg[/bold]
     """
     from validation.advice.advice import advise as solve_for_damping
-    from validation.advice.advice import expected_errors
 
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True):
         advice = solve_for_damping(case, target, solve_for)
-        data = advice.as_dict()
-        lines = [broken(advice.sentence)]
-        for solution, plain_solution in zip(advice.solutions, data["solutions"], strict=True):
-            plain_solution["errors"] = expected_errors(case, solution)
-            lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
-            lines.append(columns([(f"  {key}", value) for key, value in _facts(solution, plain_solution["errors"])]))
-    echo_answer(data, lines, as_json)
+    lines = [broken(advice.sentence)]
+    for solution in advice.solutions:
+        lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
+        lines.append(columns([(f"  {key}", value) for key, value in _facts(solution)]))
+    if not advice.solutions:
+        lines.append(f"more: dda-validate advise schemes {_words(scene, assignments)} --damping {target:g}")
+    echo_answer(advice, lines, as_json)
 
 
 @parts.command()
@@ -172,7 +177,7 @@ def schemes(
     notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
     legend = "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
     lines = [f"{broken(advice.sentence)}\n", columns(rows), legend, *map(broken, notes)]
-    echo_answer(advice.as_dict(), lines, as_json)
+    echo_answer(advice, lines, as_json)
 
 
 @parts.command()
@@ -205,7 +210,7 @@ def wave(
             shares = share_text(passage.loss, 4), f"{passage.delay:+.4g}", _percent(passage.damping)
             rows.append((name, heights, f"{passage.step:.6g}", *shares))
     lines = [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
-    echo_answer(advice.as_dict(), lines, as_json)
+    echo_answer(advice, lines, as_json)
 
 
 def _damping_lines(analysis: Damping) -> Iterator[str]:
@@ -232,7 +237,7 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
         yield f"\n{broken(alias_note)}"
 
 
-def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _facts(solution: Solution) -> Iterator[tuple[str, str]]:
     from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 
@@ -247,13 +252,6 @@ def _facts(solution: Solution, error: dict[str, Any]) -> Iterator[tuple[str, str
     yield "displacement settles", settles
     if solution.contact is not None:
         yield "contact mode", runs(solution.contact)
-    for name in ("fem", "continuum"):
-        values = error.get(name, {})
-        differences = [f"{key} {share_text(value)}" for key, value in values.items() if isinstance(value, float)]
-        text = "; ".join(map(str, values.values()))
-        if differences:
-            text = f"{', '.join(differences)} over {error['window']:.4g} s (relative L2)"
-        yield f"differs from {name} by", text
 
 
 def _rate(gg_rate: float | None) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
-from validation.cli.printing.output import echo, echo_json
+from validation.cli.printing.output import echo_answer
 from validation.runs.numbers import remainder_text
 
 if TYPE_CHECKING:
@@ -77,10 +78,7 @@ def compare(
         from validation.report.figures.response import save_as
 
         save_as(answer_figure(case, answer, slide=True), figure)
-    if as_json:
-        echo_json(answer.as_dict())
-    else:
-        _print(answer)
+    echo_answer(answer.as_dict(), _lines(answer), as_json)
     if answer.departs:
         raise typer.Exit(1)
 
@@ -91,34 +89,34 @@ def _listed(alternative: dict[str, Any]) -> str:
     return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])
 
 
-def _print(answer: Answer) -> None:
-    """Print the sentence first, then what it rests on."""
+def _lines(answer: Answer) -> Iterator[str]:
+    """Yield the sentence first, then what it rests on."""
     from validation.diagnosis.causes import CAUSES
     from validation.diagnosis.sentences import cleaned, told_lines
 
-    echo(answer.sentence)
+    yield answer.sentence
     if answer.remedy:
         what = "run the scene" if answer.remedy.startswith("--set") else "read the history"
-        echo(f"to {what} so, add {answer.remedy}")
+        yield f"to {what} so, add {answer.remedy}"
     if answer.causes:
-        echo("\ncauses")
+        yield "\ncauses"
         for name in answer.causes:
             number = f"{answer.values[name]:.5g}" if name in answer.values else ""
-            echo(f"  {name:<18} {number:>10}  {CAUSES[name].words}")
+            yield f"  {name:<18} {number:>10}  {CAUSES[name].words}"
     for alternative in answer.alike:
         further = alternative["further_scene"]
-        echo(f"\n{_listed(alternative)} would give the same history here; to tell them apart, try {further}")
+        yield f"\n{_listed(alternative)} would give the same history here; to tell them apart, try {further}"
     if answer.evidence:
-        echo("\nevidence")
+        yield "\nevidence"
         for stage in answer.evidence:
             mark = {True: "right", False: "wrong", None: "-"}[stage.agrees]
-            echo(f"  {stage.name:<18} {mark:<6} {stage.words}")
+            yield f"  {stage.name:<18} {mark:<6} {stage.words}"
     if answer.opened:
-        echo(f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}")
-    echo(f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}")
+        yield f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}"
+    yield f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}"
     for row in answer.ranking[:RANKING_LINES]:
         compliance = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
         scheme = "exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}"
-        echo(f"  {row['model']:<10} {row['name'] or scheme:<24} {remainder_text(row['misfit']):>10} {compliance:>14}")
-    for line in (*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)):
-        echo(line)
+        yield f"  {row['model']:<10} {row['name'] or scheme:<24} {remainder_text(row['misfit']):>10} {compliance:>14}"
+    yield from told_lines(answer.told, answer.untold)
+    yield from (f"note: {note}" for note in answer.notes)

@@ -32,22 +32,13 @@ Progress = Callable[[int, int, str], None]  # of the runs done, how many there a
 @parts.command()
 def contact(
     scene: SceneArgument,
-    error: Annotated[
-        float | None,
-        typer.Option(
-            "--restitution-error",
-            help="Allowed difference from the block's own restitution, over the speed of approach: 0.05 of an own 0.9 "
-            "is 0.85 to 0.95. (0.05 if neither this nor --penetration is stated)",
-            min=1e-6,
-        ),
-    ] = None,
     penetration: Annotated[
         float | None, typer.Option("--penetration", help="Largest penetration, in m. (1e-4 if not stated)", min=1e-12)
     ] = None,
     assignments: SetOption = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Show when a block opens and lands, against the exact motions, and which step and springs would do better.
+    """Show when a block opens and lands, against the exact motions, and which springs keep a penetration.
 
     Example: [bold]dda-validate advise contact unlocked-constant --set time.step=0.001 --set time.steps=50[/bold]
 
@@ -56,24 +47,23 @@ def contact(
     """
     from validation.advice import contact_page
     from validation.advice.columns import limits
-    from validation.advice.plain import plain
     from validation.scenes import features
 
     case = one_case(scene, assignments)
     bounds = limits(case)
-    if bounds is not None and (error is not None or penetration is not None):
-        features.refuse_column(case, "advise contact with --restitution-error or --penetration")
+    if bounds is not None and penetration is not None:
+        features.refuse_column(case, "advise contact with --penetration")
     scenes = contact_page.scenes(case) if bounds is None else contact_page.column_scenes(case)
     with _progress("contact", between_calls=True) as progress:
         rows, absent = _rows(scenes, progress)
         if bounds is None:
             probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
-            data = contact_page.answer(case, rows, error, penetration, probe)
+            data = contact_page.answer(case, rows, penetration, probe)
             lines: Iterable[str] = contact_page.page(case, data, absent)
         else:
             data = contact_page.column_answer(case, rows, bounds)
             lines = map(broken, contact_page.column_page(case, bounds, data, absent))
-    echo_answer(plain(data | {"absent": absent}), lines, as_json)
+    echo_answer(data | {"absent": absent}, lines, as_json)
     return PASSED if contact_page.own() in rows else NUMERICAL_FAILURE
 
 

@@ -29,7 +29,6 @@ from numpy.typing import NDArray
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
-from validation.theory.edges import edge
 from validation.theory.stepping import Stepping
 
 PHASES = np.linspace(0.0, 1.0, 33)
@@ -46,12 +45,6 @@ SOFTEST = 1e-6
 """k below which the block lands as a rigid mass, to k / 2; its strain would ring 1 / sqrt(k) times in the contact."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
-SMALLEST, LARGEST = 1e-3, 10.0
-"""w_c dt between which a step is looked for."""
-GRID = 1.12
-"""Ratio of neighbouring steps in that search."""
-NEIGHBOURS = 1e-3
-"""Relative distance of an allowed step from one that is not, to which the longest and the shortest are found."""
 
 GAP = np.array([1.0, -0.5])  # w over (x, e)
 MASS = np.array([1.0, 1 / 12])
@@ -477,54 +470,6 @@ def _powers(matrix: Array, count: int) -> Array:
         powers = np.concatenate([powers, powers @ top])
         top = top @ top
     return np.concatenate([powers, top[None]])
-
-
-# ---- the step that keeps a restitution ------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class AllowedSteps:
-    """Time steps that keep the block's own restitution within an error, whatever the phase."""
-
-    longest: float | None  # dt [s]; None where there is none within the search
-    shortest: float | None  # below which a discount per step takes more; None where every shorter step will do
-    best: float  # the least error of the steps that were tried [-]
-    best_step: float  # at dt [s]
-
-
-def allowed_steps(stepping: Stepping, ratio: float, transit: float, error: float) -> AllowedSteps:
-    """Return the steps at which no phase changes the block's own restitution by more than an error.
-
-    The map is solved on a grid of w_c dt from `LARGEST` down; the run of allowed steps that reaches farthest down is
-    taken, so that one that is right by chance among wrong ones, such as w_c dt = 2 of average acceleration, is not.
-    """
-    exact = own_landing(ratio)
-    unit = exact.duration / math.pi * transit  # 1 / w_c
-    smallest = max(SMALLEST / 10, min(SMALLEST, error / 10))
-    omegas = np.geomspace(smallest, LARGEST, math.ceil(math.log(LARGEST / smallest, GRID)) + 1)
-
-    def off(omega: float) -> float:
-        return stepped_landing(stepping, ratio, omega * unit, transit).error
-
-    errors = np.array([off(float(omega)) for omega in omegas])
-    best = int(np.argmin(errors))
-    good = errors <= error
-    nearest = (float(errors[best]), float(omegas[best]) * unit)
-    if not good.any():
-        # below the grid the error falls as a power of the step, unless a discount keeps it up
-        order = math.log(errors[1] / errors[0], omegas[1] / omegas[0]) if errors[0] > 0 else 0.0
-        if order <= 0.5:
-            return AllowedSteps(None, None, *nearest)
-        return AllowedSteps(float(omegas[0] * (error / errors[0]) ** (1 / order)) * unit, None, *nearest)
-
-    def last_step(inside: int, outside: int) -> float:
-        ends = float(omegas[inside]), float(omegas[outside])
-        return edge(lambda omega: off(omega) <= error, *ends, NEIGHBOURS) * unit
-
-    first = int(np.argmax(good))
-    last = first + int(np.argmin([*good[first:], False])) - 1
-    longest = last_step(last, last + 1) if last + 1 < len(omegas) else float(omegas[last]) * unit
-    return AllowedSteps(longest, last_step(first, first - 1) if first else None, *nearest)
 
 
 def springs_for(scene: Scene, speed: float, penetration: float) -> float:
