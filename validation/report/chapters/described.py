@@ -1,6 +1,7 @@
 """What a chapter says and shows, as the TOML file beside its module describes it; rows, lines and values come in.
 
-    [text]          paragraphs, captions; ``{name}`` stands for a value
+    [text]          paragraphs, captions; ``{name}`` stands for a value, ``{name:percent}`` for a number in one of
+                    `FORMS`, ``{name:short 3}`` with its digits
     [table.NAME]    columns, caption, notes, dense, ruled
     [panel.NAME]    of `ChartPanel`
     [figure.NAME]   file, caption, height, margins, shared
@@ -17,6 +18,7 @@ A column has a title, and where needed a group, a kind and what it is `of`, in a
 from __future__ import annotations
 
 import operator
+import string
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -82,6 +84,18 @@ class CaseColumn:
         return self.text(case.number(solver, metric))
 
 
+class NumberFormatter(string.Formatter):
+    """Texts in which a number may stand in one of `FORMS`."""
+
+    def format_field(self, value: Any, format_spec: str) -> Any:
+        """Return a value as its form says, or as Python's format code does."""
+        form, _, digits = format_spec.rpartition(" ") if format_spec[-1:].isdigit() else (format_spec, "", "4")
+        return FORMS[form](value, int(digits)) if form in FORMS else super().format_field(value, format_spec)
+
+
+FILLED = NumberFormatter()
+
+
 class Description:
     """The description of a chapter."""
 
@@ -105,7 +119,11 @@ class Description:
     def text(self, name: str, **values: Any) -> str:
         """Return a text with its values."""
         text: str = self._data["text"][name]
-        return text.format_map(values) if values else text
+        return FILLED.vformat(text, (), values) if values else text
+
+    def listed(self, name: str, rows: Iterable[Sequence[Any]]) -> str:
+        """Return a text once for each row of values, which it names by their places."""
+        return ", ".join(FILLED.vformat(self._data["text"][name], row, {}) for row in rows)
 
     def columns(self, name: str) -> list[CaseColumn]:
         """Return the columns of a table."""
@@ -117,7 +135,7 @@ class Description:
         described = dict(self._data["table"][name])
         described.pop("columns", None)
         if values:
-            described["caption"] = described["caption"].format_map(values)
+            described["caption"] = FILLED.vformat(described["caption"], (), values)
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
 
     def cells(self, name: str, case: CaseResults | None, own: Mapping[str, CaseValue] = {}) -> list[str]:
@@ -156,5 +174,5 @@ class Description:
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
         file = described["file"].format_map(values)
-        caption = values.get("whole_caption") or described["caption"].format_map(values)
+        caption = values.get("whole_caption") or FILLED.vformat(described["caption"], (), values)
         return histories.saved(figure, directory, file, caption, scene)
