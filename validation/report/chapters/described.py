@@ -18,8 +18,6 @@ A column has a title, and where needed a group, a kind and what it is `of`, in a
 from __future__ import annotations
 
 import operator
-import string
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +29,7 @@ from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.texts import FILLED, Texts
 from validation.runs.numbers import DASH, FORMS, decimal
 from validation.runs.row import Value
 
@@ -84,23 +83,8 @@ class CaseColumn:
         return self.text(case.number(solver, metric))
 
 
-class NumberFormatter(string.Formatter):
-    """Texts in which a number may stand in one of `FORMS`."""
-
-    def format_field(self, value: Any, format_spec: str) -> Any:
-        """Return a value as its form says, or as Python's format code does."""
-        form, _, digits = format_spec.rpartition(" ") if format_spec[-1:].isdigit() else (format_spec, "", "4")
-        return FORMS[form](value, int(digits)) if form in FORMS else super().format_field(value, format_spec)
-
-
-FILLED = NumberFormatter()
-
-
-class Description:
+class Description(Texts):
     """The description of a chapter."""
-
-    def __init__(self, module: str | Path) -> None:
-        self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
 
     def has(self, kind: str, name: str) -> bool:
         """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
@@ -115,15 +99,6 @@ class Description:
         """Return the entries of a list."""
         entries: list[dict[str, Any]] = self._data[name]
         return entries
-
-    def text(self, name: str, **values: Any) -> str:
-        """Return a text with its values."""
-        text: str = self._data["text"][name]
-        return FILLED.vformat(text, (), values) if values else text
-
-    def listed(self, name: str, rows: Iterable[Sequence[Any]]) -> str:
-        """Return a text once for each row of values, which it names by their places."""
-        return ", ".join(FILLED.vformat(self._data["text"][name], row, {}) for row in rows)
 
     def columns(self, name: str) -> list[CaseColumn]:
         """Return the columns of a table."""
