@@ -63,11 +63,6 @@ def test_what_a_discount_does_is_what_the_scheme_does() -> None:
         omega = FREQUENCIES[1.0] * below * factor
         assert (float(spectral.damping_ratio(omega, 0.25, 0.5, 0.98)) >= 1) is over
     assert closed.overdamped_below(PAPER) is None
-    rate = closed.rate_for(PAPER, 0.05)
-    held = light.with_values({"time.gg": 1.0}).with_values({"time.gg_rate": rate, "time.step": 1e-5})
-    assert closed.first_damping(held) == pytest.approx(0.05, rel=1e-3)
-    assert spectra.transit(PAPER) == pytest.approx(2 / math.sqrt(1e9 / 2700))
-    assert closed.penetration(closed.stiffer(PAPER, 10)) == pytest.approx(5e-4)
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------
