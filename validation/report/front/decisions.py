@@ -188,7 +188,7 @@ def spring_table(groups: Groups, base: Scene) -> Table:
             "springs": f"{1e3 * closed.penetration(scene):.3g}",
             "damping": closed.first_damping(scene),
             "contact": closed.contact_radius(scene),
-            "limit": f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
+            "limit": f"{1e3 * closed.sign_change_step(scene):.3g}",
         }
         columns = PAGE.columns("springs")
         row = [column.text(numbers[column.of]) for column in columns[:6]]
