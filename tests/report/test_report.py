@@ -13,15 +13,12 @@ from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report.appendix.pages import appendix
 from validation.report.blocks import (
-    Beside,
     Callout,
     FigureBlock,
     Heading,
     PageBreak,
-    Paragraph,
     Table,
     TableColumn,
-    figures_of,
 )
 from validation.report.book import build, ordered_studies, write_figures
 from validation.report.chapters import data as chapters_data
@@ -213,7 +210,7 @@ def test_the_longest_window_of_a_pair_counts_in_either_order(results):
     assert compared(case, "a", "c") is None
 
 
-def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_path):
+def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_path, kept):
     scene = load_scene("figures-3-4").with_values({"time.step": 0.01})
     directory, ends = Results(tmp_path), (("dda", Outcome.OVERFLOW), ("bar", Outcome.REFUSED))
     rows = [made_row(name, {}, scene.name, outcome=end, notes=("step 7", "too long")) for name, end in ends]
@@ -221,14 +218,10 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     page = chapters.scene_chapter(directory, manifest, tmp_path)
     first = front_of(directory, ["mine"], tmp_path)
     assert not [b for b in (*page, *first) if isinstance(b, FigureBlock)]
-    said = [b.text for b in page if isinstance(b, Callout)]
-    assert said[0] == f"dda: overflow. {Outcome.OVERFLOW.sentence} step 7; too long"
-    assert said[1].startswith("bar: refused.")
+    kept("nothing-completed", page)
     imprint, *others = first
     assert "dda-validation" in imprint.text and "article 7480937" not in imprint.text  # whose model is another
     assert others == []  # the page of the scene follows
-    assert [type(block) for block in page[:4]] == [Heading, Paragraph, Beside, Callout]
-    assert [figure.file for figure in figures_of(page)] == ["figures-3-4-drawing.svg"]
 
 
 def band(edges):
