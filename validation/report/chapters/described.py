@@ -7,17 +7,12 @@
     [figure.NAME]   file, caption, height, margins, shared
     [[NAME]]        the entries of a list
 
-A column has a title, and where needed a group, a kind and what it is `of`, in a table with a row for each case:
-
-    "dda mode1.frequency"       a metric of a solver
-    "dda|fem displacement.l2"   a metric of a pair
-    "time.step"                 a datum of the scene
-    "label", or another word    the label of the case, or a value that the module computes from the case
+A column has a title, and where needed a group, a kind and what it is `of`: an expression of a case as
+`validation.report.chapters.queries` has them, or a word for a value that the module computes from the case.
 """
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +21,7 @@ from typing import Any
 from validation.metrics.catalogue import in_words
 from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.queries import value_of_case
 from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
@@ -74,13 +70,7 @@ class CaseColumn:
         if self.of in own:
             value = own[self.of]
             return self.text(value(case) if callable(value) else value)
-        source, _, metric = self.of.partition(" ")
-        if not metric:
-            return self.text(operator.attrgetter(source)(case if source == "label" else case.scene))
-        solver, _, reference = source.partition("|")
-        if reference:
-            return self.text(group.number_of_pair(case, solver, reference, metric) if group else None)
-        return self.text(case.number(solver, metric))
+        return self.text(value_of_case(case, group, self.of))
 
 
 class Description(Texts):
