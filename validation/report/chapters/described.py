@@ -103,23 +103,10 @@ class Description(Texts):
             described["caption"] = FILLED.vformat(described["caption"], (), values)
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
 
-    def cells(self, name: str, case: CaseResults | None, own: Mapping[str, CaseValue] = {}) -> list[str]:
-        """Return the cells of a case in those columns of a table that say what they are of."""
-        return [column.of_case(case, None, own) for column in self.columns(name) if column.of]
-
-    def case_table(
-        self,
-        name: str,
-        groups: Iterable[CaseGroup],
-        own: Mapping[str, CaseValue] = {},
-        **values: Any,
-    ) -> Table:
-        """Return a table with a row for each case of some groups."""
+    def case_table(self, name: str, group: CaseGroup, own: Mapping[str, CaseValue] = {}) -> Table:
+        """Return a table with a row for each case of a group."""
         columns = self.columns(name)
-        rows = []
-        for group in groups:
-            rows += [[column.of_case(case, group, own) for column in columns] for case in group.cases]
-        return self.table(name, rows, **values)
+        return self.table(name, ([column.of_case(case, group, own) for column in columns] for case in group.cases))
 
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
         """Return a panel with these lines; `parts` stand beside or in place of the described ones."""

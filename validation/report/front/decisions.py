@@ -107,7 +107,7 @@ def _as_run(groups: Groups) -> Blocks:
     if group is None:
         return []
     by_length = replace(group, cases=tuple(by_step(group)))
-    table = PAGE.case_table("as-run", [by_length], {"peak": _peak, "tension": _tension})
+    table = PAGE.case_table("as-run", by_length, {"peak": _peak, "tension": _tension})
     return [table, Paragraph(PAGE.text("as-run"))] if table.rows else []
 
 
