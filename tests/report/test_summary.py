@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from oracles.made_cases import between, made_case, made_group, made_row
 
-from validation.report.blocks import Beside, Callout, Heading, Paragraph, Points, Table
+from validation.report.blocks import Beside, Callout, Points
 from validation.report.chapters import summary
 from validation.scenes.scene import Scene, load_scene
 
@@ -28,17 +28,6 @@ def case(scene: Scene = PAPER, label: str = "as stated", **metrics: dict[str, An
     )
 
 
-def cells(table: Table) -> list[dict[str, str]]:
-    """Return the rows of a table by the titles of its columns, with those that columns share before them."""
-    titles = [f"{column.group} {column.title}".strip() for column in table.columns]
-    return [dict(zip(titles, row, strict=True)) for row in table.rows]
-
-
-def table_of(blocks: Any) -> Table:
-    (found,) = [block for block in blocks if isinstance(block, Table)]
-    return found
-
-
 def test_the_best_reference_is_exact_in_time_if_it_was_run_and_compared() -> None:
     pairs = {"continuum": 0.3, "bar": 0.2, "fem": 0.1, "block-events": 0.4}
     own = case(**{name: {} for name in ("dda", *pairs)})
@@ -53,38 +42,6 @@ def test_the_best_reference_is_exact_in_time_if_it_was_run_and_compared() -> Non
     assert summary.reference_of(group, alone) is None  # it has no row
 
 
-def test_errors_and_cost_stand_for_each_solver_and_absent_quantities_have_no_column() -> None:
-    own = case(dda={"mode1.frequency": 344.56}, bar={"mode1.frequency": 327.7})
-    pair = between(PAPER.name, "dda", "bar", displacement_l2=0.0363, pressure_l2=0.0405)
-    heading, table, frequency = summary.error_blocks(made_group(own, comparisons=(pair,)))
-    assert isinstance(heading, Heading) and isinstance(table, Table) and isinstance(frequency, Paragraph)
-    first, second = cells(table)
-    assert first == {
-        "Solver": "dda", "Error [%] displacement": "3.63", "Error [%] contact pressure": "4.05", "Work unknowns": "2",
-        "Work solves": "7", "Work steps": "100", "Time [ms] set-up": "2.0", "Time [ms] steps": "4.0",
-    }  # fmt: skip
-    assert second["Solver"] == "bar (reference)" and second["Error [%] displacement"] == "–"
-    assert "5.14\u00a0%" in frequency.text  # 344.56 / 327.7 - 1
-    assert summary.error_blocks(made_group(case())) == []
-
-
-def test_the_fastest_run_within_an_error_is_named_only_where_there_are_several() -> None:
-    steps = ((0.002, 0.05), (0.001, 0.005))
-    cases, pairs = [], []
-    for step, error in steps:
-        scene = PAPER.with_values({"time.step": step}, label=True)
-        own = case(scene, f"dt = {step:g} s", dda={}, bar={})
-        seconds = {"setup": 0.0, "stepping": 1 / step / 1e5}
-        cases.append(replace(own, rows={**own.rows, "dda": replace(own.rows["dda"], seconds=seconds)}))
-        pairs.append(between(scene.name, "dda", "bar", displacement_l2=error))
-    (paragraph,) = summary.fastest(made_group(*cases, comparisons=tuple(pairs)))
-    assert "10\u00a0%: dda at dt = 0.002 s, 5.0\u00a0ms; 1\u00a0%: dda at dt = 0.001 s, 10\u00a0ms." in paragraph.text  # type: ignore[union-attr]
-    far = [pair | {"metrics": {"displacement.l2": 0.9}} for pair in pairs]
-    (paragraph,) = summary.fastest(made_group(*cases, comparisons=tuple(far)))
-    assert "No run is within 10" in paragraph.text  # type: ignore[union-attr]
-    assert summary.fastest(made_group(cases[0], comparisons=tuple(pairs))) == []
-
-
 def test_damping_is_told_by_scheme_discount_and_tables() -> None:
     scene = PAPER.with_values({"time.gg": 0.98})
     parts = summary.mode_damping(case(scene, dda={}), 344.561)
@@ -95,16 +52,6 @@ def test_damping_is_told_by_scheme_discount_and_tables() -> None:
     assert summary.mode_damping(case(viscous, dda={"mode1.damping": 0.19}), 344.561)["tables"] == pytest.approx(
         0.19 - 0.1602, abs=5e-4
     )
-    undamped = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5})
-    heading, nothing = summary.damping_blocks(made_group(case(undamped, dda={"mode1.frequency": 344.561})))
-    assert isinstance(heading, Heading) and isinstance(nothing, Paragraph)
-    assert summary.damping_blocks(made_group(case(dda={}))) == []
-
-
-def test_of_a_contact_that_opens_the_energy_is_told_without_what_lost_none() -> None:
-    lost = {"energy.given": 21.0, "energy.lost_switching": 5.01, "energy.lost_friction": 0.0}
-    (row,) = cells(table_of(summary.damping_blocks(made_group(case(dda=lost)))))
-    assert row == {"given": "21", "Lost by opening and closing": "5.01"}
 
 
 @pytest.mark.parametrize(
@@ -128,11 +75,34 @@ def test_each_kind_of_scene_has_its_choices_and_a_drawing(
     assert isinstance(others[-1], Callout) and "it pulls" in others[-1].text
 
 
-def test_several_scenes_have_a_line_each() -> None:
-    pair = between(PAPER.name, "dda", "bar", displacement_l2=0.0363)
-    known = replace(made_group(case(dda={"mode1.damping": 0.16}, bar={}), comparisons=(pair,)), title="One")
-    table = summary.overview({"one": known, "two": replace(made_group(case(fem={})), title="Two")})
-    first, second = cells(table)
-    assert first["Error of DDA displacement"] == "3.63\u00a0%" and first["most ms a run"] == "6.00"
-    assert (second["Scene"], second["damping of the first mode"], second["Alarms"]) == ("Two", "–", "none")
-    assert "Error of DDA contact pressure" not in first
+def steps(*errors: tuple[float, float]) -> Any:
+    """Return a group of steps with their errors; the run time is in inverse proportion to the step."""
+    cases, pairs = [], []
+    for step, error in errors:
+        scene = PAPER.with_values({"time.step": step}, label=True)
+        own = case(scene, f"dt = {step:g} s", dda={}, bar={})
+        seconds = {"setup": 0.0, "stepping": 1 / step / 1e5}
+        cases.append(replace(own, rows={**own.rows, "dda": replace(own.rows["dda"], seconds=seconds)}))
+        pairs.append(between(scene.name, "dda", "bar", displacement_l2=error))
+    return made_group(*cases, comparisons=tuple(pairs))
+
+
+def test_page_1_says_what_its_rows_hold_and_leaves_out_what_they_do_not(kept: Any) -> None:
+    """One case, steps within and beyond the named errors, no damping, a contact that opens, several scenes."""
+    pair = between(PAPER.name, "dda", "bar", displacement_l2=0.0363, pressure_l2=0.0405)
+    one = made_group(case(dda={"mode1.frequency": 344.56}, bar={"mode1.frequency": 327.7}), comparisons=(pair,))
+    undamped = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    lost = {"energy.given": 21.0, "energy.lost_switching": 5.01, "energy.lost_friction": 0.0}
+    damped = replace(made_group(case(dda={"mode1.damping": 0.16}, bar={}), comparisons=(pair,)), title="One")
+    blocks = [
+        *summary.error_blocks(one),
+        *summary.error_blocks(steps((0.002, 0.05), (0.001, 0.005))),
+        *summary.fastest(steps((0.002, 0.9), (0.001, 0.9))),
+        *summary.damping_blocks(made_group(case(undamped, dda={"mode1.frequency": 344.561}))),
+        *summary.damping_blocks(one),
+        *summary.damping_blocks(made_group(case(dda=lost))),
+        summary.overview({"one": damped, "two": replace(made_group(case(fem={})), title="Two")}),
+    ]
+    kept("summary", blocks)
+    silent = made_group(case())
+    assert summary.error_blocks(silent) == summary.damping_blocks(silent) == summary.fastest(one) == []

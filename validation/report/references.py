@@ -24,10 +24,10 @@ PAPER = (
 )
 
 
-def references(text: str | None = None) -> dict[str, dict[str, str]]:
-    """Return the fields of the sources by their keys, in the order of the file, of a BibTeX text or of ours."""
+def references() -> dict[str, dict[str, str]]:
+    """Return the fields of the sources by their keys, in the order of the file."""
     entries = {}
-    for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8") if text is None else text):
+    for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8")):
         fields = {name: value.replace("{", "").replace("}", "") for name, value in FIELD.findall(body)}
         entries[key] = {"kind": kind, **fields}
     return entries

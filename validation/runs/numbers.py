@@ -163,5 +163,7 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "three": lambda value, _: f"{value:.3g}",
     "measured": lambda value, digits: bounded(value, short(value, digits)),
     "grouped": lambda value, _: f"{value:,.0f}".replace(",", "\u00a0"),  # by thousands
+    "signed percent": lambda value, _: signed_percent(value),
+    "ms": lambda seconds, _: milliseconds(seconds),
     "ratio": lambda value, _: f"{value:g}E",  # p over Young's modulus
 }

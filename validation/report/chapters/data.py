@@ -123,11 +123,6 @@ def groups_by_name(results: Results, manifest: Manifest) -> Groups:
     return {group.name: group for group in case_groups(results, manifest)}
 
 
-def cases_of(groups: Groups, *names: str) -> list[CaseResults]:
-    """Return the cases of the scenes of these names, as far as the study has them."""
-    return list(itertools.chain.from_iterable(groups[name].cases for name in names if name in groups))
-
-
 def derived_rows(manifest: Manifest) -> DerivedRows:
     """Return the metrics of a study's derived rows."""
     return {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}

@@ -1,23 +1,18 @@
 """What a chapter says and shows, as the TOML file beside its module describes it; rows, lines and values come in.
 
-    [text]          paragraphs, captions; ``{name}`` stands for a value
+    [text]          paragraphs, captions; ``{name}`` stands for a value, ``{name:percent}`` for a number in one of
+                    `FORMS`, ``{name:short 3}`` with its digits
     [table.NAME]    columns, caption, notes, dense, ruled
     [panel.NAME]    of `ChartPanel`
     [figure.NAME]   file, caption, height, margins, shared
     [[NAME]]        the entries of a list
 
-A column has a title, and where needed a group, a kind and what it is `of`, in a table with a row for each case:
-
-    "dda mode1.frequency"       a metric of a solver
-    "dda|fem displacement.l2"   a metric of a pair
-    "time.step"                 a datum of the scene
-    "label", or another word    the label of the case, or a value that the module computes from the case
+A column has a title, and where needed a group, a kind and what it is `of`: an expression of a case as
+`validation.report.chapters.queries` has them, or a word for a value that the module computes from the case.
 """
 
 from __future__ import annotations
 
-import operator
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,9 +21,11 @@ from typing import Any
 from validation.metrics.catalogue import in_words
 from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.queries import value_of_case
 from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.texts import FILLED, Texts
 from validation.runs.numbers import DASH, FORMS, decimal
 from validation.runs.row import Value
 
@@ -73,20 +70,11 @@ class CaseColumn:
         if self.of in own:
             value = own[self.of]
             return self.text(value(case) if callable(value) else value)
-        source, _, metric = self.of.partition(" ")
-        if not metric:
-            return self.text(operator.attrgetter(source)(case if source == "label" else case.scene))
-        solver, _, reference = source.partition("|")
-        if reference:
-            return self.text(group.number_of_pair(case, solver, reference, metric) if group else None)
-        return self.text(case.number(solver, metric))
+        return self.text(value_of_case(case, group, self.of))
 
 
-class Description:
+class Description(Texts):
     """The description of a chapter."""
-
-    def __init__(self, module: str | Path) -> None:
-        self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
 
     def has(self, kind: str, name: str) -> bool:
         """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
@@ -102,11 +90,6 @@ class Description:
         entries: list[dict[str, Any]] = self._data[name]
         return entries
 
-    def text(self, name: str, **values: Any) -> str:
-        """Return a text with its values."""
-        text: str = self._data["text"][name]
-        return text.format_map(values) if values else text
-
     def columns(self, name: str) -> list[CaseColumn]:
         """Return the columns of a table."""
         columns = self._data["table"][name]["columns"]
@@ -117,26 +100,13 @@ class Description:
         described = dict(self._data["table"][name])
         described.pop("columns", None)
         if values:
-            described["caption"] = described["caption"].format_map(values)
+            described["caption"] = FILLED.vformat(described["caption"], (), values)
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
 
-    def cells(self, name: str, case: CaseResults | None, own: Mapping[str, CaseValue] = {}) -> list[str]:
-        """Return the cells of a case in those columns of a table that say what they are of."""
-        return [column.of_case(case, None, own) for column in self.columns(name) if column.of]
-
-    def case_table(
-        self,
-        name: str,
-        groups: Iterable[CaseGroup],
-        own: Mapping[str, CaseValue] = {},
-        **values: Any,
-    ) -> Table:
-        """Return a table with a row for each case of some groups."""
+    def case_table(self, name: str, group: CaseGroup, own: Mapping[str, CaseValue] = {}) -> Table:
+        """Return a table with a row for each case of a group."""
         columns = self.columns(name)
-        rows = []
-        for group in groups:
-            rows += [[column.of_case(case, group, own) for column in columns] for case in group.cases]
-        return self.table(name, rows, **values)
+        return self.table(name, ([column.of_case(case, group, own) for column in columns] for case in group.cases))
 
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
         """Return a panel with these lines; `parts` stand beside or in place of the described ones."""
@@ -156,5 +126,5 @@ class Description:
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))
         file = described["file"].format_map(values)
-        caption = values.get("whole_caption") or described["caption"].format_map(values)
+        caption = values.get("whole_caption") or FILLED.vformat(described["caption"], (), values)
         return histories.saved(figure, directory, file, caption, scene)

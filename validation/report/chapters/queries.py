@@ -142,17 +142,9 @@ class StudyTable:
             return line.group.title
         if line.case is None or line.group is None:
             return None
-        if expression == "label":
-            return line.case.label
         if expression == "case":
             return f"{line.group.name} {line.case.label}" if len(line.group.cases) > 1 else line.group.name
-        source, _, metric = expression.partition(" ")
-        if not metric:
-            return _datum(line.case, source)
-        solver, _, reference = source.replace("*", str(line.words.get("solver", ""))).partition("|")
-        if reference:
-            return line.group.number_of_pair(line.case, solver, reference, metric)
-        return _of_solver(line.case, solver, metric)
+        return value_of_case(line.case, line.group, expression.replace("*", str(line.words.get("solver", ""))))
 
     def _of_row(self, line: Line, row: str, metric: str) -> Value:
         if not row:
@@ -218,6 +210,19 @@ class StudyTable:
         for line in lines:
             groups.setdefault(tuple(self.value(line, one) for one in expressions), []).append(line)
         return list(groups.values())
+
+
+def value_of_case(case: CaseResults, group: CaseGroup | None, expression: str) -> Value:
+    """Return its label, a datum of its scene, a metric of a solver, or one of a pair that its group has compared."""
+    if expression == "label":
+        return case.label
+    source, _, metric = expression.partition(" ")
+    if not metric:
+        return _datum(case, source)
+    solver, _, reference = source.partition("|")
+    if reference:
+        return group.number_of_pair(case, solver, reference, metric) if group else None
+    return _of_solver(case, solver, metric)
 
 
 def _pattern(text: str) -> re.Pattern[str]:

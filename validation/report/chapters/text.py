@@ -56,11 +56,11 @@ def span(values: Sequence[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def cell(value: Value, factor: float = 1.0, digits: int = 4) -> str:
+def cell(value: Value) -> str:
     """Return a metric as a table cell: a number, or its word, or a dash where there is none."""
     if value is None:
         return DASH
-    return _WORDS.get(value, value) if isinstance(value, str) else plain(value * factor, digits)
+    return _WORDS.get(value, value) if isinstance(value, str) else plain(value)
 
 
 def word_notes(values: Iterable[Value]) -> tuple[str, ...]:

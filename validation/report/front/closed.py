@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
+from validation.theory.stepping import Stepping
 
 LOWEST = 1e-3  # w dt from which on a ratio is looked for
 HIGHEST = 8.0  # w dt up to which it is
@@ -48,23 +48,15 @@ def ratio_of(scene: Scene) -> float:
 
 
 def first_damping(scene: Scene) -> float:
-    """Return xi of the DDA block's first axial mode [-], at least 1 where it creeps; NaN where a root is not positive.
-
-    A complex pair: xi = -Re(ln l) / |ln l|. Two positive real roots: xi = -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
-    """
-    frequency = spectra.dda_frequency(scene)
-    first, second = spectra.roots(scene, frequency)
-    if first.imag:
-        return spectra.damping_ratio(scene, frequency)
-    if min(first.real, second.real) <= 0:
-        return math.nan
-    logs = math.log(first.real), math.log(second.real)
-    return -sum(logs) / (2 * math.sqrt(logs[0] * logs[1])) if logs[0] * logs[1] > 0 else math.nan
+    """Return xi of the DDA block's first axial mode [-]: at least 1 where it creeps, NaN where a root is negative."""
+    return float(over_steps(scene, np.array([scene.time.step]))[0])
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
     """Return xi of the first axial mode over time steps [s]; a discount stated as a rate stays one."""
-    return np.array([first_damping(timed(scene, step=float(step))) for step in steps])
+    frequency = spectra.dda_frequency(scene)
+    stepping = Stepping.of(scene)
+    return np.array([stepping.at(float(step)).damping_ratio(frequency * float(step)) for step in steps])
 
 
 def step_for(scene: Scene, ratio: float) -> float | None:

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.report.blocks import Blocks, Callout, Heading, PageBreak, Paragraph, Table
 from validation.report.chapters.data import CaseResults, Groups
 from validation.report.chapters.described import Description
-from validation.report.figures import histories
-from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import DASHED, SETTINGS, ChartLine, ChartPanel
 from validation.report.front import closed
 from validation.report.front.first import damping_at_steps, peak_excess
 from validation.report.front.groups import at_ratio, by_step, case_where
@@ -43,7 +41,7 @@ def decisions(groups: Groups, paper: Scene, directory: Path) -> Blocks:
 
 def _rule(text: str, options: str) -> Callout:
     """Return a rule with the command that answers the question for a scene of the reader's own."""
-    return Callout(f"Rule. {text} For your own block: dda-validate {options}", "rule")
+    return Callout(PAGE.text("rule", text=text, command=options), "rule")
 
 
 def _damping_chart(
@@ -80,7 +78,7 @@ def step_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     greatest = max(float(np.nanmax(line.y)) for line in chart.lines)
     step = closed.step_for(scenes[0], 0.05)
-    example = f": for 5\u00a0% at p = 1E, dt = {milliseconds(step)}" if step else ""
+    example = PAGE.text("example", step=step) if step else ""
     command = "advise step my-block.toml --damping 0.05 --solve-for dt"
     return [
         Heading("Decision 1: which time step?", 2),
@@ -109,7 +107,7 @@ def _as_run(groups: Groups) -> Blocks:
     if group is None:
         return []
     by_length = replace(group, cases=tuple(by_step(group)))
-    table = PAGE.case_table("as-run", [by_length], {"peak": _peak, "tension": _tension})
+    table = PAGE.case_table("as-run", by_length, {"peak": _peak, "tension": _tension})
     return [table, Paragraph(PAGE.text("as-run"))] if table.rows else []
 
 
@@ -137,28 +135,23 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     share = np.array([100 * closed.penetration(s) / abs(statics.static_displacement(s)) for s in scenes])
     high = np.array([100 * (spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1) for s in scenes])
     marks = {f"{r:g}E": r for r in RATIOS}
-    axes: dict[str, Any] = {"x_range": (0.1, 1e5), "logarithmic": (True, False), "marks": marks}
     additions = (
         ChartLine("share of v at rest", grid, share, SETTINGS[0]),
         ChartLine("ω₁ above the bar's", grid, high, SETTINGS[3]),
     )
-    deflection = ChartPanel("What the springs add [%]", "p / E", "", additions, y_range=(0.0, 100.0), **axes)
     radii = []
     for (name, (alpha, delta)), color in zip(SCHEMES.items(), SETTINGS[1:], strict=False):
         stepped = [closed.timed(s, alpha=alpha, delta=delta) for s in scenes]
         radii.append(ChartLine(name, grid, np.array([closed.contact_radius(s) for s in stepped]), color))
     title = f"|λ| of the contact at dt = {milliseconds(STEP)}"
-    ringing = ChartPanel(title, "p / E", "", radii, y_range=(0.0, 1.05), **axes)
-    caption = (
-        "Left: the springs' share of v at rest over p/E; the stiffer they are, the more the first natural "
-        "frequency exceeds the bar's. Right: |λ|, the share of its amplitude that the contact keeps per step; at 1 the "
-        "ringing is undamped. Of the two drawn (9/16, 1) avoids it, as does any δ > 1/2 with α = (1/2 + δ)²/4, "
-        "whose roots tend to (δ − 3/2)/(δ + 1/2)."
-    )
+    panels = [
+        PAGE.panel("deflection", additions, marks=marks),
+        PAGE.panel("ringing", radii, title=title, marks=marks),
+    ]
     return [
         Heading("Decision 2: which spring stiffness?", 2),
         _rule(spring_rule(groups, base), "advise damping my-block.toml --set contact.stiffness=1e10"),
-        histories.saved(chart_figure([deflection, ringing], 52.0), directory, "decision-springs.svg", caption),
+        PAGE.figure("springs", panels, directory),
         spring_table(groups, base),
         Paragraph(PAGE.text("ringing")),
     ]
@@ -166,24 +159,20 @@ def spring_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
 
 def spring_rule(groups: Groups, base: Scene) -> str:
     """Return the rule on springs, with what happens at p = 100E."""
-    usual, stiff = (closed.stiffer(base, ratio) for ratio in RATIOS[1:])
+    scenes = [closed.stiffer(base, ratio) for ratio in RATIOS[1:]]
     case = case_where(groups.get("figures-5-6"), at_ratio(100.0))
     displacement, pressure = (column.of_case(case) for column in PAGE.columns("springs")[8:])
     as_run = ""
     if DASH not in (pressure, displacement):
-        as_run = (
-            f" (as run: {pressure} steps until the pressure is within 0.01\u00a0%, {displacement} for the displacement)"
-        )
-    return (
-        f"For a locked square block take p = 10E: the springs then deflect by {1e3 * closed.penetration(usual):.3g}"
-        f"\u00a0mm at rest, {percent(closed.spring_share(usual))} of what the block shortens by; for another shape it "
-        f"is (w/h) E/p. At p = 100E they deflect by {1e3 * closed.penetration(stiff):.3g}\u00a0mm. Beyond dt = 4/ω of "
-        f"the contact, {milliseconds(closed.sign_change_step(usual))} at 10E and "
-        f"{milliseconds(closed.sign_change_step(stiff))} at 100E, the contact force flips sign each step: at "
-        f"dt = {milliseconds(STEP)} it keeps {percent(closed.contact_radius(usual))} of its amplitude at 10E and "
-        f"{percent(closed.contact_radius(stiff))} at 100E{as_run}. "
-        "If stiff springs are a must, take a step below 4/ω, or δ > 1/2 with α = (1/2 + δ)²/4, as (9/16, 1). Where the "
-        "contact opens, the peak force of a landing in DDA grows as √p: this is no rule there."
+        as_run = PAGE.text("springs-as-run", pressure=pressure, displacement=displacement)
+    return PAGE.text(
+        "spring-rule",
+        deflections=[1e3 * closed.penetration(scene) for scene in scenes],
+        share=closed.spring_share(scenes[0]),
+        limits=[closed.sign_change_step(scene) for scene in scenes],
+        step=STEP,
+        radii=[closed.contact_radius(scene) for scene in scenes],
+        as_run=as_run,
     )
 
 
@@ -199,7 +188,7 @@ def spring_table(groups: Groups, base: Scene) -> Table:
             "springs": f"{1e3 * closed.penetration(scene):.3g}",
             "damping": closed.first_damping(scene),
             "contact": closed.contact_radius(scene),
-            "limit": f"{1e3 * 4 / spectra.contact_frequency(scene):.3g}",
+            "limit": f"{1e3 * closed.sign_change_step(scene):.3g}",
         }
         columns = PAGE.columns("springs")
         row = [column.text(numbers[column.of]) for column in columns[:6]]
@@ -227,16 +216,12 @@ def discount_page(groups: Groups, paper: Scene, directory: Path) -> Blocks:
     )
     per_step = closed.timed(base, gg=0.98)
     overdamped_below = closed.overdamped_below(per_step)
-    creep = ""
-    if overdamped_below:
-        creep = f", and below dt = {milliseconds(overdamped_below)} the block creeps instead of oscillating"
+    creep = PAGE.text("creep", step=overdamped_below) if overdamped_below else ""
+    ratios = damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))
     return [
         Heading("Decision 3: which discount?", 2),
         _rule(
-            f"Leave gg at 1, or hold it as a rate: gg = exp(−c dt) with c = 2 ω₁ ξ, for 5\u00a0% c = {rate:.3g} 1/s, "
-            "at steps with ω₁ dt below 1. "
-            f"gg = 0.98 per step is {damping_at_steps(per_step, (2e-3, 1e-3, 1e-4))} of critical{creep}; a refined "
-            "step never converges.",
+            PAGE.text("discount-rule", rate=rate, ratios=ratios, creep=creep),
             "advise step my-block.toml --damping 0.05 --solve-for gg",
         ),
         PAGE.figure("discount", [chart], directory, ratios=damping_at_steps(at_rate, RATE_STEPS), turns=turns),
@@ -266,13 +251,12 @@ def _measured(groups: Groups) -> Blocks:
     group = groups.get("figure-9")
     if group is None:
         return []
-    parts = []
+    ratios = []
     for case in group.cases:
         xi = case.number("dda", "mode1.measured_damping")
         if xi is not None:
-            ratio = percent(xi) if xi > 1e-9 else "0 %"
-            parts.append(f"{ratio} for gg = {case.scene.time.discount:g}")
-    if not parts:
+            ratios.append((percent(xi) if xi > 1e-9 else "0 %", case.scene.time.discount))
+    if not ratios:
         return []
-    step = milliseconds(group.cases[0].scene.time.step)
-    return [Paragraph(f"Measured on the histories of the paper's Figure 9, at dt = {step}: {', '.join(parts)}.")]
+    step = group.cases[0].scene.time.step
+    return [Paragraph(PAGE.text("measured", step=step, ratios=PAGE.listed("measured-ratio", ratios)))]

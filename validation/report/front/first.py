@@ -12,18 +12,19 @@ import numpy as np
 
 from validation.report.blocks import Beside, Blocks, Callout, Heading, Paragraph, Points
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, Verdicts
+from validation.report.chapters.described import Description
 from validation.report.chapters.gates import window
 from validation.report.figures import histories
-from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel, chart_figure
+from validation.report.figures.charts import DASHED, DOTS, SETTINGS, ChartLine, ChartPanel
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed
 from validation.report.front.groups import PAPER, at_ratio, by_step, case_where
 from validation.runs.history import Array
-from validation.runs.numbers import milliseconds, percent, plain, short, signed_percent
 from validation.scenes.scene import Scene
 from validation.theory import spectra
 
+PAGE = Description(__file__)
 TARGET_DAMPING = 0.05  # damping ratio that the answer names a time step for
 STIFF = 100.0  # p/E of the answer on stiff springs
 STIFFNESSES = (1.0, 10.0, 100.0)  # p/E for which the first frequency is given
@@ -31,6 +32,7 @@ STEPS = (2e-3, 5e-3)  # s, steps for which it is given as stepped
 DISCOUNT = 0.98
 COUNTS = ("no", "one", "two", "three", "four", "five")
 SETTLED = 1e-3  # a pressure at rest within this of the load is the load
+Answer = tuple[str, str]  # a question, and what is answered
 
 
 def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path) -> Blocks:
@@ -38,34 +40,20 @@ def first_page(groups: Groups, paper: Scene, verdicts: Verdicts, directory: Path
     model = model_figure(f"a = {paper.block.side or 0:g} m", f"q = {paper.load.pressure / 1e6:g} MPa")
     drawing = histories.saved(model, directory, "model.svg", "")
     answers = [*filter(None, (force(groups), steps(groups, paper), springs(groups), discount(paper), beware(groups)))]
-    charts = chart_figure(damping_and_error(groups, paper), 26.0)
+    tested = PAGE.text("model", block=paper.block, gigapascals=paper.block.young / 1e9)
+    beside = (Heading("What was tested", 3), Paragraph(tested), Paragraph(PAGE.text("compared")))
+    panels = damping_and_error(groups, paper)
     return [
-        Beside((drawing,), (Heading("What was tested", 3), *tested(paper)), 0.42),
+        Beside((drawing,), beside, 0.42),
         Heading(f"The answer in {COUNTS[len(answers)]} sentences", 3),
         Points(tuple(answers)),
-        histories.saved(charts, directory, "first.svg", damping_and_error_caption(groups, paper)),
+        PAGE.figure("first", panels, directory, whole_caption=damping_and_error_caption(groups, paper)),
         verdict_line(verdicts),
     ]
 
 
-def tested(paper: Scene) -> Blocks:
-    """Return what stands beside the drawing."""
-    block = paper.block
-    return [
-        Paragraph(
-            f"An elastic square A of side a (density {block.density:g} kg/m³, Young's modulus E = "
-            f"{short(block.young / 1e9)} GPa, Poisson's ratio μ = {block.poisson:g}) stands on a fixed block B. "
-            "Springs of stiffness p [N/m], written as a multiple of E, lock the corners M and N in each direction; "
-            "a pressure q on the top is there from t = 0 on. DDA @shi1985, @shi1988 gives the block six unknowns: "
-            "displacements u, v and rotation r of its centroid and one strain εx, εy, γxy. Reported are v and the "
-            "contact pressure on the base."
-        ),
-        Paragraph(
-            "It is compared with the same block in finite elements (fem), as a bar that is exact in space and takes "
-            "the same time steps dt (bar), and as one exact in space and time (continuum). DDA differs from the bar by "
-            "its model, the bar from the continuum by the time step."
-        ),
-    ]
+def _answer(name: str, **values: Any) -> Answer:
+    return PAGE.text(f"{name}-question", **values), PAGE.text(name, **values)
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------
@@ -84,7 +72,7 @@ def _model_form(groups: Groups) -> list[tuple[CaseResults, float, float]]:
     return rows
 
 
-def force(groups: Groups) -> tuple[str, str] | None:
+def force(groups: Groups) -> Answer | None:
     """Say whether DDA's contact force is right: at rest, and on the way there.
 
     The first peak leads, which no window changes. A relative L2 difference is mostly one of phase where little is
@@ -94,23 +82,19 @@ def force(groups: Groups) -> tuple[str, str] | None:
     if not rows:
         return None
     scene = rows[0][0].scene
+    pressure = scene.load.pressure
     static_pressures = [case.number("dda", "pressure.static") for case, _, _ in rows]
-    at_rest = "At rest no: not every run tends to the load"
-    if all(value is not None and abs(value / scene.load.pressure - 1) < SETTLED for value in static_pressures):
-        at_rest = f"At rest yes: every run tends to {scene.load.pressure / 1e6:g} MPa"
-    peaks = []
-    for case, _, _ in rows:
-        excess = peak_excess(case)
-        if excess is not None:
-            peaks.append(f"{signed_percent(excess)} at {milliseconds(case.scene.time.step)}")
-    moving = "during the motion no"
-    if peaks:
-        moving += f": against the bar under the same steps its first peak is off by {', '.join(peaks)}"
-    return (
-        "Is DDA's force right?",
-        f"{at_rest}; {moving} "
-        f"(p = {closed.ratio_of(scene):g}E): one strain in place of a wave, which the damping of a long step hides."
-        f"{_windows(groups, rows[-1])}",
+    is_load = all(value is not None and abs(value / pressure - 1) < SETTLED for value in static_pressures)
+    peaks = [(peak_excess(case), case.scene.time.step) for case, _, _ in rows]
+    peaks = [peak for peak in peaks if peak[0] is not None]
+    shortest = rows[-1][0]
+    return _answer(
+        "force",
+        at_rest=PAGE.text("rest-yes" if is_load else "rest-no", pressure=pressure / 1e6),
+        peaks=PAGE.text("peaks", peaks=PAGE.listed("peak", peaks)) if peaks else "",
+        ratio=closed.ratio_of(scene),
+        step=shortest.scene.time.step,
+        windows=PAGE.listed("window", sorted(_windows(groups["model-form"], shortest, rows[-1][2]))),
     )
 
 
@@ -120,44 +104,32 @@ def peak_excess(case: CaseResults) -> float | None:
     return None if dda is None or not bar else dda / bar - 1
 
 
-def _windows(groups: Groups, shortest: tuple[CaseResults, float, float]) -> str:
-    """Say how a relative L2 difference of the pressure grows with its window, at the shortest step."""
-    case, _, pressure_error = shortest
-    errors: list[tuple[float, float]] = []  # window [s] and relative L2
-    for verdict in groups["model-form"].verdicts:
+def _windows(group: CaseGroup, case: CaseResults, pressure_error: float) -> list[tuple[float, float]]:
+    """Return the windows [s] that the pressure of a case is judged over, or its duration, with the relative L2."""
+    errors: list[tuple[float, float]] = []
+    duration = case.scene.time.duration
+    for verdict in group.verdicts:
         subject = (verdict["scene"], tuple(verdict["pair"]), verdict["metric"])
         value = verdict["value"]
         if subject == (case.name, ("dda", "bar"), "pressure.l2") and isinstance(value, int | float):
             until = window(verdict)
-            errors.append((float(until.removesuffix("s")) if until else case.scene.time.duration, float(value)))
-    if len(errors) < 2:
-        errors = [(case.scene.time.duration, pressure_error)]
-    texts = [f"{percent(value)} over {short(time)} s" for time, value in sorted(errors)]
-    return (
-        f" A relative L2 difference is mostly phase and grows with its window: at "
-        f"{milliseconds(case.scene.time.step)} {', '.join(texts)}."
-    )
+            errors.append((float(until.removesuffix("s")) if until else duration, float(value)))
+    return errors if len(errors) > 1 else [(duration, pressure_error)]
 
 
-def steps(groups: Groups, paper: Scene) -> tuple[str, str]:
+def steps(groups: Groups, paper: Scene) -> Answer:
     """Say that the time step is the damping, and which one gives 5 %."""
-    measured = []
-    for case in by_step(groups.get(PAPER)):
-        if (xi := case.number("dda", "mode1.damping")) is not None:
-            measured.append(f"{percent(xi)} at {milliseconds(case.scene.time.step)}")
+    measured = [(case.number("dda", "mode1.damping"), case.scene.time.step) for case in by_step(groups.get(PAPER))]
     step = closed.step_for(paper, TARGET_DAMPING)
-    advice = "see decision 1"
-    if step:
-        advice = f"for {100 * TARGET_DAMPING:g}\u00a0% take dt = {milliseconds(step)} (decision 1)"
-    return (
-        "Which time step?",
-        f"The step is the damping: constant acceleration, in DDA's usage Newmark's @newmark1959 weights (α, δ) = (1/2, "
-        f"1) (texts on finite elements mean (1/4, 1/2)), damps the first mode by {', '.join(measured)} of "
-        f"critical at p = {closed.ratio_of(paper):g}E; {advice}.",
+    return _answer(
+        "steps",
+        measured=PAGE.listed("ratio-at-step", (one for one in measured if one[0] is not None)),
+        ratio=closed.ratio_of(paper),
+        advice=PAGE.text("step-for", percent=100 * TARGET_DAMPING, step=step) if step else "see decision 1",
     )
 
 
-def springs(groups: Groups) -> tuple[str, str] | None:
+def springs(groups: Groups) -> Answer | None:
     """Say what happens at p = 100E."""
     usual, stiff = (case_where(groups.get("figures-5-6"), at_ratio(ratio)) for ratio in (STIFF / 10, STIFF))
     if usual is None or stiff is None:
@@ -168,72 +140,60 @@ def springs(groups: Groups) -> tuple[str, str] | None:
         stiff.number("dda", "displacement.fine_settling_step"),
         stiff.number("dda", "pressure.fine_settling_step"),
     )
-    texts = [f"{step:.0f}" for step in settling_steps if step is not None]
-    if len(texts) < len(settling_steps):
+    if None in settling_steps:
         return None
-    usual_steps, stiff_steps, fine_displacement, fine_pressure = texts
-    radius = closed.contact_radius(stiff.scene)
     constant = closed.constant(usual.scene)
-    share = percent(closed.spring_share(constant))
-    return (
-        "Which springs?",
-        f"About p = {STIFF / 10:g}E for a locked square block: the springs then add {share} "
-        "to what it shortens by itself; their force flips sign each step only beyond "
-        f"dt = {milliseconds(closed.sign_change_step(constant))}. At p = {STIFF:g}E the displacement hardly changes "
-        f"(settled within 1\u00a0% after {stiff_steps} steps instead of {usual_steps}), but the contact rings: it "
-        f"flips sign each step and keeps {percent(radius)} of its swing, so that the pressure needs {fine_pressure} "
-        f"steps to come within 0.01\u00a0% of rest and the displacement {fine_displacement}, at "
-        f"dt = {milliseconds(stiff.scene.time.step)} (decision 2).",
+    return _answer(
+        "springs",
+        usual=STIFF / 10,
+        stiff=STIFF,
+        share=closed.spring_share(constant),
+        limit=closed.sign_change_step(constant),
+        steps=settling_steps,
+        radius=closed.contact_radius(stiff.scene),
+        step=stiff.scene.time.step,
     )
 
 
-def discount(paper: Scene) -> tuple[str, str]:
+def discount(paper: Scene) -> Answer:
     """Say what gg = 0.98 does."""
-    kinetic = closed.average(paper, DISCOUNT)
-    ratios = damping_at_steps(kinetic, (2e-3, 1e-3, 1e-4))
-    return (
-        f"What does gg = {DISCOUNT:g} do?",
-        f"The kinetic damping gg @hatzor2004 removes {100 * (1 - DISCOUNT):.0f}\u00a0% of the velocity in each step, "
-        f"not in each second: alone, under average acceleration, it damps the first mode by {ratios} of critical; hold "
-        "the rate instead, gg = exp(−c dt) (decision 3).",
-    )
+    ratios = damping_at_steps(closed.average(paper, DISCOUNT), (2e-3, 1e-3, 1e-4))
+    return _answer("discount", gg=DISCOUNT, removed=100 * (1 - DISCOUNT), ratios=ratios)
 
 
 def damping_at_steps(scene: Scene, steps: Iterable[float]) -> str:
     """Return the damping ratio of the first axial mode at some steps [s], ``1.2 % at 2 ms, 2.5 % at 1 ms``."""
-    ratios = {step: closed.first_damping(closed.timed(scene, step=step)) for step in steps}
-    return ", ".join(f"{percent(xi)} at {milliseconds(step)}" for step, xi in ratios.items())
+    return PAGE.listed("ratio-at-step", ((closed.first_damping(closed.timed(scene, step=dt)), dt) for dt in steps))
 
 
-def beware(groups: Groups) -> tuple[str, str] | None:
+def beware(groups: Groups) -> Answer | None:
     """Say what must not be believed: agreement at a long step, a contact that is always closed, the frequency."""
     rows = _model_form(groups)
     if not rows:
         return None
     longest, agreement, _ = rows[0]
+    scene = longest.scene
     time_error = groups["model-form"].number_of_pair(longest, "bar", "continuum", "displacement.l2")
-    both_off = "" if time_error is None else f", while both are {percent(time_error)} off the continuum"
     minima = [value for case, _, _ in rows if (value := case.number("dda", "pressure.minimum")) is not None]
-    stiffer = [closed.stiffer(longest.scene, ratio) for ratio in STIFFNESSES]
+    stiffer = [closed.stiffer(scene, ratio) for ratio in STIFFNESSES]
     excesses = [spectra.dda_frequency(s) / spectra.bar_frequency(s) - 1 for s in stiffer]
-    return (
-        "What should I not trust?",
-        f"The agreement at a long step: {percent(agreement)} at {milliseconds(longest.scene.time.step)}, because both "
-        f"are damped out{both_off}; a locked contact that looks closed (it pulls with {plain(-min(minima) / 1e6, 3)} "
-        f"MPa in DDA); and the first frequency: one strain makes the natural one {percent(min(excesses))} to "
-        f"{percent(max(excesses))} too high from p = {STIFFNESSES[0]:g}E to {STIFFNESSES[-1]:g}E (softer springs "
-        f"less), and the step lowers it: {_stepped_frequencies(longest.scene)} against the exact one at "
-        f"p = {closed.ratio_of(longest.scene):g}E.",
-    )
-
-
-def _stepped_frequencies(scene: Scene) -> str:
-    """Say what the step makes of DDA's first frequency against the exact bar's, at a short and at a longer step."""
-    parts = []
+    stepped = []
     for step in STEPS:
         excess = stepped_frequency(closed.timed(scene, step=step)) / spectra.bar_frequency(scene) - 1
-        parts.append(f"{percent(abs(excess))} {'above' if excess > 0 else 'below'} at {milliseconds(step)}")
-    return ", ".join(parts)
+        stepped.append((abs(excess), "above" if excess > 0 else "below", step))
+    return _answer(
+        "beware",
+        agreement=agreement,
+        step=scene.time.step,
+        both_off="" if time_error is None else PAGE.text("both-off", error=time_error),
+        pull=-min(minima) / 1e6,
+        least=min(excesses),
+        most=max(excesses),
+        softest=STIFFNESSES[0],
+        stiffest=STIFFNESSES[-1],
+        stepped=PAGE.listed("stepped", stepped),
+        ratio=closed.ratio_of(scene),
+    )
 
 
 def stepped_frequency(scene: Scene) -> float:
@@ -254,18 +214,9 @@ def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
     marks = {f"{1e3 * case.scene.time.step:g}": 1e3 * case.scene.time.step for case in cases}
     measured = [(1e3 * case.scene.time.step, case.number("dda", "mode1.damping")) for case in cases]
     dots = np.array([(x, 100 * y) for x, y in measured if y is not None]).reshape(-1, 2).T
-    axes: dict[str, Any] = {"x_range": (0.05, 20.0), "logarithmic": (True, True), "marks": marks}
-    damping = ChartPanel(
-        "Damping ratio of the first mode [%]",
-        "time step dt [ms]",
-        "",
-        (
-            ChartLine("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
-            ChartLine("", dots[0], dots[1], orange, width=0, dots=DOTS),
-        ),
-        y_range=(0.2, 100.0),
-        levels={"5 %": 100 * TARGET_DAMPING},
-        **axes,
+    damping = (
+        ChartLine("DDA", 1e3 * grid, 100 * closed.over_steps(paper, grid), orange),
+        ChartLine("", dots[0], dots[1], orange, width=0, dots=DOTS),
     )
     errors = []
     for name, pair, color, dash in (
@@ -276,10 +227,8 @@ def damping_and_error(groups: Groups, paper: Scene) -> list[ChartPanel]:
         x, y = _errors(groups.get("model-form"), pair)
         if x.size:
             errors.append(ChartLine(name, x, 100 * y, color, dash, dots=DOTS))
-    if not errors:
-        return [damping]
-    title = "Error of the displacement over 0.2 s [%]"
-    return [damping, ChartPanel(title, "time step dt [ms]", "", errors, y_range=(0.2, 200.0), **axes)]
+    lines_by_panel = {"damping": damping, "error": errors}
+    return [PAGE.panel(name, lines, marks=marks) for name, lines in lines_by_panel.items() if lines]
 
 
 def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Array]:
@@ -295,18 +244,9 @@ def _errors(group: CaseGroup | None, pair: tuple[str, str]) -> tuple[Array, Arra
 def damping_and_error_caption(groups: Groups, paper: Scene) -> str:
     """Return the figure's caption, which says what it shows."""
     rows = _model_form(groups)
+    fits = PAGE.text("fits", short=rows[-1], long=rows[0]) if len(rows) > 1 else ""
     turn = closed.most_damped(closed.constant(paper))
-    claim = (
-        f"The longer the step (to ω₁ dt = {turn:.3g}, ω₁ the first circular frequency), the more it damps, and the "
-        "better DDA seems to fit the bar"
-    )
-    if len(rows) > 1:
-        claim += f": {percent(rows[-1][1])} at {milliseconds(rows[-1][0].scene.time.step)}, "
-        claim += f"{percent(rows[0][1])} at {milliseconds(rows[0][0].scene.time.step)}"
-    return (
-        f"{claim}. What the step itself spoils grows instead. p = {closed.ratio_of(paper):g}E, constant acceleration. "
-        "Line: closed form; dots: as run, right in relative L2; dashed: the paper's steps."
-    )
+    return PAGE.text("caption", turn=turn, fits=fits, ratio=closed.ratio_of(paper))
 
 
 def verdict_line(verdicts: Verdicts) -> Callout:

@@ -10,11 +10,13 @@ from operator import itemgetter
 
 import numpy as np
 
+from validation.report.texts import Texts
 from validation.scenes.keys import described, stated
 from validation.scenes.plane import PlaneSection, Segment
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
+TEXTS = Texts(__file__)
 INSIDE = 15  # characters of a block's width in the drawing
 NARROWEST = 5  # the same of a tall block
 BESIDE = 7  # characters of a line of the drawing besides the block's width, before its text
@@ -58,14 +60,14 @@ def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
     slenderness = wide / high
     across = _across(slenderness)
     height = _height(across, slenderness)
+    c = scene.contact
     shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
-    cut = "" if b.subdivide is None else f", cut into {b.subdivide[0]} x {b.subdivide[1]} {b.pattern}"
-    start = {f"starts at {b.velocity:g} m/s": b.velocity, f"tilted by {b.tilt:g} deg": b.tilt}
-    start |= {f"gap of {scene.contact.gap:g} m": scene.contact.gap}
+    cut = "" if b.subdivide is None else TEXTS.text("cut", b)
+    start = [name for name, value in {"velocity": b.velocity, "tilt": b.tilt, "gap": c.gap}.items() if value]
     beside = [
-        f"{wide:.3g} m wide, {high:.3g} m high{shape}{cut}",
-        f"rho = {b.density:g} kg/m3, E = {b.young:g} Pa, mu = {b.poisson:g}, {b.hypothesis}",
-        *filter(None, [", ".join(words for words, value in start.items() if value)]),
+        TEXTS.text("size", wide, high, f"{shape}{cut}"),
+        TEXTS.text("material", b),
+        *filter(None, [", ".join(TEXTS.text(name, block=b, contact=c) for name in start)]),
     ]
     *above, last = textwrap.wrap(_loads(scene), (width or 1000) - across - BESIDE, break_on_hyphens=False)
     rows: Rows = [("", text) for text in above]
@@ -74,15 +76,14 @@ def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
         mark = "v"
     arrows = " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
     rows += [(f"  {arrows}", last), *_box_rows(across, height, beside)]
-    c = scene.contact
-    springs = "rigid" if math.isinf(c.stiffness) else f"p = {c.stiffness:g} N/m at each corner"
+    springs = ["rigid" if math.isinf(c.stiffness) else TEXTS.text("springs", c)]
     if c.shear_stiffness is not None:
-        springs += f", shear {c.shear_stiffness:g} N/m"
-    holds = "locked" if c.law == "locked" else f"no tension, rule {c.rule}"
+        springs.append(TEXTS.text("shear", c))
+    holds = ["locked" if c.law == "locked" else TEXTS.text("unilateral", c)]
     if c.friction is not None:
-        holds += f", friction {c.friction:g} deg" + (f", cohesion {c.cohesion:g} Pa" if c.cohesion else "")
+        holds.append(TEXTS.text("cohesive" if c.cohesion else "frictional", c))
     foot = "z" if c.law == "locked" else "x"
-    rows += [(f"  {foot}{' ' * across}{foot}", springs), (f" {'=' * (across + 4)}", holds)]
+    rows += [(f"  {foot}{' ' * across}{foot}", ", ".join(springs)), (f" {'=' * (across + 4)}", ", ".join(holds))]
     return across, rows
 
 
@@ -117,17 +118,15 @@ def column(scene: Scene) -> Iterator[tuple[str, str]]:
         signal = ""
     elif excitation.shape is None:
         signal = f"record {(excitation.record or '').rpartition('/')[2]}"
-    elif excitation.velocity is not None:
-        signal = f"{excitation.shape}, {excitation.velocity:g} m/s"
     else:
-        signal = f"{excitation.shape}, {excitation.pressure or 0:g} Pa"
+        signal = TEXTS.text("pressed" if excitation.velocity is None else "moved", excitation, excitation.pressure or 0)
     driven_end = None if excitation is None else excitation.at
     top = f"{signal} on the top, {layered_column.motion} waves" if driven_end == "top" else "free top"
     yield f"  +{'-' * INSIDE}+", top
     for layer in reversed(layered_column.layer):
         cut = f"{layer.thickness:g} m in {layer.blocks}"[:INSIDE].center(INSIDE)
-        velocity = f", v = {layer.velocity:g} m/s" if layer.velocity else ""
-        material = "rigid" if math.isinf(layer.young) else f"E = {layer.young:g} Pa, mu = {layer.poisson:g}"
+        velocity = TEXTS.text("layer-velocity", layer) if layer.velocity else ""
+        material = "rigid" if math.isinf(layer.young) else TEXTS.text("elastic", layer)
         yield f"  |{cut}|", f"rho = {layer.density:g} kg/m3, {material}{velocity}"
         yield f"  +{'-' * INSIDE}+", ""
     for joint in layered_column.joint:
@@ -149,22 +148,15 @@ def plane_blocks(plane: PlaneSection) -> tuple[int, Rows]:
     wide, high = np.ptp(corners, axis=0)
     slenderness = wide / high
     across = _across(slenderness)
-    cut = f"{len(plane.polygons)} blocks"
-    if plane.subdivide is not None:
-        cut = f"cut into {plane.subdivide[0]} x {plane.subdivide[1]} {plane.pattern}"
-    beside = [
-        f"{wide:.3g} m wide, {high:.3g} m high, {cut}",
-        f"rho = {plane.density:g} kg/m3, E = {plane.young:g} Pa, mu = {plane.poisson:g}, {plane.hypothesis}",
-        f"glued by {plane.glue:g} E at each end of an edge",
-    ]
+    cut = TEXTS.text("plane-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
+    beside = [TEXTS.text("size", wide, high, cut), TEXTS.text("material", plane), TEXTS.text("glue", plane)]
     if plane.clamp:
         beside.append(f"clamped along {', '.join(_segment(clamp.edge) for clamp in plane.clamp)}")
     if any(plane.stress):
-        beside.append(f"stress s_xx, s_yy, s_xy = {', '.join(f'{part:g}' for part in plane.stress)} Pa on the outline")
+        beside.append(TEXTS.text("stress", plane))
     if any(plane.gravity):
-        beside.append(f"gravity {', '.join(f'{part:g}' for part in plane.gravity)} m/s2")
-    for load in plane.load:
-        beside.append(f"traction {', '.join(f'{part:g}' for part in load.traction)} Pa along {_segment(load.edge)}")
+        beside.append(TEXTS.text("gravity", plane))
+    beside += [TEXTS.text("traction", load, _segment(load.edge)) for load in plane.load]
     return across, _box_rows(across, _height(across, slenderness), beside)
 
 
@@ -196,22 +188,19 @@ def boxes(section: RigidSection) -> Iterator[tuple[str, str]]:
         yield edge, ""
     slope = "level ground"
     if section.slope:
-        slope = f"slope of {abs(section.slope):g} deg, down to the {'right' if section.slope > 0 else 'left'}"
-    contacts = "frictionless" if section.friction == 0 else f"friction {section.friction:g} deg"
-    springs = "rigid or as a program has them"
-    if section.stiffness is not None:
-        springs = f"{section.stiffness:g} N/m below box 1"
-    yield f" {'=' * (INSIDE + 4)}", f"contacts: {contacts}, restitution {section.restitution:g}, {springs}"
-    yield "", f"{slope}, g = {section.gravity:g} m/s2"
+        slope = TEXTS.text("slope", abs(section.slope), "right" if section.slope > 0 else "left")
+    friction = "frictionless" if section.friction == 0 else TEXTS.text("friction", section)
+    springs = TEXTS.text("own-springs" if section.stiffness is None else "lowest-spring", section)
+    yield f" {'=' * (INSIDE + 4)}", TEXTS.text("contacts", section, friction, springs)
+    yield "", TEXTS.text("ground", section, slope)
     if section.base_amplitude:
-        motion = f"A = {section.base_amplitude:g} m, f = {section.base_frequency:g} Hz"
-        yield "", f"ground moved by A (1 - cos 2 pi f t), {motion}"
+        yield "", TEXTS.text("base-motion", section)
 
 
 def _box(box: BoxSection, count: int) -> list[str]:
     """Return size and start of a box, or of each of some equal boxes, a line each."""
     each = "each " if count > 1 else ""
-    lines = [f"{each}{box.width:.3g} m wide, {box.height:.3g} m high, rho = {box.density:g} kg/m3"]
+    lines = [TEXTS.text("box", box, each)]
     start = [
         described(name, value, key) for name, value, key in stated(box) if name not in ("width", "height", "density")
     ]
