@@ -12,10 +12,10 @@ import pytest
 from oracles.made_cases import between, made_case, made_group, made_row
 
 from dda.scheme import spectral
-from validation.report.blocks import Callout
+from validation.report.blocks import Callout, Table
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
-from validation.report.front import closed, decisions, first
+from validation.report.front import closed, decisions, first, pages
 from validation.report.front.groups import paper_scene
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.theory import spectra, statics
@@ -174,6 +174,14 @@ def test_results_without_a_finished_paper_scene_have_no_such_page() -> None:
     lateral = made_case(PAPER.with_values({"block.poisson": 0.3}), {"dda": {"mode1.damping": 0.1}})
     assert paper_scene({"figures-3-4": made_group(lateral)}) is None  # the closed forms are for mu = 0
     assert paper_scene(FOUND) is FOUND["figures-3-4"].cases[0].scene
+
+
+@pytest.mark.parametrize("beyond", [0, 1])
+def test_scenes_are_listed_as_long_as_a_page_has_lines_for_them(beyond: int, tmp_path: Path) -> None:
+    group = made_group(made_case(OTHER, {"dda": {}}))
+    groups = {f"scene-{number}": group for number in range(pages.OVERVIEW_SCENES + beyond)}
+    blocks = pages.front_pages(groups, [], [], tmp_path)
+    assert [isinstance(block, Table) for block in blocks].count(True) == 1 - beyond
 
 
 # ---- the conditions of rules --------------------------------------------------------------------------------------

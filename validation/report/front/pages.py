@@ -35,7 +35,7 @@ def front_pages(
         if len(groups) == 1:  # whose page begins here, with its alarms
             return [imprint, *judged, *failures]
         # More scenes than a page has lines for are those of studies, whose chapters begin with what came out.
-        scenes = [Heading("Scenes"), overview(groups)] if len(groups) <= OVERVIEW_SCENES else []
+        scenes: Blocks = [Heading("Scenes"), overview(groups)] if len(groups) <= OVERVIEW_SCENES else []
         return [imprint, *scenes, *judged, *failures]
     return [
         imprint,
