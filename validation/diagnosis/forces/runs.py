@@ -16,7 +16,6 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import (
     ARITHMETIC,
-    WITHIN,
     outlying,
     significant,
     spread_of_most,
@@ -43,6 +42,7 @@ from validation.runs.history import DISPLACEMENT, Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
+WITHIN = 1.0  # last digits, root mean square: rounding alone leaves 0.29, a scene's own rounded data some more
 DDA = "dda"
 SHAKEN = 1e-12  # relative: what two programs may differ by in a spring or a coefficient, by their arithmetic
 APART = 1e-4  # of the largest displacement: where arithmetic alone leaves so much, steps tell nothing more

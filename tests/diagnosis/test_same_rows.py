@@ -1,0 +1,47 @@
+"""Histories of which the rows tell less, or more, than a name: what else gives them is told, and nothing is guessed.
+
+Each is made by a program of someone else's, and held to what can be known of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.plain_block import Plain, run
+from oracles.program_scenes import scene_of
+
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+
+PLAIN = Plain(steps=60)
+
+
+def judged(base: Plain, columns: tuple[np.ndarray, np.ndarray]) -> Answer:
+    time = base.dt * np.arange(1, len(columns[0]) + 1)
+    return compare(scene_of(base).with_values({"time.steps": len(columns[0])}), Foreign(time, *columns))
+
+
+def means(base: Plain) -> tuple[np.ndarray, np.ndarray]:
+    """Return rows that are means of a step and the one before."""
+    displacement, pressure = ((x + np.concatenate([[0.0], x[:-1]])) / 2 for x in run(base))
+    return displacement, pressure
+
+
+def test_means_of_two_steps_are_not_called_a_ramp_alone() -> None:
+    answer = judged(PLAIN, means(PLAIN))
+    assert answer.causes != ["load-ramp"] or answer.alike
+
+
+@pytest.mark.parametrize("discount", [1.0, 0.98])
+def test_stiffness_damping_and_a_scheme_are_told_as_two(discount: float) -> None:
+    base = replace(PLAIN, gg=discount)
+    answer = judged(base, run(replace(base, structural=1e-4)))
+    assert answer.causes == ["unexplained"]
+    assert {one["causes"][0] for one in answer.alike} == {"stiffness-damping", "scheme"}
+
+
+def test_another_height_is_named() -> None:
+    assert judged(PLAIN, run(replace(PLAIN, height=2.54))).causes == ["height-factor"]
