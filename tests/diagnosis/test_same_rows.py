@@ -5,16 +5,19 @@ Each is made by a program of someone else's, and held to what can be known of it
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.column_histories import history
 from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
+from validation.scenes.scene import parse_scene
 
 PLAIN = Plain(steps=60)
 
@@ -45,3 +48,14 @@ def test_stiffness_damping_and_a_scheme_are_told_as_two(discount: float) -> None
 
 def test_another_height_is_named() -> None:
     assert judged(PLAIN, run(replace(PLAIN, height=2.54))).causes == ["height-factor"]
+
+
+def test_a_contact_that_is_never_reached_has_no_number() -> None:
+    column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 5e-4, "gravity": 9.81}
+    layer = {"thickness": 3.0, "density": 2500.0, "young": math.inf, "blocks": 3, "velocity": -1.0}
+    time = {"alpha": 0.25, "delta": 0.5, "start": "consistent", "step": 8e-5, "steps": 200}
+    joints = [{"height": 0.0, "stiffness": 1e9, "gap": 2e-3}]
+    data = {"column": {"layer": [layer], "joint": joints, **column}, "time": time}
+    scene = parse_scene(data | {"run": {"solvers": ["dda"], "columns": ["displacement", "contact_pressure"]}}, "stack")
+    answer = compare(scene, history(scene, {"column.gap": 0.5}, 8))
+    assert (answer.causes, answer.values) == (["contact-missing"], {})
