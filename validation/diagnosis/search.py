@@ -341,11 +341,11 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
     """Whether enough of the difference stands out of digits and noise for a cause to be named.
 
     Where they hide a share of it, another cause that leaves less than that share would look the same: a scheme or a
-    contact method has many that are near to it, and counts as two. What surrounds a block counts as none.
+    contact method has many that are near to it, and counts twice. What surrounds a block counts as nothing.
     """
     many = any(CAUSES[name].family or name in CONTACT_METHODS or name == "scheme" for name in explanation.ids)
     faults = [move for move in explanation.moves if move.id not in SURROUNDINGS]
-    changes = max(1, len(faults), sum(len(move.free) for move in faults)) + many
+    changes = max(1, len(faults), sum(len(move.free) for move in faults)) * (1 + many)
     most = SHARE if len(explanation.moves) > 1 else 1.0
     return explanation.fit.misfit <= min(most, STANDS_OUT**-changes) * scene_fit.misfit
 
@@ -406,7 +406,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
     around = [tuple(combo) for size in (1, 2, 3) for combo in combinations(parts, size)]
     beside = fitted(target, scene, [(move, *parts) for move in faults if _together((move, *parts))])[:MOST_ALIKE]
     fewer = [(f.moves[0], *some) for f in beside for some in around if _together((f.moves[0], *some))]
-    explanations = fitted(target, scene, fewer)
+    explanations = [f for f in fitted(target, scene, fewer) if benign_springs(target.column, f.fit.variant)]
     last = decided(target, before.scene_fit, [*explanations, *_heavy(target, explanations[:3])])
     return _nearer(last, verdict)
 
