@@ -249,7 +249,7 @@ def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
 def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without it average acceleration, printed with six digits, is several schemes at once."""
     seams.DECISION_CANONICAL.put(monkeypatch, lambda target, best, close: (best, {best.ids: best}))
-    seams.DECISION_SPECIAL.put(monkeypatch, lambda target, fine, scores: fine)
+    seams.DECISION_DETERMINED.put(monkeypatch, lambda *_: True)
     _, answer = judged("midpoint", {}, **LOCKED)
     assert answer.causes != ["scheme", "start"]
 

@@ -61,3 +61,21 @@ def test_white_noise_on_a_right_history_is_noise(base: Plain, size: float, seed:
     noise = np.random.default_rng(seed).standard_normal((2, base.steps))
     columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
     assert answer_of(base, (columns[0], columns[1])).causes == []
+
+
+def test_noise_beside_few_digits_hides_no_discount() -> None:
+    """Rows near zero have digits far below the noise, and are not weighed by these."""
+    base = Plain(steps=60, alpha=0.25, delta=0.5, consistent=True)
+    noise = np.random.default_rng(0).standard_normal((2, base.steps))
+    columns = run(replace(base, gg=0.97))
+    noisy = [printed(x + 1e-6 * np.max(np.abs(x)) * e, 5) for x, e in zip(columns, noise, strict=True)]
+    answer = answer_of(base, (noisy[0], noisy[1]))
+    assert answer.causes == ["gg"]
+    assert answer.values["gg"] == pytest.approx(0.97, abs=1e-5)
+
+
+def test_five_digits_in_millimetres_are_a_unit_not_a_load() -> None:
+    displacement, _ = run(STIFF)
+    time = STIFF.dt * np.arange(1, STIFF.steps + 1)
+    answer = compare(scene_of(STIFF), Foreign(time, printed(1e3 * displacement, 5)))
+    assert answer.causes == ["unit"]

@@ -160,7 +160,13 @@ def _named_outside(slips: dict[str, object], base: Plain) -> tuple[str, ...]:
     """
     if set(slips) == {"hht"} and (base.alpha, base.delta, base.consistent) == (0.5, 1.0, False):
         return ("scheme", "start")
-    known = {"hht": "scheme", "structural": "stiffness-damping", "viscous": "viscous-damping", "ramp": "load-ramp"}
+    known = {
+        "hht": "scheme",
+        "structural": "stiffness-damping",
+        "viscous": "viscous-damping",
+        "ramp": "load-ramp",
+        "height": "height-factor",
+    }
     (name, *others) = slips
     return (UNKNOWN if others else known.get(name, UNKNOWN),)
 

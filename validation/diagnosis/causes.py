@@ -47,12 +47,10 @@ class Cause:
     usual: bool = False
     alone: bool = False
     family: bool = False
-    outside: bool = False
 
 
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-LISTED = {name: Cause(**fields) for name, fields in TABLE.items()}
-CAUSES = {name: cause for name, cause in LISTED.items() if not cause.outside}
+CAUSES = {name: Cause(**fields) for name, fields in TABLE.items()}
 CONTACT_METHODS = frozenset(
     {"contact-dashpot", "implicit-contact", "energy-conserving-contact", "rigid-contact", "impact-law"}
 )
@@ -138,7 +136,7 @@ def causes_of(
             names |= {"scheme"}
         if scene.start != variant.start:
             names |= {"start"}
-    return [name for name in LISTED if name in names]
+    return [name for name in CAUSES if name in names]
 
 
 def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str, float]:
@@ -147,8 +145,8 @@ def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str,
     for name in ids:
         if name in DERIVED:
             values[name] = DERIVED[name](rectangle, v)
-        elif LISTED[name].number:
-            values[name] = float(getattr(v, LISTED[name].number))
+        elif CAUSES[name].number:
+            values[name] = float(getattr(v, CAUSES[name].number))
     return {name: significant(value, 8) for name, value in values.items()}
 
 
@@ -222,7 +220,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
     further
         What else a sentence holds: the scene's `scheme`, `open_steps`, `between`.
     """
-    cause = LISTED[name]
+    cause = CAUSES[name]
     words = {
         "words": cause.words,
         "lateness": _lateness(value),

@@ -69,6 +69,8 @@ FARTHEST = 1e12  # times what may remain: a run that fails is no nearer than tha
 POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # by which numbers of one product stand for each other
 SAME_NUMBER = 1e-4  # relative: two fits that came to the same number are one
 MOST_ALIKE = 6  # causes that are listed
+WIDE = 1e6  # times a gap, that never closes
+ELSEWHERE = 0.1  # of a factor's logarithm: a number with whose change by that no row changes is none
 LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
 PARTS = (2, 4)  # steps of a program in one of the scene's
 NO_FRICTION = 1e-9  # of the strength: what slips all the time, which no scene can state
@@ -110,7 +112,10 @@ def laws(scene: Scene) -> Iterator[Candidate]:
             words = "the column starts at rest under its weight, not unstrained"
             yield fixed("settled", words, {"column.settled": True})
     for place, where in places(scene, "gap").items():
-        yield fixed("gap-factor", f"the gap of {where} is forgotten", contacts("gap", place)(scene, 0.0), 0.0)
+        gap = contacts("gap", place)
+        yield fixed("gap-factor", f"the gap of {where} is forgotten", gap(scene, 0.0), 0.0)
+        words = f"{where} is never reached: it is not there, or its gap is wide"
+        yield fixed("contact-missing", words, gap(scene, WIDE))
     if column.law == "unilateral":
         yield fixed("contact-locked", "the contacts carry tension", {BONDED: True})
     elif any(math.isfinite(contact.strength) for contact in column.contacts):
@@ -333,6 +338,7 @@ class ColumnSearch:
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
         explanations = sorted(map(self._judged, sensible), key=ratio_of)
+        explanations = [each for each in explanations if each.ratio > APART or self._is_determined(each.candidate)]
         if explanations and explanations[0].ratio <= 1 and explanations[0].candidate.change.starts:
             explanations += self._relatives(changes, explanations, groups[0])
         return sorted(explanations, key=ratio_of)
@@ -369,6 +375,16 @@ class ColumnSearch:
             if best.remainder <= near or number >= PATIENCE:
                 return best
         return fitted(residual, nearest_start(residual, change), ROUNDS, NUDGE, SETTLED)
+
+    def _is_determined(self, candidate: Fitted[Values]) -> bool:
+        """Whether some row changes with a candidate's number, where it has one."""
+        if not candidate.change.starts:
+            return True
+        runs = [self.run(candidate.change.changed(candidate.u + u), self.rows) for u in (0.0, -ELSEWHERE, ELSEWHERE)]
+        if any(run is None for run in runs):
+            return True
+        shares = [self.over(run, self.rows) for run in runs]
+        return all(largest(share - shares[0]) > 1 for share in shares[1:])
 
     def _judged(self, candidate: Fitted[Values]) -> ColumnExplanation:
         """Return a candidate with what it leaves of the rows up to its own horizon."""

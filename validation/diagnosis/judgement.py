@@ -29,7 +29,7 @@ from validation.diagnosis.readings import (
     words_of_slips,
 )
 from validation.diagnosis.scene_keys import assignments
-from validation.diagnosis.search import Verdict, beside, discounted, paired, simple
+from validation.diagnosis.search import Verdict, as_it_is, simple, twofold
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -239,11 +239,8 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
-    if not verdict.explains and scene.contact.law == "locked":
-        verdict = paired(case.target, scene_variant, discounted(case.target, scene_variant, verdict))
-    elif not verdict.explains:
-        verdict = discounted(case.target, scene_variant, verdict)
-        verdict = verdict if verdict.reached else beside(case.target, scene_variant, verdict)
+    if not verdict.explains:
+        verdict = twofold(case.target, scene_variant, verdict)
     others: list[Rival] = []
     if has_rivals and np.ptp(case.target.steps) == 0:
         v = verdict.best.fit.variant
@@ -263,13 +260,17 @@ def _beyond(scene: Scene) -> list[str]:
 
 def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
+    for case in cases:  # a slip of sign or unit needs no number, and nothing else that is changed
+        verdict = as_it_is(case.target, case.scene_variant)
+        if verdict.same:
+            return case, verdict
     fewest = min(len(case.reading.corrected) for case in cases)
     verdicts: list[tuple[Case, Verdict]] = []
     for case in cases:
         verdict = simple(case.target, case.scene_variant)
         verdicts.append((case, verdict))
         # a slip of sign or unit beside another cause is less likely than that of a datum alone
-        if verdict.explains and (len(case.reading.corrected) == fewest or verdict.same):
+        if verdict.explains and len(case.reading.corrected) == fewest:
             return case, verdict
         is_fewest_judged = any(len(other.reading.corrected) == fewest for other, _ in verdicts)
         if verdict.best.fit.misfit < PLAIN and is_fewest_judged:
@@ -327,7 +328,7 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     limits = [name for name in causes.BAND_FIELDS if name in ends]
     values |= {name: causes.roundest(*ends[name]) for name in limits}
     alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
-    alike = alike or families.relatives(target, ids, values, v)
+    alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
     nearest: dict[str, Any] | None = None
     if not (verdict.explained or alike):
         numbers = causes.values_of(target.column, all_causes, best_fit.variant)

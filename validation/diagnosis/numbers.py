@@ -40,13 +40,16 @@ def steeper(angle: float, factor: float) -> float:
     return math.degrees(math.atan(factor * math.tan(math.radians(angle))))
 
 
-def layers(key: str) -> Callable[[Scene, float], Values]:
-    """Return the function that makes a datum of all layers of a column larger by a factor."""
+def layers(key: str, place: int | None = None) -> Callable[[Scene, float], Values]:
+    """Return the function that makes a datum of all layers of a column, or of one, larger by a factor."""
 
     def changed(scene: Scene, factor: float) -> Values:
         stated = scene.definition()["column"]["layer"]
-        larger = ({key: float(layer[key]) * factor} if layer.get(key) else {} for layer in stated)  # or "inf"
-        return {"column.layer": [layer | changed for layer, changed in zip(stated, larger, strict=True)]}
+        values = []
+        for number, layer in enumerate(stated):
+            is_meant = layer.get(key) and place in (None, number)
+            values.append(layer | ({key: float(layer[key]) * factor} if is_meant else {}))  # or "inf"
+        return {"column.layer": values}
 
     return changed
 
@@ -148,8 +151,15 @@ def numbers(scene: Scene) -> Iterator[Number]:
         yield Number("friction-factor", "tan(phi) of friction", friction)
 
 
+def numbers_of_layers(scene: Scene) -> Iterator[Number]:
+    """Yield the densities of a column's layers, where they differ, each by itself."""
+    stated = scene.column.layer[:MOST_JOINTS] if scene.column is not None else []
+    for place, _ in enumerate(stated) if len({layer.density for layer in stated}) > 1 else ():
+        yield Number("density-factor", f"the density of layer {place + 1}", layers("density", place))
+
+
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
-MOST_JOINTS = 8  # whose numbers are tried one by one: with more, hardly one stands out
+MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: with more, hardly one stands out
 
 
 def _of_contacts(scene: Scene) -> Iterator[Number]:

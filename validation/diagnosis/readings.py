@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 
+from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
@@ -150,19 +151,25 @@ def slips(
         first = _factors(foreign.pressure, contact, furthest)[0]
         of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
     for (sign, factor), (turned, scale) in product(_factors(foreign.displacement, reference, furthest), of_pressure):
-        pressure, rounding, corrected = foreign.pressure, foreign.pressure_rounding, list(time)
+        pressure = foreign.pressure
+        rounding = None if pressure is None else _rounding_of(pressure, foreign.pressure_rounding) / scale
+        corrected = list(time)
         corrected += _column_slips(DISPLACEMENT, sign, factor)
         if pressure is not None:
             pressure = pressure * turned / scale
-            rounding = None if rounding is None else rounding / scale
             corrected += _column_slips(PRESSURE, turned, scale)
-        unit = None if foreign.rounding is None else foreign.rounding / factor
+        unit = _rounding_of(foreign.displacement, foreign.rounding) / factor
         moved = foreign.displacement * sign / factor
         readings.append(Reading(stepping, moved, pressure, tuple(corrected), unit, rounding))
     # readings with the one that corrects least among the first two: wrong data look like wrong units
     plain = min(readings, key=lambda reading: len(reading.corrected))
     others = [reading for reading in readings if reading is not plain]
     return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
+
+
+def _rounding_of(values: Array, rounding: Array | None) -> Array:
+    """Return the units of the last digits as the file has them: in other units they are not seen any more."""
+    return last_digits(values) if rounding is None else rounding
 
 
 def _column_slips(column: str, sign: float, factor: float) -> list[Slip]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validation.diagnosis.causes import CONTACT_METHODS, LISTED
+from validation.diagnosis.causes import CAUSES, CONTACT_METHODS
 from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import Variant
 
@@ -23,7 +23,7 @@ def assignments(ids: Sequence[str], v: Variant, scene: Variant) -> str:
     v, scene
         The explanation, and the scene's own scheme and contact.
     """
-    known = OF_STEP | CONTACT_METHODS | {name for name, cause in LISTED.items() if cause.family}
+    known = OF_STEP | CONTACT_METHODS | {name for name, cause in CAUSES.items() if cause.family}
     if not ids or not set(ids) <= known or set(ids) & NOT_IN_SCENES or v.contact == "mean gap" or not v.clipped:
         return ""
     if _of_contact(v) and not scene.opens:

@@ -52,7 +52,9 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
     steps
         Length of each time step [s], shape (n,).
     """
-    beyond = max(0, *(-v.shift - min(0, math.floor(v.late)) for v in variants))  # steps that the last rows report of
+    beyond = max(
+        0, *(-math.floor(v.shift) - min(0, math.floor(v.late)) for v in variants)
+    )  # steps that the last rows report of
     longer = np.concatenate([steps, np.repeat(steps[-1:], beyond)])
     with np.errstate(all="ignore"):
         computed = _stepped(rectangle, variants, longer)
@@ -528,13 +530,11 @@ def reported(computed: Histories, variants: Sequence[Variant], n: int) -> Histor
     """Return the n rows that the variants write of what they computed: shifted, late, by a factor."""
     for j, v in enumerate(variants):
         if v.late:
-            whole = math.floor(v.late)
-            part = v.late - whole
-            P = computed.pressure[:, j]
-            computed.pressure[:, j] = (1 - part) * _shifted(P, whole) + (part * _shifted(P, whole + 1) if part else 0.0)
+            computed.pressure[:, j] = _late(computed.pressure[:, j], v.late)
         if v.shift:
-            for values in (computed.displacement, computed.pressure, computed.open):
-                values[:, j] = _shifted(values[:, j], v.shift)
+            for values in (computed.displacement, computed.pressure):
+                values[:, j] = _late(values[:, j], v.shift)
+            computed.open[:, j] = _shifted(computed.open[:, j], math.floor(v.shift))
     displacement_factors = np.array([v.displacement_factor for v in variants])
     pressure_factors = np.array([v.pressure_factor for v in variants])
     return Histories(
@@ -549,6 +549,14 @@ def _ramped(values: Array, steps: float) -> Array:
     """
     shares = np.diff(np.minimum(np.arange(math.ceil(steps) + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
     return np.asarray(np.convolve(values, shares)[: len(values)])
+
+
+def _late(values: Array, steps: float) -> Array:
+    """Return rows some steps late; half a step late is the mean of two."""
+    whole = math.floor(steps)
+    part = steps - whole
+    late = (1 - part) * _shifted(values, whole)
+    return late + part * _shifted(values, whole + 1) if part else late
 
 
 def _shifted(values: NDArray[Any], late: int) -> NDArray[Any]:

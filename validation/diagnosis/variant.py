@@ -74,7 +74,7 @@ class Variant:
     restitution: float = 0.0  # of the impact law [-]
     parts: int = 1  # steps of the program in one of the scene's
     exact: bool = False  # no scheme: exact in time
-    shift: int = 0  # steps by which the rows come late
+    shift: float = 0.0  # steps by which the rows come late; 1/2 is the mean of two steps
     point: float = 0.0  # height of the reported point above the centroid, over half the block's height [-]
     late: float = 0.0  # steps by which the pressure comes late; 1/2 is the mean of two steps
     pressure_factor: float = 1.0  # reported over true pressure [-]

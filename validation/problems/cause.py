@@ -16,6 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.columns import laws as laws_of_contacts
 from validation.diagnosis.families import ONE_SCHEME
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.judgement import compare
@@ -290,12 +291,12 @@ class Search:
         if causes and causes[0].left <= SAME:  # digit for digit
             return causes
         exact = self.runs.exact()
-        # whether runs take so little that fits may begin from many numbers
+        # whether runs take so little that fits begin from many numbers: those of bars by DDA do, not their exact ones
         scene_features = {*features.of(self.runs.scene)}
         elastic_bars = features.OF_MOVING_COLUMN & scene_features and features.RIGID_BLOCKS not in scene_features
-        cheap = not elastic_bars and not {features.FRICTION, features.ROTATION} & scene_features
-        for base in self._bases(exact, cheap):
-            causes += [*self._laws(base), *self._changes(base, cheap)]
+        quick = not {features.FRICTION, features.ROTATION} & scene_features
+        for base in self._bases(exact, quick and not elastic_bars):
+            causes += [*self._laws(base), *self._changes(base, quick and not (elastic_bars and base.solver))]
         return sorted(causes, key=lambda each: (each.left, len(each.ids)))
 
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
@@ -315,10 +316,19 @@ class Search:
 
     def _laws(self, base: Base) -> Iterable[Cause]:
         """Yield other laws of the contact under which a base gives the answer back."""
-        for law in laws(self.runs.scene):
+        scene = self.runs.scene
+        for law in laws(scene):
             remainder = self._left(self.runs.sampled(base, law.values))
             if remainder <= BAR:
-                yield _with(law.id, law.words, {}, remainder, base, self.runs.scene)
+                yield _with(law.id, law.words, {}, remainder, base, scene)
+        if not features.OF_MOVING_COLUMN & {*features.of(scene)}:
+            return
+        for change in laws_of_contacts(scene):
+            remainder = self._left(self.runs.sampled(base, change.changed(0.0)))
+            if remainder <= BAR:
+                number = change.value(0.0)
+                values = {} if math.isnan(number) else {change.id: number}
+                yield _with(change.id, change.words(number), values, remainder, base, scene)
 
     def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
         """Yield the changes by one number that give the answer back, of those that come nearest along their slope."""

@@ -1,9 +1,11 @@
 """How much may remain of a history that is explained: what its digits and its noise leave.
 
-A column is explained if what remains is no larger than the rounding of its printed digits and of double precision, or
-if it is white and no larger than the noise that the column shows by itself. Any linear model of one block obeys one
-recurrence of low order, so that the Hankel matrix of its samples has that rank; the singular values beyond it are
-noise, whatever the model. A remainder that is larger, or that still has a shape, is a cause not found.
+A row has the standard deviation sigma, sigma^2 = unit^2 / 12 + noise^2 + (1e-8 size)^2, of its last digit, of noise and
+of double precision. A column is explained if no row is beyond its last digit, or if what remains is no larger than
+sigma, or hardly larger and white, and has no row beyond six sigma. The noise is what the column shows by itself: any
+linear model of one block obeys one recurrence of low order, so that the Hankel matrix of its samples has that rank; the
+singular values beyond it are noise, whatever the model. A remainder that is larger, or that still has a shape, is a
+cause not found.
 """
 
 from __future__ import annotations
@@ -20,7 +22,6 @@ from validation.runs.history import Array
 
 DOUBLE = 15  # decimal digits from which on nothing is seen of a rounding
 ARITHMETIC = 1e-8  # of the largest value: half the digits of double precision, for sums of increments
-WITHIN = 1.0  # last digits, root mean square: rounding alone leaves 0.29, a scene's own rounded data some more
 WINDOW = 24  # samples: twice the order of the recurrence (static value, four modes, rows at rest)
 FEWEST = 16  # samples: eight of a window, four powers
 LONGEST = 600  # samples that the noise is estimated from
@@ -31,7 +32,7 @@ MEDIAN = 1.4826  # standard deviation of normal noise over the median of its abs
 OUTLYING = 6.0  # spreads: of ten million rows of normal noise none is farther away
 ROUNDED = 0.5  # last digits: the most that rounding leaves
 LOST_ROWS = 20  # rows of which at most one is told as a wrong one; of more the whole history is in question
-AROUND = 2  # rows on either side of one that stands alone, and at the start, where what dies out stands out too
+AROUND = 2  # rows at the start, where what dies out stands out too
 
 
 def last_digits(values: Array) -> Array:
@@ -129,55 +130,34 @@ class Bar:
         rounding = last_digits(values) if rounding is None else rounding
         return cls(rounding, largest(values), norm(values) or 1.0, noise(values), values != 0)
 
-    @property
-    def unit(self) -> Array:
-        """Rounding of the printed digits and of double precision."""
-        return np.asarray(self.rounding + ARITHMETIC * self.size)
+    def deviation(self, remainder: Array | None = None) -> Array:
+        """Return the standard deviation of each row: of its digits, the noise, and the solver's own error.
 
-    def _spread_of_most(self, remainder: Array) -> float:
-        """Return the spread of most of the rows that are not at rest."""
-        return spread_of_most(remainder[self.moving])
+        One wrong row widens the noise of the column itself, and so does contact that switches: not that of most rows of
+        a remainder, where one is given.
+        """
+        spread = self.spread
+        if remainder is not None:
+            spread = min(spread, spread_of_most(remainder[self.moving]))
+        least = (ARITHMETIC * self.size) ** 2 or np.finfo(float).tiny  # of a column at rest
+        return np.asarray(np.sqrt(self.rounding**2 / 12 + spread**2 + least))
 
     def outlying(self, remainder: Array) -> NDArray[np.bool_]:
         """Return which rows of a remainder are farther away than the noise of most of its rows would have them."""
-        return outlying(remainder, self._spread_of_most(remainder), self.unit)
-
-    def has_lone_row(self, remainder: Array) -> bool:
-        """Whether a row stands out of a remainder alone, whose neighbours do not.
-
-        Constants that were rounded in another way leave a motion that dies out: it stands out over some rows, and has
-        neighbours, or is at the start.
-        """
-        size = np.abs(remainder)
-        padded = np.pad(size, AROUND)
-        n = len(size)
-        shifts = [shift for shift in range(2 * AROUND + 1) if shift != AROUND]
-        beside = np.max([padded[shift : shift + n] for shift in shifts], axis=0)
-        alone = self.outlying(remainder) & (size > OUTLYING * beside)
-        return bool(np.any(alone[AROUND:]))
+        unit = self.rounding + ARITHMETIC * self.size
+        return outlying(remainder, spread_of_most(remainder[self.moving]), unit)
 
     @property
     def allowed(self) -> float:
         """Relative L2 that digits and noise may leave [-]."""
-        digits = float(np.sqrt(np.mean(self.unit**2)))
-        return max(digits, MARGIN * self.spread) * math.sqrt(len(self.rounding)) / self.norm
-
-    def within_digits(self, remainder: Array) -> bool:
-        """Whether a remainder is no more than rounding."""
-        if self.size == 0:  # a column at rest has no digits
-            return not np.any(remainder)
-        if float(np.sqrt(np.mean((remainder / self.unit) ** 2))) > WITHIN:
-            return False
-        return not self.has_lone_row(remainder)
+        return MARGIN * norm(self.deviation()) / self.norm
 
     def holds(self, remainder: Array) -> bool:
-        """Whether a remainder is digits and noise."""
-        if self.within_digits(remainder):
+        """Whether a remainder is digits and noise: no row beyond its last digit, or white and no larger than noise."""
+        if np.all(np.abs(remainder) <= ROUNDED * self.rounding + ARITHMETIC * self.size):
             return True
         if np.any(self.outlying(remainder)):
             return False
-        # one wrong row widens the spread of the column itself, and so does a part of many: not that of most rows
-        spread = min(self.spread, self._spread_of_most(remainder))
-        rest = float(np.sqrt(np.mean(remainder**2)))
-        unit = float(np.sqrt(np.mean(self.rounding**2)))
-        return rest <= MARGIN * math.hypot(spread, unit / math.sqrt(12)) and white(remainder)
+        shares = remainder / self.deviation(remainder)
+        left = norm(shares) / math.sqrt(len(shares))
+        return left <= 1 or (left <= MARGIN and white(shares))

@@ -91,14 +91,6 @@ class Target:
         """Whether nothing but digits and noise remains in every column."""
         return all(bar.holds(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
 
-    def within_digits(self, joined: Array) -> bool:
-        """Whether nothing but rounding remains in every column."""
-        return all(bar.within_digits(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
-
-    def has_lone_row(self, joined: Array) -> bool:
-        """Whether a row of some column stands out alone of what remains."""
-        return any(bar.has_lone_row(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
-
     def outlying(self, joined: Array) -> NDArray[np.bool_] | None:
         """Return the joined rows that stand out of what remains; None where there are none, or not as single rows.
 
@@ -114,7 +106,7 @@ class Target:
 
     def inner(self, joined: Array, variant: Variant) -> Array:
         """Return joined rows without those that a shift leaves open: a program may write anything there."""
-        late, n = max(abs(variant.shift), math.ceil(abs(variant.late))), len(self.rows)
+        late, n = math.ceil(max(abs(variant.shift), abs(variant.late))), len(self.rows)
         if not late or n < LEAST_ROWS:
             return joined
         inner_rows = joined.copy()
@@ -123,16 +115,15 @@ class Target:
             inner_rows[start + n - late : start + n] = 0
         return inner_rows
 
-    @property
-    def spread(self) -> float:
-        """Relative L2 of the noise in the noisiest column [-]."""
-        return max(bar.spread * math.sqrt(len(self.rows)) / bar.norm for bar in self.bars)
+    def deviations(self, joined: Array) -> list[Array]:
+        """Return the standard deviation of every row of each column, their noise no larger than a remainder has it."""
+        return [bar.deviation(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)]
 
     @cached_property
     def floor(self) -> float:
-        """Relative L2 that the printed digits leave by themselves [-]."""
-        shares = [float(np.sum((bar.rounding / bar.norm) ** 2)) / 12 for bar in self.bars]
-        return max(math.sqrt(sum(shares) / len(shares)), ROUNDING)
+        """Relative L2 that digits, noise and double precision leave by themselves [-]."""
+        shares = [float(np.sum((bar.deviation() / bar.norm) ** 2)) for bar in self.bars]
+        return math.sqrt(sum(shares) / len(shares))
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.fits.bar import ARITHMETIC, WITHIN, outlying, spread_of_most, white
+from validation.diagnosis.fits.bar import ARITHMETIC, outlying, spread_of_most, white
 from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
@@ -37,6 +37,7 @@ from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
+WITHIN = 1.0  # last digits, root mean square: rounding alone leaves 0.29, a scene's own rounded data some more
 DDA = "dda"
 SHAKEN = 1e-12  # relative: what two programs may differ by in a spring or a coefficient, by their arithmetic
 APART = 1e-4  # of the largest displacement: where arithmetic alone leaves so much, steps tell nothing more
