@@ -304,9 +304,8 @@ ANSWER = Answer(
 )  # fmt: skip
 
 
-def test_the_command_prints_stages_and_misfit_and_compliance_in_per_cent(capsys: pytest.CaptureFixture[str]) -> None:
-    cli_compare._print(ANSWER)
-    lines = capsys.readouterr().out.splitlines()
+def test_the_command_prints_stages_and_misfit_and_compliance_in_per_cent() -> None:
+    lines = "\n".join(cli_compare._lines(ANSWER)).splitlines()
     assert lines[0] == "It departs."
     assert "the contact opened: first step 3, last 41" in lines
     assert "gg 0.98123 and sign would give the same history here; to tell them apart, try another" in lines

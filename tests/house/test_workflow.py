@@ -126,8 +126,8 @@ def test_the_tables_of_readme_are_those_of_the_code() -> None:
     assert set(first_cells("study")) <= set(study_names())
     shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
     shown = re.findall(r"^dda-validate ([a-z-]+)", shell[2], re.M)
-    others = README.partition("The other commands, each on its page: ")[2].partition("\n\n")[0]
-    assert len(shown) == 9 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
+    others = README.partition("The other commands: ")[2].partition("\n\n")[0]
+    assert len(shown) == 8 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
 
 
 # ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------
