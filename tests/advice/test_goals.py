@@ -175,7 +175,7 @@ def test_the_present_settings_are_told_with_their_numbers() -> None:
 @pytest.mark.parametrize(
     "words",
     [
-        ("figures-3-4", "--set", "time.step=0.002", "--set", "time.gg=0.98"),
+        pytest.param(("figures-3-4", "--set", "time.step=0.002", "--set", "time.gg=0.98"), marks=pytest.mark.long),
         ("slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.01", "--set", "time.steps=20"),
     ],
 )
