@@ -129,7 +129,7 @@ def run(
     Finished cases are kept: the same command after an interruption continues from there.
 
     Example: [bold]dda-validate run core[/bold] or [bold]dda-validate run my-scene.toml --set time.step=0.001[/bold]
-    or [bold]dda-validate run cost --scene my-block.toml[/bold]
+    or [bold]dda-validate run cost --scene my-scene.toml[/bold]
     """
     from validation.errors import InputError
     from validation.runs.results import Results

@@ -6,25 +6,32 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
-from validation.report.chapters.data import Groups, varied_fields
-from validation.report.chapters.text import parameter_items
+from validation.report.chapters.data import CaseGroup, Groups, varied_fields
+from validation.report.chapters.text import parameter_items, some
 from validation.runs.numbers import plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.row import Row
 
+MOST_NAMES = 2  # of scenes with the same data, before how many more there are
+
 
 def parameter_table(groups: Groups) -> Blocks:
-    """Return the data of the scenes: of the first in full, of the others what differs from it."""
-    rows: list[tuple[str, str]] = []
+    """Return the data of the scenes: the first in full, of the others what differs, a line for equal ones."""
+    groups_by_data: dict[str, list[CaseGroup]] = {}
     first_items: set[str] = set()
     for group in groups.values():
         varied = varied_fields(group)
         items = parameter_items(group.cases[0].scene, varied)
         differing = [item for item in items if item not in first_items]
-        count = f"{len(group.cases)} cases" if len(group.cases) > 1 else "one case"
-        rows.append((group.name, ", ".join([*differing, count])))
+        groups_by_data.setdefault(", ".join(differing), []).append(group)
         first_items = first_items or set(items)
+    rows = []
+    for data, alike in groups_by_data.items():
+        cases = sum(len(group.cases) for group in alike)
+        count = f"{cases} cases" if cases > 1 else "one case"
+        names = some([group.name for group in alike], MOST_NAMES)
+        rows.append((names, f"{data}, {count}" if data else count))
     caption = "Data of the scenes: the first in full, the others where they differ from it."
     return [Heading("Parameters", 2), table(("Scene", TableColumn("Data", "fill")), rows, caption, dense=True)]
 
