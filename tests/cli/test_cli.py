@@ -75,6 +75,7 @@ BAD = [
     (["report", "--results", "nowhere"], "nowhere"),
     (["report", "core", "--figures", "f", "--results", "nowhere"], "nowhere"),
     (["frob"], "No such command 'frob'"),
+    (["advise", "dampng", "figures-3-4"], "Did you mean 'damping'?"),
     (["solve"], "Missing argument"),
 ]
 

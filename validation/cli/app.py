@@ -35,8 +35,9 @@ class AdviceGroup(TyperGroup):
     """The parts of ``advise``; where none is named, all that they say is summed up of the scene that is."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Put the part that sums up before words that begin with none."""
-        if args and args[0] not in (*self.commands, "--help"):
+        """Put the part that sums up before the words of a scene; of two words the first is meant for a part."""
+        names_part = len(args) > 1 and not any(word.startswith("-") for word in args[:2])
+        if args and args[0] not in (*self.commands, "--help") and not names_part:
             args = ["everything", *args]
         return super().parse_args(ctx, args)
 
