@@ -189,6 +189,13 @@ def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
     assert load_scene(words[0]).with_values(settings).time.gg == 1.0
 
 
+def test_the_page_on_one_goal_is_asked_for_as_that_on_all_was() -> None:
+    options = ["--error", "0.3", "--frequency", "40", "--keep-springs"]
+    page = typed("advise", "figures-3-4", "--set", "time.step=0.002", *options).stdout
+    named = page.rpartition("next: ")[2].partition(" --goal ")[0]
+    assert named.split()[-len(options) :] == options
+
+
 # ---- columns and beams ----------------------------------------------------------------------------------------------
 
 

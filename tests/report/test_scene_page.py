@@ -12,7 +12,7 @@ from oracles.made_cases import made_case, made_group, made_history
 
 from validation.report.chapters.scene import PERIODS, lead_figure
 from validation.report.figures.drawing import FACE, scene_figure
-from validation.scenes.scene import load_scene
+from validation.scenes.scene import load_scene, scene_names
 
 FREQUENCY = 345.0  # rad/s
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.001, "time.steps": 200})
@@ -53,14 +53,18 @@ def test_a_motion_that_is_driven_is_shown_whole(drawn: dict[str, Figure], tmp_pa
     [("figures-3-4", 1), ("rocking-swing", 1), ("columns-joints", 1), ("rigid-pile", 10), ("patch-four-quads", 4)],
 )
 def test_each_kind_of_scene_is_drawn_with_all_its_bodies(name: str, bodies: int) -> None:
-    scene = load_scene(name).expand()[0]
-    (axes,) = scene_figure(scene).axes
+    (axes,) = scene_figure(load_scene(name).expand()[0]).axes
     filled = [patch for patch in axes.patches if to_hex(patch.get_facecolor()) == FACE]
     assert len(filled) == bodies and not axes.axison
-    corners = np.vstack([patch.get_path().vertices for patch in filled])
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    assert left <= corners[:, 0].min() and corners[:, 0].max() <= right
-    assert low <= corners[:, 1].min() and corners[:, 1].max() <= high
+
+
+def test_every_scene_is_drawn_inside_its_axes() -> None:
+    for name in scene_names():
+        (axes,) = scene_figure(load_scene(name).expand()[0]).axes
+        corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        assert left <= corners[:, 0].min() and corners[:, 0].max() <= right, name
+        assert low <= corners[:, 1].min() and corners[:, 1].max() <= high, name
 
 
 def test_what_is_rounding_decides_nothing(drawn: dict[str, Figure], tmp_path: Path) -> None:

@@ -57,9 +57,9 @@ def of_column(scene: Scene, error: float, frequency: float | None) -> tuple[str,
     reference = solve(exact, name).history
     if history is None or reference is None:
         raise InputError("has no motion to compare with", source=scene.name)
-    off = difference(history, reference, DISPLACEMENT)
+    displacement_error = difference(history, reference, DISPLACEMENT)
     condition = f"a wave of {frequency:.4g} Hz over {advice.distance:.4g} m, judged under the scene's own input"
-    candidate = Candidate(settings, steps, off, None)
+    candidate = Candidate(settings, steps, displacement_error, None)
     offer = recommendation(scene, "wave", condition, candidate, error, (name, 0.0), steps * advice.advised.step)
     return advice.sentence, offer
 
@@ -86,13 +86,13 @@ def of_beam(scene: Scene, error: float) -> tuple[str, Recommendation]:
             if math.prod(counts) * (2 if pattern == "triangles" else 1) > MOST_BLOCKS:
                 break
             settings = {"plane.subdivide": counts, "plane.pattern": pattern, "time.step": scene.time.step}
-            off = abs(get_solver(own()).static(scene.with_values(settings))[DISPLACEMENT] / fine - 1)
-            tried.append(Candidate(settings, scene.time.steps, off, None))
-            if off <= error:
+            displacement_error = abs(get_solver(own()).static(scene.with_values(settings))[DISPLACEMENT] / fine - 1)
+            tried.append(Candidate(settings, scene.time.steps, displacement_error, None))
+            if displacement_error <= error:
                 break
         if tried[-1].error <= error:
             break
-    candidate = min(tried, key=lambda one: one.error)
+    candidate = min(tried, key=lambda candidate: candidate.error)
     cut = " x ".join(map(str, plane.subdivide))
     sentence = f"Its {cut} {plane.pattern} are off by {100 * present:.3g} % of the displacement at rest."
     condition = f"displacement at rest of {candidate.settings['plane.pattern']} on the glue of the scene"

@@ -10,6 +10,7 @@ from typing import Any
 
 from validation.advice.limits import Limit, check_choice
 from validation.errors import InputError
+from validation.runs.numbers import significant
 
 TABLES: dict[str, Any] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 ROCKS: dict[str, dict[str, float]] = TABLES["rock"]
@@ -67,17 +68,17 @@ def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, flo
     if kind == "column":
         speed = math.sqrt(young / (2 * (1 + material["poisson"]) * material["density"]))
         frequency = numbers["frequency"]
-        step = float(f"{1 / (STEPS_OF_PERIOD * frequency):.2g}")
+        step = significant(1 / (STEPS_OF_PERIOD * frequency), 2)
         duration = 4 / frequency + 4 * height / speed  # the pulse, and its way up and down
         blocks = max(4, math.ceil(BLOCKS_OF_WAVELENGTH * height * frequency / speed))
-        return {"speed": float(f"{speed:.4g}"), "blocks": blocks, "step": step, "steps": math.ceil(duration / step)}
+        return {"speed": significant(speed, 4), "blocks": blocks, "step": step, "steps": math.ceil(duration / step)}
     width = numbers["width"]
     if kind == "beam":
         shorter = min(width, height)
         return {"subdivide": [4 * max(1, round(length / shorter)) for length in (width, height)]}
     first = math.sqrt(3 * young / material["density"]) / height  # of one strain on a rigid base
     stiffness = young * width / (height * SPRING_SHARE)
-    return {"stiffness": float(f"{stiffness:.2g}"), "step": float(f"{FIRST_OMEGA_DT / first:.2g}")}
+    return {"stiffness": significant(stiffness, 2), "step": significant(FIRST_OMEGA_DT / first, 2)}
 
 
 def _written(value: Any) -> str:

@@ -37,8 +37,11 @@ from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
+from validation.metrics.pairs import relative_l2
+from validation.metrics.values import as_number
 from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 from validation.theory import friction, landing, spectra, statics
@@ -66,6 +69,7 @@ LONGEST_SLIDE = 1000  # steps of the scene that are run of it, at most
 FEWEST_OF_CONTACT = 2  # steps of the first contact of a landing, of the coarsest candidate
 FINEST_OF_CONTACT = 512  # and of the finest
 ELEMENTS = 8  # per side of the reference, of degree two
+RULE_DIGITS = 2  # of springs, frequency and step, as much as a rule of thumb has
 SHORT = 60  # steps of the shorter of two runs that are timed; the longer has four times as many
 NO_LOADS = {f"load.{name}": 0.0 for name in ("gravity", "pressure", "traction", "eccentricity", "slope", "ramp")}
 
@@ -114,7 +118,7 @@ def springs(scene: Scene, error: float) -> float:
     Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid.
     """
     modulus, _ = statics.moduli(scene)
-    return _rounded(modulus * scene.block.base_length / (statics.height(scene) * error))
+    return significant(modulus * scene.block.base_length / (statics.height(scene) * error), RULE_DIGITS)
 
 
 def yielding(scene: Scene) -> float:
@@ -125,7 +129,7 @@ def yielding(scene: Scene) -> float:
 
 def default_frequency(scene: Scene) -> float:
     """Return the frequency of a wave `WAVELENGTHS` heights of the block long [Hz]."""
-    return _rounded(1 / (WAVELENGTHS * spectra.transit(scene)))
+    return significant(1 / (WAVELENGTHS * spectra.transit(scene)), RULE_DIGITS)
 
 
 def check(goal: str | None, error: float, frequency: float | None) -> None:
@@ -192,11 +196,6 @@ def at_rest(scene: Scene) -> Scene:
     return scene.with_values({"block.velocity": 0.0, "block.tilt": 0.0})
 
 
-def _rounded(value: float) -> float:
-    """Return two digits of a number, which is as much as a rule of thumb has."""
-    return float(f"{value:.1e}")
-
-
 # ---- static ---------------------------------------------------------------------------------------------------------
 
 
@@ -224,7 +223,7 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     first = dda_modes(block)[0].frequency
     candidates = []
     for scheme, omega_dt in itertools.product((CONSTANT, STIFFEST), STATIC_STEPS):
-        settings = scheme | cut | {"time.step": _rounded(omega_dt / first)}
+        settings = scheme | cut | {"time.step": significant(omega_dt / first, RULE_DIGITS)}
         history = _history(scene, own(), settings | {"time.steps": MOST_SETTLING})
         if history is None:
             continue
@@ -406,9 +405,8 @@ def _landing_errors(
         return math.inf, math.inf
     displacement = history.columns[DISPLACEMENT]
     exact = flight[every - before :: every][:count] - gap
-    difference = float(np.linalg.norm(displacement - exact) / np.linalg.norm(exact))
     rebounds = [float(motion[-1] - motion[-2]) / (step * speed) for motion in (displacement, exact)]
-    return difference, abs(rebounds[0] - rebounds[1])
+    return as_number(relative_l2(displacement, exact)), abs(rebounds[0] - rebounds[1])
 
 
 # ---- what all share -------------------------------------------------------------------------------------------------
@@ -444,11 +442,8 @@ def _meshes(scene: Scene) -> tuple[Scene, Scene]:
 def difference(history: History, exact: History, column: str, every: int = 1) -> float:
     """Return the difference of a column over the exact one, by root mean squares, at each `every`-th exact instant."""
     reference = exact.columns[column][every - 1 :: every]
-    difference = history.columns[column][: len(reference)] - reference
-    scale = float(np.linalg.norm(reference))
-    if scale == 0:
-        return math.inf if np.any(difference) else 0.0
-    return float(np.linalg.norm(difference)) / scale
+    values = history.columns[column][: len(reference)]
+    return 0.0 if np.array_equal(values, reference) else as_number(relative_l2(values, reference))
 
 
 def recommendation(

@@ -188,8 +188,16 @@ def _present_error(scene: Scene) -> PresentError | None:
 # ---- in words -------------------------------------------------------------------------------------------------------
 
 
-def lines(scene: Scene, source: str, answer: Overview) -> Iterator[str]:
-    """Yield the lines of one page of text on a block; `source` are the words of the scene on a command line."""
+def lines(scene: Scene, source: str, answer: Overview, stated: str = "") -> Iterator[str]:
+    """Yield the lines of one page of text on a block.
+
+    Parameters
+    ----------
+    scene, answer
+        The block and what was found.
+    source, stated
+        The words of the scene on a command line, and the options that its goals were asked for with.
+    """
     t = scene.time
     width, height = scene.block.extent
     numbers = f"{Stepping.of(scene).numbers}, gg = {t.discount:.6g}"
@@ -211,10 +219,10 @@ def lines(scene: Scene, source: str, answer: Overview) -> Iterator[str]:
         if subjects:
             yield f"  more on {', '.join(subjects)}: dda-validate {command} {source}{options}"
     yield ""
-    yield from recommended(source, answer)
+    yield from recommended(source, answer, stated)
 
 
-def recommended(source: str, answer: Overview) -> Iterator[str]:
+def recommended(source: str, answer: Overview, stated: str = "") -> Iterator[str]:
     """Yield what to take, its conditions, and what to type next."""
     if answer.recommendations:
         how = "each as run by dda, seconds estimated; for springs of a real joint add --keep-springs"
@@ -231,7 +239,7 @@ def recommended(source: str, answer: Overview) -> Iterator[str]:
         sets = " ".join(f"--set {shlex.quote(f'{key}={_written(value)}')}" for key, value in settings.items())
         yield f"next: dda-validate run {source} {sets}"
     elif answer.recommendations:
-        yield f"next: dda-validate advise {source} --goal {'|'.join(goals.GOALS)}, which names what to --set"
+        yield f"next: dda-validate advise {source}{stated} --goal {'|'.join(goals.GOALS)}, which names what to --set"
 
 
 def _table(answer: Overview) -> list[Line]:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene
 
 Answer = tuple[dict[str, Any], Iterable[str]]  # plain data, and the lines that say it
+ERROR = 0.05  # of displacement and contact force, that is allowed where nothing else is said
 TargetOption = Annotated[float, typer.Option("--damping", help="Target damping ratio, 0.05 for 5 %.", min=0.0)]
 
 
@@ -32,12 +33,12 @@ def everything(
     ] = None,
     error: Annotated[
         float, typer.Option("--error", help="Allowed error of displacement and contact force, 0.05 for 5 %.")
-    ] = 0.05,
+    ] = ERROR,
     frequency: Annotated[
         float | None,
         typer.Option(
             "--frequency",
-            help="Of the wave or the quake. (a wave ten blocks long and 5 Hz if absent)",
+            help="Of the wave or the quake. (a wave of twenty blocks and 5 Hz if absent)",
             metavar="HZ",
         ),
     ] = None,
@@ -66,7 +67,8 @@ def everything(
             from validation.advice.overview import lines, overview
 
             answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress, keep_springs)
-            text: Iterable[str] = lines(case, words, answer)
+            options = _stated(error, frequency, keep_springs)
+            text: Iterable[str] = lines(case, words, answer, options)
             data = answer.as_dict()
         else:
             data, text = _of_blocks(case, words, error, frequency)
@@ -76,6 +78,16 @@ def everything(
 def _words(scene: str, assignments: list[str] | None) -> str:
     """Return a scene with values set as a command line has it."""
     return shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
+
+
+def _stated(error: float, frequency: float | None, keep_springs: bool) -> str:
+    """Return the options that a page on all goals was asked for with, as one on a goal takes them."""
+    options = [] if error == ERROR else ["--error", f"{error:g}"]
+    if frequency is not None:
+        options += ["--frequency", f"{frequency:g}"]
+    if keep_springs:
+        options.append("--keep-springs")
+    return " ".join(["", *options])
 
 
 def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) -> Answer:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.metrics.pairs import relative_l2
+from validation.metrics.values import or_nan
 from validation.report.blocks import Beside, Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import budget_blocks
@@ -335,16 +337,16 @@ def lead_difference(panel: HistoryPanel, column: str) -> float | None:
 
     None where they cannot be compared, one of them blew up, or all that they differ by is rounding.
     """
-    one = panel.histories.get(_judged(panel) or "")
+    judged = panel.histories.get(_judged(panel) or "")
     base = panel.histories.get(panel.reference or "")
-    if one is None or base is None or one.time.size != base.time.size:
+    if judged is None or base is None or judged.time.size != base.time.size:
         return None
-    if column not in one.columns or column not in base.columns:
+    if column not in judged.columns or column not in base.columns:
         return None
     values = base.columns[column]
     with np.errstate(all="ignore"):
-        share = float(np.linalg.norm(one.columns[column] - values) / np.linalg.norm(values))
-    return share if motion.FLOOR < share < math.inf else None
+        share = or_nan(relative_l2(judged.columns[column], values))
+    return share if share > motion.FLOOR else None
 
 
 def free_window(case: CaseResults, column: str) -> float:

@@ -64,9 +64,9 @@ class Sketch:
         """Draw a line through points."""
         self.axes.plot(*self._placed(points).T, color="black", lw=width, **look)  # type: ignore[arg-type]
 
-    def arrow(self, tail: ArrayLike, way: ArrayLike, words: str = "", head: str = "-|>") -> None:
+    def arrow(self, tail: ArrayLike, vector: ArrayLike, words: str = "", head: str = "-|>") -> None:
         """Draw an arrow, with words at its tail."""
-        start, end = self._placed(np.array([tail, np.add(tail, way)]))
+        start, end = self._placed(np.array([tail, np.add(tail, vector)]))
         look = {"arrowstyle": f"{head},head_width=0.12,head_length=0.28", "lw": 0.6, "shrinkA": 0, "shrinkB": 0}
         self.axes.annotate("", end, start, arrowprops=look, zorder=4)
         if words:
@@ -97,8 +97,9 @@ class Sketch:
         below = np.array([0.0, -depth])
         self.hatched([left + below - beyond, right + below + beyond])
         if moves:
-            way = np.array([LONGEST * self.size, 0.0])
-            self.arrow((np.add(left, right) - way) / 2 + below - (0.0, 2.2 * GROUND * self.size), way, head="<|-|>")
+            travel = np.array([LONGEST * self.size, 0.0])
+            tail = (np.add(left, right) - travel) / 2 + below - (0.0, 2.2 * GROUND * self.size)
+            self.arrow(tail, travel, head="<|-|>")
 
     def fit(self) -> None:
         """Set the limits about what is drawn."""
@@ -142,9 +143,9 @@ def _draw_blocks(axes: Axes, plane: PlaneSection) -> None:
         sketch.hatched(clamp.edge)
     largest = max([math.hypot(*load.traction) for load in plane.load], default=0.0)
     for load in plane.load:
-        way = LONGEST * sketch.size * np.array(load.traction) / largest
+        vector = LONGEST * sketch.size * np.array(load.traction) / largest
         for tail in _along(load.edge):
-            sketch.arrow(tail, way)
+            sketch.arrow(tail, vector)
     if any(plane.gravity):
         sketch.arrow(sketch.middle, LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity), "g")
     sketch.fit()
@@ -187,8 +188,8 @@ def _block(axes: Axes, scene: Scene) -> None:
         slope = math.radians(load.slope)
         sketch.arrow(sketch.middle, (arrow * math.sin(slope), -arrow * math.cos(slope)), "g")
     if block.velocity:
-        way = math.copysign(arrow, block.velocity)
-        sketch.arrow((sketch.low[0] - 0.5 * arrow, sketch.middle[1]), (0.0, way), f"{abs(block.velocity):g} m/s")
+        rise = math.copysign(arrow, block.velocity)
+        sketch.arrow((sketch.low[0] - 0.5 * arrow, sketch.middle[1]), (0.0, rise), f"{abs(block.velocity):g} m/s")
     sketch.fit()
 
 

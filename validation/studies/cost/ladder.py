@@ -94,7 +94,7 @@ def methods() -> tuple[Method, ...]:
     """Return the methods, and at the end what a choice changes of one of them."""
     table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     schemes = table["schemes"]
-    listed = [Method(time=schemes[one.pop("scheme")], **one) for one in table["method"]]
+    listed = [Method(time=schemes[row.pop("scheme")], **row) for row in table["method"]]
     for choice in table["choice"]:
         time = schemes["average"] | choice.pop("time", {})
         levels = choice.pop("levels", (LEVEL_OF_CHOICES,))

@@ -61,14 +61,14 @@ def errors(ladder: Ladder, history: History, reference: History) -> dict[str, fl
     """Return the relative L2 errors of the running means of running means, by quantity."""
     grid = np.append(0.0, reference.time)
     count = max(1, round(ladder.mean / float(reference.time[0])))
-    found = {}
+    error_of = {}
     for quantity, column in QUANTITIES.items():
         smooth = []
-        for one in (history, reference):
-            once = running_mean(on_grid(one, column, grid), count)
-            smooth.append(running_mean(once, count))
-        found[quantity] = or_nan(relative_l2(*smooth))
-    return found
+        for motion in (history, reference):
+            mean = running_mean(on_grid(motion, column, grid), count)
+            smooth.append(running_mean(mean, count))
+        error_of[quantity] = or_nan(relative_l2(*smooth))
+    return error_of
 
 
 def row_name(method: Method) -> str:
