@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import sys
 import time
@@ -152,7 +153,10 @@ def timed(run: Run, solver: Solver, case: Case) -> tuple[Run, float]:
 
 
 def lines_of(action: Callable[[], object]) -> int:
-    """Return how many lines of Python an action executes, which no clock and no other process changes."""
+    """Return how many lines of Python an action executes, which no clock and no other process changes.
+
+    Garbage is collected before and after, not within: what others left behind may run lines of its own on its way out.
+    """
     count = 0
 
     def trace(frame: FrameType, event: str, argument: object) -> Callable[..., Any]:
@@ -161,11 +165,15 @@ def lines_of(action: Callable[[], object]) -> int:
         return trace
 
     before = sys.gettrace()
+    collects = gc.isenabled()
+    gc.disable()
     sys.settrace(trace)
     try:
         action()
     finally:
         sys.settrace(before)
+        if collects:
+            gc.enable()
     return count
 
 
