@@ -19,37 +19,35 @@ from __future__ import annotations
 
 import math
 
-from dda.contact.kernel import FOUND, NONE, Contacts, Flexible, Free, Work
-from dda.contact.unilateral import OPEN, STICK
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Flexibility, Laws, Rows, Work
 
 ROUNDS = 400  # of two contacts, which take about five; a slender block that lands takes more
 SETTLED = 2e-16  # change of a force by which the rounds end
 
 
-def conserving(
-    p: float, before: Contacts, free: Free, flexible: Flexible, after: Contacts, work: Work
-) -> tuple[int, int]:
+def conserving(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
     """Find the contacts at the end of a step, and in `work.mean` their forces over the step.
 
-    A contact is closed if its gap is negative at the end; its normal force there is that of its spring.
+    A contact is closed if its gap is negative at the end; its force there is that of its spring.
     """
-    C = flexible.C
-    w0 = before.gap
-    w_f = free.gap
-    if len(before.gap) == 1:
-        after.gap[0], work.mean[0], _ = one_contact(p, C[0][0], w0[0], w_f[0])
+    W = flexible.W
+    p = 1 / laws.compliance[0]
+    w0 = before.opening
+    w_f = work.q
+    if len(w0) == 1:
+        after.opening[0], work.mean[0], _ = one_contact(p, W[0][0], w0[0], w_f[0])
         write_springs(p, after)
         return FOUND, 1
     force = 0.0
     residual = math.inf
     for solves in range(1, ROUNDS + 1):
-        w_M, N_M, s_M = one_contact(p, C[0][0], w0[0], w_f[0] + C[0][1] * force)
-        w_N, N_N, s_N = one_contact(p, C[1][1], w0[1], w_f[1] + C[1][0] * N_M)
+        w_M, N_M, s_M = one_contact(p, W[0][0], w0[0], w_f[0] + W[0][1] * force)
+        w_N, N_N, s_N = one_contact(p, W[1][1], w0[1], w_f[1] + W[1][0] * N_M)
         change = N_N - force
-        slope = C[0][1] * C[1][0] * s_M * s_N
+        slope = W[0][1] * W[1][0] * s_M * s_N
         if abs(change) <= SETTLED * abs(N_N):
-            after.gap[0] = w_M
-            after.gap[1] = w_N
+            after.opening[0] = w_M
+            after.opening[1] = w_N
             work.mean[0] = N_M
             work.mean[1] = N_N
             write_springs(p, after)
@@ -60,14 +58,12 @@ def conserving(
     return NONE, ROUNDS
 
 
-def write_springs(p: float, after: Contacts) -> None:
+def write_springs(p: float, after: Rows) -> None:
     """Write what follows from the gaps at the end of the step."""
-    for i in range(len(after.gap)):
-        after.state[i] = STICK if after.gap[i] < 0 else OPEN
-        after.normal[i] = p * max(-after.gap[i], 0.0)
-        after.shear[i] = 0.0
-        after.stretch[i] = 0.0
-        after.slipped[i] = 0.0
+    for i in range(len(after.opening)):
+        after.state[i] = INSIDE if after.opening[i] < 0 else LOWER
+        after.force[i] = p * max(-after.opening[i], 0.0)
+        after.slip[i] = 0.0
 
 
 def one_contact(p: float, C: float, w0: float, w_f: float) -> tuple[float, float, float]:

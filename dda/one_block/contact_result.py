@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.kernel import FOUND
-from dda.contact.unilateral import OPEN, SLIP
+from dda.contact.rows import FOUND, INSIDE, OUTCOMES
+from dda.contact.unilateral import OPEN, SLIP, STICK
+from dda.march.step import History
 from dda.model.arrays import Array
 from dda.one_block.solution import Result, times_of
 from dda.scheme.newmark import Scheme
-from dda.stepping.driver import OUTCOMES, History
 
 
 def lazily(name: str, meaning: str) -> cached_property[Array]:
@@ -36,15 +36,26 @@ def at_corners(name: str) -> tuple[property, property]:
     )
 
 
-def of_contacts(name: str, meaning: str, sign: float = 1.0) -> cached_property[Array]:
-    """Return the property of a result that its history holds for each contact.
+def of_rows(name: str, along: bool, meaning: str, sign: float = 1.0, shared: bool = False) -> cached_property[Array]:
+    """Return the property of a result that its history holds for each row of contact.
 
     Of a symmetric motion one contact stands for both corners: it is N, and M has the same value with a sign.
+
+    Parameters
+    ----------
+    along
+        Whether the rows along the base are meant, which contacts that slide freely do not have.
+    shared
+        Whether each corner has its share of the value of one contact.
     """
 
     def read(result: ContactResult) -> Array:
-        rows: Array = getattr(result.history, name)[1:].T
-        return np.array([[sign], [1.0]]) * rows + 0.0 if len(rows) == 1 else rows
+        n = result.contacts
+        rows = getattr(result.history, name)[1:].T / (result.multiplicity if shared else 1.0)
+        if name != "slip":  # which only the rows along the base have
+            rows = rows[n:] if along else rows[:n]
+        values: Array = rows if len(rows) else np.zeros((n, rows.shape[1]))
+        return np.array([[sign], [1.0]]) * values + 0.0 if n == 1 else values
 
     read.__doc__ = meaning
     return cached_property(read)
@@ -63,7 +74,9 @@ class ContactResult(Result):
     outcome: str  # "completed", or why the history ends early, in words
     step_solves: NDArray[np.int_]  # solves of each step, repeated and cut ones included
     step_cuts: NDArray[np.int_]  # times that a step was cut
-    history: History  # from t = 0 on; one contact may stand for both corners
+    history: History  # from t = 0 on, by the rows of contact
+    contacts: int  # of these; one may stand for both corners
+    multiplicity: float  # how many corners it stands for
     base_contacts: tuple[int, int]  # rows of M and N
     softness: float  # 1/p_s, 0 without springs in shear [m/N]
     parts: Mapping[str, Callable[[], Any]]  # makes the displacement along the base and the velocities
@@ -72,10 +85,10 @@ class ContactResult(Result):
     impulses: Array | None = None  # P of the rule "impact", (contacts, steps) [N s]
     step_passes: NDArray[np.int_] | None = None  # of the augmented Lagrangian in each step
 
-    normal = of_contacts("normal", "N, away from the base, (contacts, steps) [N].")
-    shear = of_contacts("shear", "T, along the base from M to N, (contacts, steps) [N].", -1.0)
-    gap = of_contacts("gap", "w, negative when pressed, (contacts, steps) [m].")
-    slipped = of_contacts("slipped", "Change of the shear reference by slip in each step, (contacts, steps) [m].", -1.0)
+    normal = of_rows("force", False, "N, away from the base, (contacts, steps) [N].", shared=True)
+    shear = of_rows("force", True, "T, along the base from M to N, (contacts, steps) [N].", -1.0, shared=True)
+    gap = of_rows("opening", False, "w, negative when pressed, (contacts, steps) [m].")
+    slipped = of_rows("slip", True, "Change of the shear reference by slip in each step, (contacts, steps) [m].", -1.0)
     slide = lazily("slide", "Displacement s along the base, less that of the base, (contacts, steps) [m].")
     velocity = lazily("velocity", "Of the centroid, upwards, (steps,) [m/s].")
     horizontal_velocity = lazily("horizontal_velocity", "Of the centroid, (steps,) [m/s].")
@@ -88,7 +101,12 @@ class ContactResult(Result):
     @cached_property
     def states(self) -> NDArray[np.int_]:
         """0 open, 1 closed and not slipping, 2 and -2 slipping towards N and M, (contacts, steps)."""
-        states = self.history.state[1:].T.astype(int)
+        rows = self.history.state[1:].T.astype(int)
+        closed = rows[: self.contacts] == INSIDE
+        states = np.where(closed, STICK, OPEN)
+        if len(rows) > self.contacts:
+            way = rows[self.contacts :]
+            states = np.where(closed & (way != INSIDE), -SLIP * way, states)
         if len(states) == 1:  # one contact for both corners: they slip in opposite directions
             return np.vstack([np.where(np.abs(states) == SLIP, -states, states), states])
         return states
@@ -128,7 +146,7 @@ def run_fields(
     Parameters
     ----------
     ended
-        How the history ended, among `dda.stepping.driver.OUTCOMES`.
+        How the history ended, among `dda.contact.rows.OUTCOMES`.
     clock
         When the set-up began, and the steps [s].
     """

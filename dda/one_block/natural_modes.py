@@ -42,6 +42,30 @@ def graded_modes(M: Array, K: Array) -> tuple[Array, Array]:
     return 1 / np.sqrt(values), vectors / root[:, None] / np.sqrt(values)
 
 
+def free_modes(M: Array, K: Array) -> tuple[Array, Array]:
+    """Return w^2 and mass-normalised shapes, one a column, of a body that nothing holds: strains, then rigid motions.
+
+    Parameters
+    ----------
+    M : (n, n) array
+        Inertia.
+    K : (n,) array
+        Diagonal of the stiffness, zero of rigid motions, whose w^2 is exactly zero.
+    """
+    rigid = K == 0
+    strained = ~rigid
+    count = np.count_nonzero(strained)
+    soft = M[np.ix_(rigid, rigid)]
+    follow = -np.linalg.solve(soft, M[np.ix_(rigid, strained)])  # rigid motion that keeps strains free of momentum
+    inertia = M[np.ix_(strained, strained)] + M[np.ix_(strained, rigid)] @ follow
+    frequencies, strains = graded_modes((inertia + inertia.T) / 2, K[strained])
+    shapes = np.zeros(M.shape)
+    shapes[strained, :count] = strains
+    shapes[rigid, :count] = follow @ strains
+    shapes[rigid, count:] = np.linalg.inv(np.linalg.cholesky(soft)).T
+    return np.concatenate([frequencies**2, np.zeros(len(K) - count)]), shapes
+
+
 def _jacobi(matrix: Array) -> tuple[Array, Array]:
     """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations.
 

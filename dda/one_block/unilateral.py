@@ -15,39 +15,30 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.contact.rows import Laws
 from dda.contact.unilateral import Unilateral
+from dda.march.compiled import run_loop
+from dda.march.energy import CONTACT, DASHPOT, energies_of
+from dda.march.energy import IMPACT as IMPACT_LOSS
+from dda.march.methods import Method, make_augmented_steps, make_conserving_steps, make_impact_steps, make_steps
+from dda.march.step import History, course_of, history_of, march, reached_history
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
-from dda.one_block.impact_step import make_impact_steps
+from dda.one_block.opening_block import OpeningBlock, laws_of, observed, opening_block, start_of, unknowns_of
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
-from dda.one_block.unilateral_step import (
-    AUGMENTED,
-    CONSERVING,
-    IMPACT,
-    IMPLICIT,
-    NEWMARK,
-    RULES,
-    block_equations,
-    make_augmented_steps,
-    make_conserving_steps,
-    make_damped_steps,
-    make_steps,
-    start_state,
-)
 from dda.scheme.newmark import Scheme
-from dda.stepping.compiled import run_loop
-from dda.stepping.driver import History, base_record, history_of, reached_history
-from dda.stepping.energy import CONTACT, DASHPOT, energies_of, spring_energies
-from dda.stepping.energy import IMPACT as IMPACT_LOSS
 
+NEWMARK = "newmark"
+IMPLICIT = "implicit"
+CONSERVING = "energy-conserving"
+IMPACT = "impact"
+AUGMENTED = "augmented"
+RULES = (NEWMARK, IMPLICIT, CONSERVING, IMPACT, AUGMENTED)
 LOOPS = {CONSERVING: make_conserving_steps, IMPACT: make_impact_steps, AUGMENTED: make_augmented_steps}
-PASS_DIGITS = 14.0  # ln of what passes leave of a penetration, about
-SHEAR_COMPILE_TIME = 2.5  # with springs in shear, over that of contacts which slide freely
-PLAIN_STEP = 4e-6  # seconds of plain Python for each unknown and step, and for each unknown force
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -164,107 +155,106 @@ def solve_unilateral(
         law = replace(law, shear=0.0)
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
-    motion = model.load.motion
-    block, shear_law = block_equations(
-        form,
-        law,
+    block = opening_block(form)
+    springs = laws_of(form, law, options.solve_limit)
+    rigid = options.rule == AUGMENTED  # the limit of its passes
+    laws = laws_of(form, replace(law, stiffness=math.inf), options.solve_limit) if rigid else springs
+    start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
+    made = march(
+        block.body,
+        laws,
         scheme,
-        options.rule,
-        options.solve_limit,
-        options.penetration,
-        options.pass_limit,
-        options.restitution or 0.0,
+        start.rows.opening,
+        Method(springs, options.penetration, options.pass_limit, options.restitution or 0.0),
+        averages=options.rule in (NEWMARK, AUGMENTED),
+        impulses=options.rule == IMPACT,
     )
-    state = start_state(form, law, scheme, model.velocity, options.rule)
-    base = base_record(motion and motion.along(form.axes))
+    motion = model.load.motion
+    course = course_of(motion and motion.along(form.axes), form.ramp)
     n = len(form.unknowns)
-    history = history_of(steps, 2 * n + (options.rule == AUGMENTED), form.contacts, options.energies)
-    seconds = steps * PLAIN_STEP * (len(form.unknowns) + len(form.B))
-    if options.rule == AUGMENTED:  # each pass leaves 1/(1 + r C) of the penetration
-        seconds *= 1 + PASS_DIGITS / math.log1p(max(law.stiffness * block.last.whole.C[0, 0], 1e-9))
+    history = history_of(steps, 2 * n + rigid, form.contacts, len(form.B), options.energies)
     ready = perf_counter()
-    loop = LOOPS.get(options.rule, make_damped_steps if law.damping else make_steps)
-    (reached, ended), left, how = run_loop(
-        loop,
-        (block, shear_law, state, state),
-        (base,),
-        (history, steps, options.cut),
-        seconds,
-        1.0 if shear_law is None else SHEAR_COMPILE_TIME,
-    )
+    loop = LOOPS.get(options.rule, make_steps)
+    (reached, ended), left, how = run_loop(loop, (made, start, start), (course,), (history, steps, options.cut), steps)
     history = reached_history(history, reached)
     with np.errstate(all="ignore"):
-        values = observed(form, history, model.base_length, columns)
+        values = {name: column(model, block, history, name, scheme.step) for name in columns}
     for name, moved in carried(motion, step_times(scheme, reached)).items():
         if name in values:
             values[name] = values[name] + moved
-    D = history.motion[1:, :n]
-    P = history.motion[1:, n : 2 * n]
-    impulses = np.broadcast_to(scheme.step * history.normal[1:].T, (2, reached)) if options.rule == IMPACT else None
-    passes = history.motion[1:, 2 * n].astype(int) if options.rule == AUGMENTED else None
-    per_momentum = (form.translation @ form.axes).T / (model.block.total_mass * scheme.step)
+    impulses = None
+    if options.rule == IMPACT:
+        impulses = np.broadcast_to(scheme.step * history.force[1:].T / form.multiplicity, (2, reached))
     notes = [f"stepped, {how}: contact opens and closes"]
     if n < 6:
         notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
+
+    def velocity(axis: int) -> Array:
+        momentum: Array = history.motion[1:, n : 2 * n] @ block.translation[axis]
+        return momentum / (model.block.total_mass * scheme.step)
+
     return ContactResult(
         **run_fields(history, ended, scheme, notes, (began, ready)),
         columns=values,
         unknowns=n,
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=int(left[0].made[0]),
+        contacts=form.contacts,
+        multiplicity=form.multiplicity,
         base_contacts=(0, 1),
         softness=law.softness,
         impulses=impulses,
-        step_passes=passes,
+        step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
         parts={
-            "slide": lambda: form.slide @ D.T,
-            "horizontal_velocity": lambda: P @ per_momentum[0],
-            "velocity": lambda: P @ per_momentum[1],
+            "slide": lambda: form.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+            "horizontal_velocity": lambda: velocity(0),
+            "velocity": lambda: velocity(1),
         },
-        balance=(lambda: energies(model, form, scheme, history, options.rule)) if options.energies else None,
+        balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
     )
 
 
-def observed(form: UnilateralForm, history: History, a: float, names: Sequence[str]) -> dict[str, Array]:
-    """Return the asked columns; `a` is the length of the base [m]."""
-    D = history.motion[1:, : len(form.unknowns)]
-    values = {}
-    for name in names:
-        if name == "contact_pressure":
-            values[name] = history.normal[1:].sum(axis=1) * (2 / form.contacts / a) + 0.0
-        else:
-            row = form.observers[name]
-            values[name] = D @ row - row @ form.start + 0.0
-    return values
+def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
+    """Return a column of every step."""
+    form = block.form
+    if name == "contact_pressure":
+        return np.asarray(history.force[1:, : form.contacts].sum(axis=1) / model.base_length + 0.0)
+    row = form.observers[name]
+    return observed(block, row, history, model.load.motion, step)[1:] - row @ form.start + 0.0
 
 
 def energies(
-    model: UnilateralModel, form: UnilateralForm, scheme: Scheme, history: History, rule: str
+    model: UnilateralModel,
+    block: OpeningBlock,
+    laws: Laws,
+    scheme: Scheme,
+    history: History,
+    rule: str,
 ) -> dict[str, Array]:
     """Return the energies [J] after every step, the losses summed from t = 0 on.
 
-    They are those of `dda.stepping.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
+    They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
     """
+    form = block.form
     n = len(form.unknowns)
-    D = history.motion[:, :n]
-    V = history.motion[:, n : 2 * n] / scheme.step
-    load = -(D - form.start) @ form.F
+    z = history.motion[:, :n]
+    v = history.motion[:, n : 2 * n] / scheme.step
+    load = form.start @ form.F - observed(block, form.F, history, model.load.motion, scheme.step)
     if model.load.motion is not None:
-        moved = model.load.motion.at(scheme.step * np.arange(float(len(D))))
+        moved = model.load.motion.at(scheme.step * np.arange(float(len(z))))
         load -= moved @ (form.axes.T @ form.translation.T @ form.F)
-    law = model.contact if rule != AUGMENTED else replace(model.contact, stiffness=math.inf)
-    normal = history.normal
-    if law.damping:
-        normal = law.stiffness * np.maximum(-history.gap, 0.0)
+    springs = history.force
+    if model.contact.damping:
+        springs = np.maximum(-history.opening, 0.0) / laws.compliance
     stored = (
-        np.einsum("ki,ij,kj->k", V, np.linalg.inv(form.M), V) / 2,
-        (D * D) @ form.K / 2,
-        form.multiplicity * spring_energies(law, normal, history.shear),
+        np.sum(v * v, axis=1) / 2,
+        (z * z) @ block.body.k / 2,
+        (springs * springs) @ laws.compliance / 2,
         load,
     )
     energies = energies_of(stored, history.sums, scheme.table is not None)
-    if law.damping:
+    if model.contact.damping:
         energies[DASHPOT] = history.sums[1:, CONTACT]
     if rule == IMPACT:
         energies[IMPACT_LOSS] = history.sums[1:, CONTACT]

@@ -1,0 +1,275 @@
+"""Long loops over steps, compiled by numba where it is installed; the same functions run as plain Python otherwise.
+
+A loop and the functions that it calls are written once, in numbers and arrays `a[i][j]` that may be lists as well:
+plain Python is several times faster on these. Compiled code takes records, one block of memory each: loops over these
+take 0.1 us a step where loops over named tuples of arrays take 4.
+
+Compiling takes some seconds, once an install: a history of `LONG` steps pays for it, and where compiled code is at hand
+one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the sources
+that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are compiled.
+Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same: nothing is
+reordered or fused.
+
+Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
+replaced since, the plain functions run.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import logging
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FunctionType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+Loop = Callable[..., Any]
+
+SHORT = 2_000  # steps from which a loop is run compiled where its code is at hand
+LONG = 20_000  # the same from which it is compiled and kept
+ANEW = 1_000_000  # the same from which it is compiled where code cannot be kept
+MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
+PLAIN = "plain Python"
+COMPILED = "compiled"
+
+loops: dict[tuple[Loop, object], tuple[list[Use], Loop | None]] = {}  # by loop and types
+_jitable: set[FunctionType] = set()
+logger = logging.getLogger("dda")
+
+
+def run_loop(
+    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], steps: int
+) -> tuple[Any, tuple[Any, ...], str]:
+    """Run a loop over steps; return what it returns, the records that it left, and whether it was compiled, in words.
+
+    Parameters
+    ----------
+    loop
+        The plain function. It takes all that follows, in this order.
+    records
+        Named tuples of numbers and of arrays of always the same sizes; it works on copies.
+    series
+        Named tuples of arrays of any length, which it reads.
+    rows
+        Arrays that it fills, and numbers.
+    steps
+        How many steps it makes.
+    """
+    with np.errstate(all="ignore"):
+        if steps >= SHORT:
+            converted = tuple(as_record(part) for part in records)
+            arguments = (*converted, *series, *rows)
+            machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
+            if machine_code is not None:
+                return machine_code(*arguments), converted, COMPILED
+        converted = tuple(as_lists(part) for part in records)
+        return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
+
+
+def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return what compiled code is made for: the types of its arguments, with the sizes of all arrays of records."""
+    return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
+
+
+def is_worthwhile(loop: Loop, steps: int, types: tuple[Any, ...]) -> bool:
+    """Tell whether so many steps pay for compiled code: at hand, to be kept, or to be made each time."""
+    if steps < SHORT:  # and nothing is looked for, nor made, in the user's cache
+        return False
+    if steps < LONG:
+        return (loop, types) in loops or is_kept(loop, types)
+    return steps >= ANEW or cache_directory() is not None
+
+
+def is_kept(loop: Loop, types: tuple[Any, ...]) -> bool:
+    """Tell whether the user's cache holds a loop as its sources are now, for these types."""
+    from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
+
+    directory = cache_directory()
+    try:
+        numba_version = version("numba")
+    except PackageNotFoundError:
+        return False
+    if directory is None:
+        return False
+    kept = directory / _digest(functions_of(loop), numba_version) / _types_digest(types)
+    return any(kept.rglob("*.nbi"))
+
+
+def as_lists(value: Any) -> Any:
+    """Return arrays as lists, also within named tuples."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, tuple):
+        return type(value)(*(as_lists(part) for part in value))  # a named tuple
+    return value
+
+
+def as_record(value: Any) -> Any:
+    """Return a named tuple as a record of NumPy: one block of memory, however many arrays there are; None is None."""
+    if value is None:
+        return None
+    record = np.recarray(1, dtype=_type_of(value))
+    _fill(record.view(np.ndarray), value)
+    return record[0]
+
+
+def _type_of(value: Any) -> Any:
+    """Return the type of NumPy for a named tuple, an array or a number."""
+    if isinstance(value, tuple):
+        fields = zip(value._fields, value, strict=True)  # type: ignore[attr-defined]
+        return np.dtype((np.record, [(name, _type_of(part)) for name, part in fields]))
+    array = np.asarray(value)
+    return np.dtype((np.int64 if array.dtype.kind in "bi" else np.float64, array.shape))
+
+
+def _fill(records: Any, value: Any) -> None:
+    for name, part in zip(value._fields, value, strict=True):
+        if isinstance(part, tuple):
+            _fill(records[name], part)
+        else:
+            records[name][0] = part
+
+
+def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
+    """Return the compiled loop for such arguments, or None where the plain one is to run."""
+    key = loop, types_of(arguments)
+    if key not in loops:
+        functions = functions_of(loop)
+        uses = [use for function in functions for use in uses_of(function)]
+        if any(_is_foreign(part, loop) for part in [*functions, *(use.value for use in uses)]):
+            return None
+        loops[key] = uses, _compile(loop, functions, arguments)
+    uses, machine_code = loops[key]
+    unchanged = all(use.names.get(use.name) is use.value for use in uses)
+    return machine_code if unchanged else None
+
+
+def _is_foreign(value: object, loop: Loop) -> bool:
+    """Tell whether a function comes from elsewhere than the package of the loop: nobody knows what it holds."""
+    if not callable(value) or isinstance(value, type):
+        return False
+    package = loop.__module__.partition(".")[0]
+    return not isinstance(value, FunctionType) or value.__module__.partition(".")[0] != package
+
+
+class Use(NamedTuple):
+    """A function or a constant that compiled code was made of, and where it is looked up."""
+
+    names: dict[str, Any]
+    name: str
+    value: object
+
+
+def uses_of(function: FunctionType) -> Iterator[Use]:
+    """Yield the functions and constants that a function looks up by name."""
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if callable(value) or isinstance(value, int | float | tuple):
+            yield Use(function.__globals__, name, value)
+
+
+def called_by(function: FunctionType) -> list[object]:
+    """Return what a function holds in its closure, and what it looks up by name."""
+    return [cell.cell_contents for cell in function.__closure__ or ()] + [use.value for use in uses_of(function)]
+
+
+def functions_of(loop: Loop) -> list[FunctionType]:
+    """Return a function of this package and all that it calls."""
+    functions: list[FunctionType] = []
+    waiting: list[object] = [loop]
+    while waiting:
+        function = waiting.pop()
+        if isinstance(function, FunctionType) and function not in functions:
+            functions.append(function)
+            waiting += called_by(function)
+    return functions
+
+
+def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ...]) -> Loop | None:
+    """Return the compiled loop, or None where numba, this Python or this machine cannot make it."""
+    try:
+        import numba
+        from numba.extending import register_jitable
+    except Exception:  # not installed, or not for this Python
+        return None
+    direct = called_by(functions[0])
+    for function in functions:
+        if function is not loop and function not in _jitable:
+            # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;
+            # and nobody else calls any of these: they have no entry from Python or C
+            options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            register_jitable(forceinline=function in direct, **options)(function)
+            _jitable.add(function)
+    directory = cache_directory()
+    if directory is not None:
+        directory = directory / _digest(functions, numba.__version__) / _types_digest(types_of(arguments))
+    message = "compiling the loop over steps, " + ("once an install" if directory else "which no directory can keep")
+    timer = threading.Timer(MESSAGE_DELAY, logger.warning, [message])
+    timer.daemon = True
+    if not is_kept(loop, types_of(arguments)):
+        timer.start()
+    try:
+        for place in dict.fromkeys((directory, None)):
+            try:
+                types = tuple(numba.typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
+                return compile_loop(numba, loop, types, place)
+            except Exception:  # a broken or locked cache, then a compiler that does not know what plain Python knows
+                continue
+        return None
+    finally:
+        timer.cancel()
+
+
+def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
+    """Return the compiled loop; raise whatever numba raises."""
+    before = numba.config.CACHE_DIR
+    # nothing is allocated in a loop: without the counting of references a call costs what it does
+    options = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+    try:
+        if directory is not None:
+            numba.config.CACHE_DIR = str(directory)
+        dispatcher: Any = numba.njit(cache=directory is not None, **options)(loop)
+    finally:
+        numba.config.CACHE_DIR = before
+    dispatcher.compile(types)
+    machine_code: Loop = dispatcher
+    return machine_code
+
+
+def _digest(functions: list[FunctionType], version: str) -> str:
+    """Return what changes with the sources of functions, with numba and with Python."""
+    digest = hashlib.sha256(f"{version} {sys.version}".encode())
+    for name in sorted({function.__code__.co_filename for function in functions}):
+        digest.update(Path(name).read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _types_digest(types: tuple[Any, ...]) -> str:
+    """Return what changes with the types of arguments."""
+    return hashlib.sha256(repr(types).encode()).hexdigest()[:16]
+
+
+@functools.cache
+def cache_directory() -> Path | None:
+    """Return the directory of the user's cache for compiled code, or None where it cannot be written."""
+    try:
+        directory = user_cache() / "dda-validation"
+        directory.mkdir(parents=True, exist_ok=True)
+        return directory if os.access(directory, os.W_OK) else None
+    except (OSError, RuntimeError):  # no home, or a full disk
+        return None
+
+
+def user_cache() -> Path:
+    """Return the directory in which this system's programs keep what they can make again."""
+    if directory := os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME"):
+        return Path(directory)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")

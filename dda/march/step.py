@@ -1,0 +1,608 @@
+r"""One step of any body, by any scheme, on any contacts.
+
+Every block is taken alone, without its springs, in its own natural modes: z'' + k z = load, inertia one, stiffness a
+diagonal, k = 0 of its rigid motions. All that joins it to a base or to others is a row of contact, of the opening
+B_r z and the force lambda_r, which pushes the modes by B_r' lambda_r. With h the length, u = gg v the velocity that a
+step starts with and the end (zg, vg, ag) of the stage before, a stage (`dda.scheme.stage`) is, mode by mode,
+
+    s (z1 - zg) = h (d_u u + d_g vg) + h^2 (e_0 a + e_g ag) + alpha h^2 f(zg) + b h^2 B' lambda,      s = 1 + b h^2 k
+    R1 = F - k z1 + B' lambda,      a1 = f of R1,      v1 = u + h (g_0 a + g_g ag + delta a1)
+
+where f balances the forces R between the ends of a step, and b = alpha (1 - af)/(1 - am). So in three lines:
+
+    the modes without contact forces (`free_modes`), and by these the openings q without them (`free_rows`),
+    the forces of the contacts (`dda.contact.rows.find`), by the flexibility W = b h^2 B s^-1 B',
+    the modes under these forces (`end_modes`).
+
+A shorter step costs nothing to set up: s is a number for each mode. The displacement of a rigid motion enters no force;
+it is read from the openings where these are known. A base moves from under the rows alone.
+
+Two rules of Newmark's scheme keep the contact force out of a, the block's own, and put one force of the step into the
+displacement, with the weight 1/2 for b, and into the velocity, with 1: that of its end (Kane, Repetto, Ortiz and Marsden
+1999), or that of `dda.contact.conserving`.
+
+The state is in units of the scheme's step dt: p = dt v, a for dt^2 a, R for dt^2 R.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix
+from dda.contact.rows import (
+    FOUND,
+    INSIDE,
+    NONE,
+    OVERFLOW,
+    UNREACHED,
+    Flexibility,
+    Laws,
+    Rows,
+    Work,
+    flexed,
+    flexibility_for,
+    rows_of,
+    unpair,
+    work_for,
+)
+from dda.model.arrays import Array
+from dda.march.energy import SUMS
+from dda.model.load import BaseMotion
+from dda.scheme.newmark import Scheme
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
+
+SHORTEST = 0.01  # shortest part of a step that a cut may leave
+
+
+class Body(NamedTuple):
+    """Natural modes, and the rows of contact by these."""
+
+    k: Vector  # (n,) squares of the natural frequencies [1/s^2]; 0 of a rigid motion
+    loads: Matrix  # (l, n) modal loads, each with a share that changes in time
+    stored: Vector  # (l,) share of each load that counts as energy of the load, the rest of its work as given
+    first: Any  # (m,) first of the modes that a row of contact feels
+    weight: Matrix  # (m, w) its opening by this and those that follow
+    ground: Matrix  # (m, 2) what a unit displacement of the base, along and away from itself, takes from the openings
+
+
+class Numbers(NamedTuple):
+    """The scheme as numbers."""
+
+    stages: int  # 1, or 2
+    newmark: bool  # else the algorithm loses what all others leave of the balance of energy
+    averages: bool  # whether forces of contact enter a
+    impulses: bool  # whether they are impulses, which change the velocity
+    gg: float
+    step: float  # dt [s]
+    lag: float  # by how much of a step p is older than z
+
+
+class Length(NamedTuple):
+    """What belongs to a stage of one length."""
+
+    numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in the displacement [s^2]; 1 of impulses
+    inverse: Vector  # (n,) 1/s
+    flexible: Flexibility
+
+
+class StageRoom(NamedTuple):
+    """A stage of the scheme."""
+
+    numbers: Stage  # with gg = 1: the velocity that it takes is discounted
+    whole: Length  # of a whole step
+    part: Length  # of the last part of a step
+
+
+class State(NamedTuple):
+    """Where a body is, in units of the step."""
+
+    z: Vector  # (n,) modes
+    p: Vector  # (n,) dt v
+    a: Vector  # (n,) dt^2 a
+    R: Vector  # (n,) dt^2 times all forces
+    path: Vector  # (m,) where the reference of a row is: path + opening is its way [m]
+    rows: Rows
+
+
+class Room(NamedTuple):
+    """Room for the vectors of a step."""
+
+    start: Vector  # (2 + l,) displacement of the base [m], and the shares of the loads, at the start of a stage
+    end: Vector  # the same at its end
+    p: Vector  # (n,) discounted p, a and R at the start of the step, in units of its length
+    a: Vector
+    R: Vector
+    x: Vector  # (n,) increments without contact forces
+    pushed: Vector  # (n,) B' lambda
+    free: Vector  # (m,) what the step without forces adds to the openings
+    force: Vector  # (m,) forces in the coordinates of the body
+
+
+class March(NamedTuple):
+    """A body, its contacts and its scheme, with room for a step."""
+
+    body: Body
+    laws: Laws
+    scheme: Numbers
+    first: StageRoom  # of two
+    last: StageRoom
+    between: State  # at the end of the first one
+    room: Room
+    work: Work
+    made: Vector  # (2,) lengths that were made, and passes since a step was kept
+    method: Any  # numbers of the rule of contact
+
+
+class Course(NamedTuple):
+    """What is prescribed, linear between instants and constant beyond them."""
+
+    time: Vector  # (i,) [s]
+    value: Matrix  # (i, 2 + l) displacement of the base along and away from itself [m], shares of the loads
+    latest: Any  # (1,) number of the instant before the time that was looked up last
+
+
+class Part(NamedTuple):
+    """A whole step, or a part of one."""
+
+    begun: float  # where it begins, in steps from t = 0
+    ratio: float  # how long it is, in steps
+
+
+class History(NamedTuple):
+    """What is kept of every step; row 0 is the state at t = 0, from which the sums go on."""
+
+    motion: Array  # (steps + 1, ...) what the body keeps of itself
+    force: Array  # (steps + 1, m)
+    opening: Array
+    path: Array  # (steps + 1, m - n) of the ways along the base
+    slip: Array  # the same, summed over the parts of a step
+    state: Any
+    solves: Any  # (steps + 1,) of the open-close iteration, the confirming one, repeated and cut steps included
+    cuts: Any  # (steps + 1,) times that the step was cut
+    sums: Array  # (steps + 1, SUMS) of `dda.march.energy`; (0, SUMS) if the energies are not asked for
+
+
+# ---- what is set up --------------------------------------------------------------------------------------------------
+
+
+def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False) -> March:
+    """Return a march, with what belongs to whole steps made.
+
+    Parameters
+    ----------
+    opening : (m,) array
+        Openings at t = 0 [m].
+    method
+        A named tuple of numbers for another rule of contact.
+    averages
+        Whether the forces of contact enter the acceleration.
+    impulses
+        Whether they are impulses.
+    """
+    n = len(body.k)
+    m = len(laws.compliance)
+    rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
+    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((5, n)), *np.zeros((2, m))
+    made = March(
+        body=body,
+        laws=laws,
+        scheme=Numbers(len(rooms), scheme.table is None, averages, impulses, scheme.gg, scheme.step, float(scheme.lag)),
+        first=rooms[0],
+        last=rooms[-1],
+        between=State(*np.zeros((4, n)), np.zeros(m), rows_of(opening, np.zeros(m))),
+        room=Room(*vectors),
+        work=work_for(laws.contacts, m, laws.banded),
+        made=np.zeros(2),
+        method=method,
+    )
+    for stage in rooms:
+        set_length(made, stage, 1.0, stage.whole)
+    return made
+
+
+def stage_room(stage: Stage, modes: int, rows: int, banded: bool) -> StageRoom:
+    """Return a stage, with room for what belongs to it."""
+    lengths = [Length(np.zeros(4), np.zeros(modes), flexibility_for(rows, banded)) for _ in range(2)]
+    return StageRoom(stage, *lengths)
+
+
+def course_of(motion: BaseMotion | None, ramp: float) -> Course:
+    """Return what is prescribed of a base along its axes, and the share of one load that rises in a time [s]."""
+    instants = np.zeros(1) if motion is None else np.asarray(motion.time, float)
+    if ramp:
+        instants = np.union1d(instants, [0.0, ramp])
+    moved = np.zeros((len(instants), 2)) if motion is None else motion.at(instants)
+    share = np.clip(instants / ramp, 0.0, 1.0) if ramp else np.ones(len(instants))
+    return Course(instants, np.column_stack([moved, share]), np.zeros(1, dtype=np.int64))
+
+
+def history_of(steps: int, motion: int, contacts: int, rows: int, energies: bool) -> History:
+    """Return room for so many steps, of bodies with so many numbers, contacts and rows of their own."""
+    ways = rows - contacts
+    parts: list[Any] = [np.zeros((steps + 1, size)) for size in (motion, rows, rows, ways, ways)]
+    parts.append(np.zeros((steps + 1, rows), dtype=np.int8))
+    parts += [np.zeros(steps + 1, dtype=np.int64) for _ in range(2)]
+    parts.append(np.zeros((steps + 1 if energies else 0, SUMS)))
+    return History(*parts)
+
+
+def reached_history(history: History, reached: int) -> History:
+    """Return the history without the steps that were not reached."""
+    parts: list[Any] = [part[: reached + 1] for part in history]
+    return History(*parts)
+
+
+# ---- one stage -------------------------------------------------------------------------------------------------------
+
+
+def set_length(march: March, stage: StageRoom, ratio: float, length: Length) -> None:
+    """Write what belongs to a length: 1/s of the modes, and the flexibility of the contacts.
+
+    A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
+    """
+    body = march.body
+    h = march.scheme.step * ratio
+    implicit = implicit_weight(stage.numbers)
+    weight = (implicit if march.scheme.averages else 0.5) * h * h
+    if march.scheme.impulses:
+        weight = 1.0
+    length.numbers[0] = ratio
+    length.numbers[1] = march.scheme.gg**ratio
+    length.numbers[2] = h
+    length.numbers[3] = weight
+    for i in range(len(body.k)):
+        length.inverse[i] = 1 / (1 + implicit * h * h * body.k[i])
+    if march.laws.retardation > 0:  # forces change y + tau y', by which these springs press
+        late = stage.numbers.delta * (1 - stage.numbers.af) / (1 - stage.numbers.am)
+        retarded = weight + march.laws.retardation * late * h
+        length.flexible.own[0] = weight / retarded if weight > 0 else 0.0
+        weight = retarded
+    write_flexibility(march, weight, length)
+    march.made[0] += 1
+
+
+def write_flexibility(march: March, weight: float, length: Length) -> None:
+    """Write W = weight B s^-1 B'."""
+    body = march.body
+    laws = march.laws
+    flexible = length.flexible
+    m = len(march.room.free)
+    for r in range(m):
+        for s in range(r, min(r + 2, m) if laws.banded else m):
+            entry = weight * coupling(body, length.inverse, r, s)
+            if laws.banded:
+                flexible.W[s - r][r] = entry
+            else:
+                flexible.paired[r][s] = entry
+                flexible.paired[s][r] = entry
+    if laws.paired:
+        unpair(flexible.paired, flexible.W)
+    elif not laws.banded:
+        copy_matrix(flexible.paired, flexible.W)
+
+
+def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
+    """Return B_r s^-1 B_s'."""
+    width = len(body.weight[r])
+    total = 0.0
+    for i in range(max(body.first[r], body.first[s]), min(body.first[r], body.first[s]) + width):
+        total += body.weight[r][i - body.first[r]] * inverse[i] * body.weight[s][i - body.first[s]]
+    return total
+
+
+def moved_row(body: Body, r: int, x: Vector) -> float:
+    """Return B_r x."""
+    weight = body.weight[r]
+    first = body.first[r]
+    total = 0.0
+    for e in range(len(weight)):
+        total += weight[e] * x[first + e]
+    return total
+
+
+def push_modes(march: March, force: Vector) -> None:
+    """Write B' lambda; of two ways that are paired their sum and half their difference push."""
+    body = march.body
+    room = march.room
+    copy(force, room.force)
+    if march.laws.paired:
+        room.force[2] = force[2] + force[3]
+        room.force[3] = (force[3] - force[2]) / 2
+    for i in range(len(room.pushed)):
+        room.pushed[i] = 0.0
+    for r in range(len(force)):
+        if room.force[r] != 0.0:
+            weight = body.weight[r]
+            first = body.first[r]
+            for e in range(len(weight)):
+                room.pushed[first + e] += weight[e] * room.force[r]
+
+
+def length_of(march: March, stage: StageRoom, ratio: float) -> Length:
+    """Return what belongs to a length, over dt."""
+    if ratio == 1.0:
+        return stage.whole
+    if stage.part.numbers[0] != ratio:
+        set_length(march, stage, ratio, stage.part)
+    return stage.part
+
+
+def prescribe(march: March, course: Course, stage: StageRoom, part: Part) -> None:
+    """Write base and shares of the loads at both ends of a stage."""
+    room = march.room
+    step = march.scheme.step
+    look_up(course, (part.begun + part.ratio * stage.numbers.begin) * step, room.start)
+    look_up(course, (part.begun + part.ratio * stage.numbers.end) * step, room.end)
+
+
+def look_up(course: Course, time: float, out: Vector) -> None:
+    """Write what is prescribed at a time; times follow each other."""
+    instants = course.time
+    last = len(instants) - 1
+    low = course.latest[0]
+    while low > 0 and instants[low] > time:
+        low -= 1
+    while low < last and instants[low + 1] <= time:
+        low += 1
+    course.latest[0] = low
+    before = course.value[low]
+    for j in range(len(out)):
+        out[j] = before[j]
+    if low < last and instants[low] < time:
+        after = course.value[low + 1]
+        share = (time - instants[low]) / (instants[low + 1] - instants[low])
+        for j in range(len(out)):
+            out[j] += share * (after[j] - before[j])
+
+
+def begin_step(march: March, start: State, length: Length) -> None:
+    """Write what all stages take from the start of a step; its velocity is discounted here."""
+    room = march.room
+    ratio = length.numbers[0]
+    gg = length.numbers[1]
+    for i in range(len(room.p)):
+        room.p[i] = gg * (ratio * start.p[i])
+        room.a[i] = ratio * ratio * start.a[i]
+        room.R[i] = ratio * ratio * start.R[i]
+
+
+def load_of(march: March, i: int) -> float:
+    """Return the load of a mode at the end of the stage."""
+    loads = march.body.loads
+    total = 0.0
+    for j in range(len(loads)):
+        total += march.room.end[2 + j] * loads[j][i]
+    return total
+
+
+def free_modes(march: March, stage: StageRoom, length: Length, before: State) -> None:
+    """Write the increments of the modes in a stage without contact forces."""
+    room = march.room
+    numbers = stage.numbers
+    k = march.body.k
+    ratio = length.numbers[0]
+    h2 = length.numbers[2] * length.numbers[2]
+    for i in range(len(k)):
+        held = inertia_force(numbers, h2 * (load_of(march, i) - k[i] * before.z[i]), room.R[i], room.a[i])
+        moving = predictor(numbers, room.p[i], room.a[i], ratio * before.p[i], ratio * ratio * before.a[i])
+        room.x[i] = length.inverse[i] * (moving + numbers.alpha * held)
+
+
+def free_rows(march: March, before: State) -> None:
+    """Write the openings at the end of a stage without contact forces."""
+    body = march.body
+    room = march.room
+    work = march.work
+    opening = before.rows.opening
+    for r in range(len(room.free)):
+        moved = moved_row(body, r, room.x)
+        if not (march.laws.paired and r == 3):  # a base that moves leaves the difference of two ways alone
+            for axis in range(2):
+                moved -= body.ground[r][axis] * (room.end[axis] - room.start[axis])
+        room.free[r] = moved
+    if march.laws.paired:
+        mean = room.free[2]
+        difference = room.free[3]
+        work.pair[0] = mean + (opening[2] + opening[3]) / 2
+        work.pair[1] = difference + (opening[3] - opening[2])
+        room.free[2] = mean - difference / 2
+        room.free[3] = mean + difference / 2
+    for r in range(len(room.free)):
+        work.q[r] = opening[r] + room.free[r]
+
+
+def retard(march: March, stage: StageRoom, length: Length, before: State) -> None:
+    """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
+    body = march.body
+    room = march.room
+    h = length.numbers[2]
+    for i in range(len(body.k)):
+        room.pushed[i] = motion_at_end(march, stage, length, before, before.z[i] + room.x[i], 0.0, i)[2]
+    for r in range(len(room.free)):
+        rate = moved_row(body, r, room.pushed) / h
+        for axis in range(2):
+            moved = room.end[axis] - room.start[axis]
+            rate -= body.ground[r][axis] * moved / (h * (stage.numbers.end - stage.numbers.begin))
+        march.work.late[r] = march.laws.retardation * rate
+        march.work.q[r] += march.work.late[r]
+
+
+def motion_at_end(
+    march: March, stage: StageRoom, length: Length, before: State, z: float, pushed: float, i: int
+) -> tuple[float, float, float]:
+    """Return h^2 R, h^2 a and h v of a mode at the end of a stage, where it is at z under h^2 B' lambda = `pushed`."""
+    room = march.room
+    numbers = stage.numbers
+    ratio = length.numbers[0]
+    h2 = length.numbers[2] * length.numbers[2]
+    R = h2 * (load_of(march, i) - march.body.k[i] * z) + pushed
+    a = inertia_force(numbers, R, room.R[i], room.a[i])
+    return R, a, velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
+
+
+def end_modes(march: March, stage: StageRoom, length: Length, before: State, after: State, force: Vector) -> None:
+    """Write the modes at the end of a stage under the forces of the contacts."""
+    room = march.room
+    ratio = length.numbers[0]
+    h2 = length.numbers[2] * length.numbers[2]
+    weight = length.numbers[3]
+    push_modes(march, force)
+    for i in range(len(room.x)):
+        z = before.z[i] + room.x[i] + weight * length.inverse[i] * room.pushed[i]
+        pushed = h2 * room.pushed[i]
+        own = pushed if march.scheme.averages else 0.0  # what of it enters a
+        R, a, p = motion_at_end(march, stage, length, before, z, own, i)
+        if not march.scheme.averages:
+            p += pushed
+        after.z[i] = z
+        after.R[i] = R / (ratio * ratio)
+        after.a[i] = a / (ratio * ratio)
+        after.p[i] = p / ratio
+
+
+def end_paths(march: March, length: Length, before: State, after: State) -> None:
+    """Write the references: that of a row which slips moves, what is open takes it along."""
+    laws = march.laws
+    n = laws.contacts
+    rows = after.rows
+    for r in range(len(rows.force)):
+        after.path[r] = before.path[r] + rows.slip[r]
+        if r >= n and (rows.state[r - n] != INSIDE or before.rows.state[r - n] != INSIDE):
+            way = march.room.free[r] + flexed(laws, length.flexible, r, rows.force)
+            after.path[r] = before.path[r] + before.rows.opening[r] + way - rows.opening[r]
+
+
+def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+    """Return what makes a stage whose contacts are found by a function: `dda.contact.rows.find`, or another rule.
+
+    Parameters
+    ----------
+    find
+        (march, before, flexible, after) -> outcome and number of solves; it writes the rows at the end of the stage,
+        and into `march.work.mean` the forces that act over it.
+    """
+
+    def make_stage(
+        march: March, stage: StageRoom, start: State, before: State, after: State, course: Course, part: Part
+    ) -> tuple[int, int]:
+        """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
+        length = length_of(march, stage, part.ratio)
+        prescribe(march, course, stage, part)
+        begin_step(march, start, length)
+        free_modes(march, stage, length, before)
+        free_rows(march, before)
+        if march.laws.retardation > 0:
+            retard(march, stage, length, before)
+        outcome, solves = find(march, before.rows, length.flexible, after.rows)
+        if outcome == FOUND:
+            end_modes(march, stage, length, before, after, march.work.mean)
+            end_paths(march, length, before, after)
+        return outcome, solves
+
+    return make_stage
+
+
+# ---- the steps -------------------------------------------------------------------------------------------------------
+
+
+def steps_by(
+    make_stage: Callable[..., tuple[int, int]], account: Callable[..., None], keep: Callable[..., bool]
+) -> Callable[..., tuple[int, int]]:
+    """Return the loop over the steps of a body.
+
+    Parameters
+    ----------
+    make_stage
+        Makes a stage from `before` to `after`, of a step that began at `start`, and leaves these as they are:
+        (march, stage, start, before, after, course, part) -> outcome and number of solves.
+    account
+        Adds what the part of a step that was made last loses to the sums: (march, state, after, course, part, sums).
+    keep
+        Writes the state at the end of a step into a row, (march, state, rows, number), and tells whether it is finite.
+    """
+
+    def make_steps(
+        march: March, state: State, after: State, course: Course, history: History, steps: int, cut: float
+    ) -> tuple[int, int]:
+        """Make the steps that are reached; return how many, and how it ended.
+
+        A step whose contacts have no single state is repeated, shorter, from the state in which it began; the rest of
+        the interval follows, so that every interval ends at its own time.
+        """
+        keep(march, state, history.motion, 0)
+        keep_rows(march, state, history, 0)
+        scheme = march.scheme
+        for number in range(steps):
+            row = number + 1
+            remainder = 1.0
+            ratio = 1.0
+            if len(history.sums) > 0:
+                for k in range(SUMS):
+                    history.sums[row, k] = history.sums[number, k]
+            while True:
+                part = Part(number + (1.0 - remainder), ratio)
+                outcome = NONE
+                solves = 0
+                if scheme.lag == 0 or ratio == 1.0:  # a velocity of half a step before goes on in equal steps only
+                    outcome = FOUND
+                    before = state
+                    if scheme.stages == 2:
+                        outcome, solves = make_stage(march, march.first, state, before, march.between, course, part)
+                        before = march.between
+                        history.solves[row] += solves
+                    if outcome == FOUND:
+                        outcome, solves = make_stage(march, march.last, state, before, after, course, part)
+                        history.solves[row] += solves
+                if outcome != FOUND:
+                    if ratio <= SHORTEST or outcome == UNREACHED:
+                        return number, outcome
+                    ratio = max(cut * ratio, SHORTEST)
+                    history.cuts[row] += 1
+                    continue
+                if len(history.sums) > 0:
+                    account(march, state, after, course, part, history.sums[row])
+                n = march.laws.contacts
+                for i in range(len(after.path) - n):
+                    history.slip[row, i] += after.rows.slip[n + i]
+                    if scheme.stages == 2:
+                        history.slip[row, i] += march.between.rows.slip[n + i]
+                state, after = after, state
+                if ratio == remainder:
+                    break
+                remainder -= ratio
+                ratio = remainder
+            if not keep(march, state, history.motion, row):
+                return number, OVERFLOW
+            keep_rows(march, state, history, row)
+        return steps, FOUND
+
+    return make_steps
+
+
+def keep_rows(march: March, state: State, history: History, number: int) -> None:
+    """Write the rows at the end of a step."""
+    rows = state.rows
+    n = march.laws.contacts
+    for r in range(len(rows.force)):
+        history.force[number, r] = rows.force[r]
+        history.opening[number, r] = rows.opening[r]
+        history.state[number, r] = rows.state[r]
+        if r >= n:
+            history.path[number, r - n] = state.path[r]
+
+
+def keep_modes(march: March, state: State, rows: Array, number: int) -> bool:
+    """Write z and p at its time; tell whether z is finite."""
+    n = len(state.z)
+    lag = march.scheme.lag
+    discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+    total = 0.0
+    for i in range(n):
+        rows[number, i] = state.z[i]
+        rows[number, n + i] = discount * state.p[i] + lag * state.a[i]
+        total += state.z[i]
+    return math.isfinite(total)
