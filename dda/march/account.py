@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dda.contact.dense import Vector
+from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Laws, Rows
 from dda.march.energy import ALGORITHMIC, CONTACT, DAMPING, FRICTION, GIVEN, IMPULSE, SWITCHING, bulk_loss
 from dda.march.step import Course, March, Part, StageRoom, State, prescribe
@@ -76,20 +76,22 @@ def account_stage(
             for i in range(len(before.z)):
                 sums[GIVEN] += share * loads[j][i] * (after.z[i] - before.z[i])
     length = march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
-    add_contact_losses(march, before, after, late if march.scheme.averages else 1.0, length, sums)
+    late = late if march.scheme.averages else 1.0
+    add_contact_losses(march, march.laws, march.body.ground, before, after, late, length, sums)
 
 
 def add_contact_losses(
-    march: March, before: State, after: State, late: float, length: float, sums: Vector
+    march: March, laws: Laws, ground: Matrix, before: State, after: State, late: float, length: float, sums: Vector
 ) -> None:
     """Add what the contacts lose in a stage of some length [s], and what the base gives through them [J].
 
     Parameters
     ----------
+    ground
+        (m, 2) what a unit displacement of the base takes from the openings.
     late
         Weight of the forces at the end beside those at the beginning.
     """
-    laws = march.laws
     room = march.room
     n = laws.contacts
     rows = after.rows
@@ -109,8 +111,8 @@ def add_contact_losses(
         sums[ALGORITHMIC if keeps_state else SWITCHING] += lost
         sums[FRICTION] += friction
         for axis in range(2):
-            sums[GIVEN] += force * march.body.ground[r][axis] * (room.end[axis] - room.start[axis])
-        sums[IMPULSE] += length * force * march.body.ground[r][1]
+            sums[GIVEN] += force * ground[r][axis] * (room.end[axis] - room.start[axis])
+        sums[IMPULSE] += length * force * ground[r][1]
 
 
 def spring_force(laws: Laws, rows: Rows, r: int) -> float:

@@ -67,6 +67,7 @@ class Body(NamedTuple):
     first: Any  # (m,) first of the modes that a row of contact feels
     weight: Matrix  # (m, w) its opening by this and those that follow
     ground: Matrix  # (m, 2) what a unit displacement of the base, along and away from itself, takes from the openings
+    mobility: Vector  # (n,) acceleration by a unit modal force; one, unless a body grows
 
 
 class Numbers(NamedTuple):
@@ -290,7 +291,8 @@ def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
     width = len(body.weight[r])
     total = 0.0
     for i in range(max(body.first[r], body.first[s]), min(body.first[r], body.first[s]) + width):
-        total += body.weight[r][i - body.first[r]] * inverse[i] * body.weight[s][i - body.first[s]]
+        unit = inverse[i] * body.mobility[i]
+        total += body.weight[r][i - body.first[r]] * unit * body.weight[s][i - body.first[s]]
     return total
 
 
@@ -306,20 +308,26 @@ def moved_row(body: Body, r: int, x: Vector) -> float:
 
 def push_modes(march: March, force: Vector) -> None:
     """Write B' lambda; of two ways that are paired their sum and half their difference push."""
+    room = march.room
+    for i in range(len(room.pushed)):
+        room.pushed[i] = 0.0
+    add_push(march, force)
+
+
+def add_push(march: March, force: Vector) -> None:
+    """Add B' lambda."""
     body = march.body
     room = march.room
     copy(force, room.force)
     if march.laws.paired:
         room.force[2] = force[2] + force[3]
         room.force[3] = (force[3] - force[2]) / 2
-    for i in range(len(room.pushed)):
-        room.pushed[i] = 0.0
     for r in range(len(force)):
         if room.force[r] != 0.0:
             weight = body.weight[r]
             first = body.first[r]
             for e in range(len(weight)):
-                room.pushed[first + e] += weight[e] * room.force[r]
+                room.pushed[first + e] += body.mobility[first + e] * weight[e] * room.force[r]
 
 
 def length_of(march: March, stage: StageRoom, ratio: float) -> Length:
@@ -444,13 +452,12 @@ def motion_at_end(
     return R, a, velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
 
 
-def end_modes(march: March, stage: StageRoom, length: Length, before: State, after: State, force: Vector) -> None:
-    """Write the modes at the end of a stage under the forces of the contacts."""
+def end_modes(march: March, stage: StageRoom, length: Length, before: State, after: State) -> None:
+    """Write the modes at the end of a stage under the forces `room.pushed`."""
     room = march.room
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     weight = length.numbers[3]
-    push_modes(march, force)
     for i in range(len(room.x)):
         z = before.z[i] + room.x[i] + weight * length.inverse[i] * room.pushed[i]
         pushed = h2 * room.pushed[i]
@@ -499,7 +506,8 @@ def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int,
             retard(march, stage, length, before)
         outcome, solves = find(march, before.rows, length.flexible, after.rows)
         if outcome == FOUND:
-            end_modes(march, stage, length, before, after, march.work.mean)
+            push_modes(march, march.work.mean)
+            end_modes(march, stage, length, before, after)
             end_paths(march, length, before, after)
         return outcome, solves
 
@@ -534,7 +542,7 @@ def steps_by(
         the interval follows, so that every interval ends at its own time.
         """
         keep(march, state, history.motion, 0)
-        keep_rows(march, state, history, 0)
+        keep_rows(state, history, 0)
         scheme = march.scheme
         for number in range(steps):
             row = number + 1
@@ -565,11 +573,11 @@ def steps_by(
                     continue
                 if len(history.sums) > 0:
                     account(march, state, after, course, part, history.sums[row])
-                n = march.laws.contacts
-                for i in range(len(after.path) - n):
-                    history.slip[row, i] += after.rows.slip[n + i]
+                n = len(after.path) - history.slip.shape[1]
+                for r in range(n, len(after.path)):
+                    history.slip[row, r - n] += after.rows.slip[r]
                     if scheme.stages == 2:
-                        history.slip[row, i] += march.between.rows.slip[n + i]
+                        history.slip[row, r - n] += march.between.rows.slip[r]
                 state, after = after, state
                 if ratio == remainder:
                     break
@@ -577,16 +585,16 @@ def steps_by(
                 ratio = remainder
             if not keep(march, state, history.motion, row):
                 return number, OVERFLOW
-            keep_rows(march, state, history, row)
+            keep_rows(state, history, row)
         return steps, FOUND
 
     return make_steps
 
 
-def keep_rows(march: March, state: State, history: History, number: int) -> None:
+def keep_rows(state: State, history: History, number: int) -> None:
     """Write the rows at the end of a step."""
     rows = state.rows
-    n = march.laws.contacts
+    n = len(rows.force) - history.path.shape[1]
     for r in range(len(rows.force)):
         history.force[number, r] = rows.force[r]
         history.opening[number, r] = rows.opening[r]

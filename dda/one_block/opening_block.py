@@ -57,6 +57,7 @@ def opening_block(form: UnilateralForm) -> OpeningBlock:
         first=np.zeros(m, dtype=np.int64),
         weight=rows,
         ground=ground,
+        mobility=np.ones(n),
     )
     moved = form.axes.T @ form.translation.T @ form.M @ shapes
     return OpeningBlock(form, body, np.where(seen[:, None], 0.0, shapes), read, shapes.T @ form.M @ form.translation, moved)

@@ -33,6 +33,7 @@ from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
+from dda.one_block.natural_modes import free_modes
 
 EXACT = "exact"
 FIRST_ORDER = "first-order"
@@ -132,6 +133,13 @@ def strain_matrices(e: Array) -> Array:
     return np.array([[e[:, 0], e[:, 2] / 2], [e[:, 2] / 2, e[:, 1]]]).transpose(2, 0, 1)
 
 
+class FreeModes(NamedTuple):
+    """Natural modes of a block that nothing holds."""
+
+    k: Array  # (6,) squares of their frequencies [1/s^2]; 0 of rigid motions
+    shapes: Array  # (6, 6) unknowns (c, r, ex, ey, gxy) of each, one column a mode, of unit inertia
+
+
 @dataclass(frozen=True, eq=False)
 class Body:
     """Outline and matrices of a block in the frame of its base."""
@@ -142,6 +150,7 @@ class Body:
     M: Array  # (6, 6) inertia
     K: Array  # (3, 3) elastic stiffness of (ex, ey, gxy) [N m]
     base: tuple[int, int]  # corners M and N
+    modes: FreeModes
 
     @property
     def size(self) -> float:
@@ -173,4 +182,18 @@ def body(block: Block, base: int) -> Body:
         )
     c = np.array(placed.section.centroid)
     ends = base, (base + 1) % len(placed.corners)
-    return Body(placed.corners - c, c, tangent, placed.mass(), placed.elastic()[3:, 3:], ends)
+    M = placed.mass()
+    return Body(placed.corners - c, c, tangent, M, placed.elastic()[3:, 3:], ends, modes_of(M, placed))
+
+
+def modes_of(M: Array, block: Block) -> FreeModes:
+    """Return the free modes of a block of the inertia M.
+
+    In ex, e2 = ey + c ex and gxy, c the free lateral contraction, its stiffness is a diagonal.
+    """
+    material = block.material
+    own = np.eye(6)
+    own[4, 3] = -material.contraction
+    moduli = [0.0, 0.0, 0.0, material.free_modulus, material.constrained_modulus, material.shear_modulus]
+    k, shapes = free_modes(own.T @ M @ own, block.section.area * np.array(moduli))
+    return FreeModes(k, own @ shapes)

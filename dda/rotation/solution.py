@@ -12,8 +12,12 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.kernel import at_rest, shear_law_of
-from dda.contact.unilateral import Unilateral
+from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
+from dda.contact.unilateral import LAGGED, Unilateral
+from dda.march.compiled import run_loop
+from dda.march.energy import IMPULSE, energies_of
+from dda.march.step import Body as ModalBody
+from dda.march.step import History, course_of, history_of, reached_history
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.one_block.contact_result import ContactResult, run_fields
@@ -31,14 +35,8 @@ from dda.rotation.body import (
     strain_matrices,
     turned,
 )
-from dda.rotation.step import STATE, RollingState, Setting, make_steps, rolling_equations
+from dda.rotation.step import STATE, RollingState, make_steps, rolling_march
 from dda.scheme.newmark import Scheme, late_momentum
-from dda.stepping.compiled import run_loop
-from dda.stepping.driver import History, base_record, history_of, reached_history
-from dda.stepping.energy import IMPULSE, energies_of, spring_energies
-
-COMPILE_TIME = 4.0  # of the loop, over that of contacts which slide freely
-PLAIN_STEP = 4e-4  # seconds of plain Python for each step
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -77,13 +75,13 @@ class RollingModel(LoadedBlock):
         """Outline and matrices in the frame of the base."""
         return body(self.block, self.base)
 
-    def setting(self, options: RollingOptions) -> Setting:
-        """Return what stays the same from step to step."""
-        where, dead = self._dead()
-        weight = self.load.gravity * (self.body.to_base @ self.load.falling)
-        return Setting(self.body, self.contact, weight, where, dead, options.rotation, options.solve_limit)
+    @property
+    def weight(self) -> Array:
+        """Acceleration of gravity along and away from the base [m/s^2]."""
+        return np.asarray(self.load.gravity * (self.body.to_base @ self.load.falling))
 
-    def _dead(self) -> tuple[Array, Array]:
+    @property
+    def dead(self) -> tuple[Array, Array]:
         """Return where the resultants of pressure and traction act, and these, along and across the base."""
         load = self.load
         start, end = self.block.edge(self.top)
@@ -98,7 +96,7 @@ class RollingModel(LoadedBlock):
                 forces.append(size * float(np.hypot(*(ends[1] - ends[0]))) * (local @ direction))
         return np.array(where).reshape(-1, 2), np.array(forces).reshape(-1, 2)
 
-    def start(self, setting: Setting, scheme: Scheme) -> RollingState:
+    def start(self, scheme: Scheme) -> RollingState:
         """Return the state at t = 0: unstrained, without contact force, at the starting gap."""
         body = self.body
         Q = turned(self.tilt)
@@ -112,17 +110,44 @@ class RollingModel(LoadedBlock):
         V[:2] = body.to_base @ self.velocity
         V[2] = self.spin
         push = np.zeros(6)
-        push[:2] = body.M[0, 0] * setting.weight
+        push[:2] = body.M[0, 0] * self.weight
         spin = np.array([-Q[1], Q[0]])
         across, up = np.zeros((2, 6))
-        for (x, y), force in zip(setting.where, setting.dead, strict=True):
+        for (x, y), force in zip(*self.dead, strict=True):
             directions(spin, Q, q, x, y, across, up)
             push += force[0] * across + force[1] * up
-        A = np.zeros(6)
-        if scheme.start == "consistent":
-            A[:] = np.linalg.solve(body.M, push)
-        V = late_momentum(scheme, V, scheme.step * A)
-        return RollingState(q, Q, V, A, push, at_rest(gap))
+        modes = body.modes
+        dt = scheme.step
+        R = dt * dt * (modes.shapes.T @ push)
+        a = R.copy() if scheme.start == "consistent" else np.zeros(6)
+        p = late_momentum(scheme, dt * (modes.shapes.T @ body.M @ V), a)
+        ways = len(gap) if self.contact.shear else 0
+        opening = np.concatenate([gap, np.zeros(ways)])
+        rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
+        return RollingState(np.zeros(6), p, a, R, np.zeros(len(opening)), rows, q, Q)
+
+
+def laws_of(law: Unilateral, contacts: int, limit: int) -> Laws:
+    """Return the laws of so many corners; `limit` bounds the solves before the states are searched."""
+    m = 2 * contacts if law.shear else contacts
+    across = np.arange(m) < contacts
+    cohesion = law.cohesion if law.friction is not None else np.inf
+    return Laws(
+        contacts=contacts,
+        compliance=np.where(across, law.compliance, law.softness),
+        lower=np.where(across, 0.0, -cohesion),
+        upper=np.where(across, np.inf, cohesion),
+        opens=across.astype(np.int64),
+        friction=law.friction or 0.0,
+        slips=law.friction is not None,
+        lagged=law.rules == LAGGED and m > contacts,
+        paired=m == 4 and contacts == 2,
+        banded=False,
+        closing=0.0,
+        retardation=0.0,
+        together=limit,
+        most=0,
+    )
 
 
 @dataclass(frozen=True)
@@ -171,7 +196,7 @@ class RollingResult(ContactResult):
     @cached_property
     def slipped(self) -> Array:  # type: ignore[override]
         """Distance that the shear reference moved by slip in each step, (contacts, steps) [m]."""
-        return np.asarray(np.abs(self.history.slipped[1:].T))
+        return np.asarray(np.abs(super().slipped))
 
     @cached_property
     def slip(self) -> Array:
@@ -218,44 +243,61 @@ def solve_rolling(
     check_scheme(model.contact, scheme)
     options = options or RollingOptions()
     began = perf_counter()
-    setting = model.setting(options)
-    start = model.start(setting, scheme)
+    body = model.body
+    law = model.contact
+    corners = laws_of(law, len(body.xi), options.solve_limit)
+    start = model.start(scheme)
     base = base_motion(model)
-    body = rolling_equations(setting, scheme)
-    shear_law = shear_law_of(setting.law)
-    history = history_of(steps, STATE, len(body.xi), energies=True)
+    weight = body.modes.shapes[:2].T @ (body.M[0, 0] * model.weight)
+    rows = 4 if law.shear else 2
+    made = rolling_march(
+        ModalBody(
+            k=body.modes.k,
+            loads=weight[None],
+            stored=np.ones(1),
+            first=np.zeros(rows, dtype=np.int64),
+            weight=np.zeros((rows, 6)),
+            ground=np.zeros((rows, 2)),
+            mobility=np.ones(6),
+        ),
+        laws_of(law, 2, options.solve_limit),
+        corners,
+        scheme,
+        body.modes.shapes,
+        body.xi,
+        *model.dead,
+        options.rotation,
+    )
+    history = history_of(steps, STATE, len(body.xi), len(start.path), energies=True)
     ready = perf_counter()
     (reached, ended), left, how = run_loop(
-        make_steps,
-        (body, shear_law, start, start),
-        (base_record(base),),
-        (history, steps, options.cut),
-        steps * PLAIN_STEP,
-        COMPILE_TIME,
+        make_steps, (made, start, start), (course_of(base, 0.0),), (history, steps, options.cut), steps
     )
     history = reached_history(history, reached)
     motion = motion_of(history.motion)
-    values = observed(setting.body, motion, history)
+    values = observed(body, motion, history)
     velocity = motion.V[1:, :2] @ model.body.to_base
 
     def slide() -> Array:
-        placed = motion.points(setting.body.xi)[:, :, 0].T
+        placed = motion.points(body.xi)[:, :, 0].T
         if base is not None:
             placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
         return placed[:, 1:] - placed[:, :1]
 
-    note = f"stepped, {how}: outline and contacts anew at every step, {setting.rotation} rotation"
+    note = f"stepped, {how}: outline and contacts anew at every step, {options.rotation} rotation"
     return RollingResult(
         **run_fields(history, ended, scheme, [note], (began, ready)),
         columns={name: values[name] for name in columns},
         unknowns=6,
-        nonzeros=int(np.count_nonzero(setting.body.M)),
+        nonzeros=int(np.count_nonzero(body.M)),
         factorisations=int(left[0].made[0]),
-        base_contacts=setting.body.base,
-        softness=setting.law.softness,
+        contacts=len(body.xi),
+        multiplicity=1.0,
+        base_contacts=body.base,
+        softness=law.softness,
         parts={"slide": slide, "horizontal_velocity": lambda: velocity[:, 0], "velocity": lambda: velocity[:, 1]},
-        balance=lambda: energies(setting, motion, history),
-        body=setting.body,
+        balance=lambda: energies(model, options.rotation, corners, motion, history),
+        body=body,
         motion=motion,
     )
 
@@ -266,25 +308,28 @@ def observed(body: Body, states: RollingMotion, history: History) -> dict[str, A
     moved = (states.c[1:] - states.c[0]) @ out.T
     E = np.einsum("ai,kij,bj->abk", out, strain_matrices(states.e[1:]), out)
     a = float(np.hypot(*(body.xi[body.base[1]] - body.xi[body.base[0]])))
-    pressure = history.normal[1:].sum(axis=1) / a
+    pressure = history.force[1:, : len(body.xi)].sum(axis=1) / a
     values = (moved[:, 1], pressure, moved[:, 0], states.r[1:], E[0, 0], E[1, 1], 2 * E[0, 1])
     return dict(zip(COLUMNS, values, strict=True))
 
 
-def energies(setting: Setting, states: RollingMotion, history: History) -> dict[str, Array]:
+def energies(
+    model: RollingModel, rotation: str, laws: Laws, states: RollingMotion, history: History
+) -> dict[str, Array]:
     """Return the energies [J] after every step, the losses summed from t = 0 on.
 
-    They are those of `dda.stepping.energy`, but for the algorithmic loss, which is what the others leave of the total:
+    They are those of `dda.march.energy`, but for the algorithmic loss, which is what the others leave of the total:
     at delta = 1 and alpha >= 1/2 none of them is negative, however far the block turns.
     """
-    M = setting.body.M
+    M = model.body.M
     V = states.V
-    growth = np.ones(len(V)) if setting.rotation == EXACT else np.linalg.det(states.Q)
+    growth = np.ones(len(V)) if rotation == EXACT else np.linalg.det(states.Q)
     moving = growth * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
     turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
-    load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ setting.weight)
-    loaded = states.points(setting.where)
-    load -= np.einsum("kma,ma->k", loaded - loaded[0], setting.dead)
-    strain = growth * np.einsum("ki,ij,kj->k", states.e, setting.body.K, states.e) / 2
-    stored = ((moving + turning) / 2, strain, spring_energies(setting.law, history.normal, history.shear), load)
-    return energies_of(stored, history.sums, by_balance=True)
+    load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ model.weight)
+    where, dead = model.dead
+    loaded = states.points(where)
+    load -= np.einsum("kma,ma->k", loaded - loaded[0], dead)
+    strain = growth * np.einsum("ki,ij,kj->k", states.e, model.body.K, states.e) / 2
+    springs = (history.force * history.force) @ laws.compliance / 2
+    return energies_of(((moving + turning) / 2, strain, springs, load), history.sums, by_balance=True)
