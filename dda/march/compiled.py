@@ -29,6 +29,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.march.one_library import library_option
+
 Loop = Callable[..., Any]
 
 SHORT = 2_000  # steps from which a loop is run compiled where its code is at hand
@@ -203,7 +205,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
         if function is not loop and function not in _jitable:
             # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;
             # and nobody else calls any of these: they have no entry from Python or C
-            options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            options = {**library_option(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             register_jitable(forceinline=function in direct, **options)(function)
             _jitable.add(function)
     directory = cache_directory()
@@ -230,13 +232,15 @@ def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path
     """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
     # nothing is allocated in a loop: without the counting of references a call costs what it does
-    options = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+    options = {**library_option(), "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
     try:
         if directory is not None:
             numba.config.CACHE_DIR = str(directory)
         dispatcher: Any = numba.njit(cache=directory is not None, **options)(loop)
     finally:
         numba.config.CACHE_DIR = before
+    if pipeline := options.get("pipeline_class"):
+        pipeline.library = None
     dispatcher.compile(types)
     machine_code: Loop = dispatcher
     return machine_code

@@ -49,8 +49,8 @@ from dda.contact.rows import (
     unpair,
     work_for,
 )
-from dda.model.arrays import Array
 from dda.march.energy import SUMS
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
@@ -170,7 +170,9 @@ class History(NamedTuple):
 # ---- what is set up --------------------------------------------------------------------------------------------------
 
 
-def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False) -> March:
+def march(
+    body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False
+) -> March:
     """Return a march, with what belongs to whole steps made.
 
     Parameters

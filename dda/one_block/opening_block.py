@@ -8,14 +8,13 @@ symmetric motion one row stands for both corners, with twice their forces.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
 from dda.contact.unilateral import LAGGED, Unilateral
-from dda.march.methods import Method
-from dda.march.step import Body, History, March, State, march
+from dda.march.step import Body, History, State
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, load_share
 from dda.one_block.natural_modes import free_modes
@@ -60,7 +59,9 @@ def opening_block(form: UnilateralForm) -> OpeningBlock:
         mobility=np.ones(n),
     )
     moved = form.axes.T @ form.translation.T @ form.M @ shapes
-    return OpeningBlock(form, body, np.where(seen[:, None], 0.0, shapes), read, shapes.T @ form.M @ form.translation, moved)
+    return OpeningBlock(
+        form, body, np.where(seen[:, None], 0.0, shapes), read, shapes.T @ form.M @ form.translation, moved
+    )
 
 
 def laws_of(form: UnilateralForm, law: Unilateral, limit: int) -> Laws:

@@ -19,7 +19,7 @@ Of a convex outline two corners at most touch a plane: the rows are those of one
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,7 +33,6 @@ from dda.march.step import (
     March,
     Part,
     StageRoom,
-    State,
     add_push,
     begin_step,
     end_modes,
@@ -172,7 +171,11 @@ def rolling_march(
         **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
     )
     made = march(body, pair, scheme, np.zeros(m), rolling)
-    between = RollingState(*made.between._replace(path=np.zeros(len(ground)), rows=rows_of(np.zeros(len(ground)), np.zeros(len(ground)))), np.zeros(6), np.eye(2))
+    between = RollingState(
+        *made.between._replace(path=np.zeros(len(ground)), rows=rows_of(np.zeros(len(ground)), np.zeros(len(ground)))),
+        np.zeros(6),
+        np.eye(2),
+    )
     return made._replace(between=between, work=work_for(2, m))
 
 
@@ -521,9 +524,7 @@ def accept(
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    march: March, state: RollingState, after: RollingState, course: Course, part: Part, sums: Vector
-) -> None:
+def account(march: March, state: RollingState, after: RollingState, course: Course, part: Part, sums: Vector) -> None:
     """Add what an accepted part of a step slips, gives and loses by its contacts; the algorithm loses the rest."""
     rolling = march.method
     growth = area_growth(rolling, state.Q)

@@ -42,8 +42,7 @@ from dda.model.load import BaseMotion
 from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, check_scheme
-from dda.one_block.unilateral import NEWMARK
+from dda.one_block.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, inertia_force, predictor, velocity_corrector
 from dda.stepping.compiled import Compilable
