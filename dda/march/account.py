@@ -5,7 +5,7 @@ from __future__ import annotations
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Laws, Rows
 from dda.march.energy import ALGORITHMIC, CONTACT, DAMPING, FRICTION, GIVEN, IMPULSE, SWITCHING, bulk_loss
-from dda.march.step import Course, March, Part, StageRoom, State, prescribe
+from dda.march.step import AnyState, Course, March, Part, StageRoom, State, prescribe
 
 
 def account(march: March, state: State, after: State, course: Course, part: Part, sums: Vector) -> None:
@@ -81,7 +81,14 @@ def account_stage(
 
 
 def add_contact_losses(
-    march: March, laws: Laws, ground: Matrix, before: State, after: State, late: float, length: float, sums: Vector
+    march: March,
+    laws: Laws,
+    ground: Matrix,
+    before: AnyState,
+    after: AnyState,
+    late: float,
+    length: float,
+    sums: Vector,
 ) -> None:
     """Add what the contacts lose in a stage of some length [s], and what the base gives through them [J].
 

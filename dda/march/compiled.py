@@ -5,10 +5,10 @@ plain Python is several times faster on these. Compiled code takes records, one 
 take 0.1 us a step where loops over named tuples of arrays take 4.
 
 Compiling takes some seconds, once an install: a history of `LONG` steps pays for it, and where compiled code is at hand
-one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the sources
-that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are compiled.
-Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same: nothing is
-reordered or fused.
+one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the
+sources that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are
+compiled. Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same:
+nothing is reordered or fused.
 
 Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
 replaced since, the plain functions run.

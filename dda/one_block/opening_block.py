@@ -7,13 +7,11 @@ symmetric motion one row stands for both corners, with twice their forces.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
-from dda.contact.unilateral import LAGGED, Unilateral
+from dda.contact.rows import INSIDE, LOWER
 from dda.march.step import Body, History, State
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, load_share
@@ -30,8 +28,8 @@ class OpeningBlock:
     body: Body
     shapes: Array  # (n, modes) unknowns by the modes; zero where they are read from the rows
     read: Array  # (n, rows) unknowns by the ways of the rows
-    momentum: Array  # (modes,) modal momentum of a rigid translation by 1 m/s away from the base
-    translation: Array  # (2, modes) momentum along and away from the base by modal velocities [kg m/s]
+    momentum: Array  # (modes, 2) of a rigid translation by 1 m/s along the base and away from it
+    translation: Array  # (2, modes) momentum in x and y by the modal velocities
 
 
 def opening_block(form: UnilateralForm) -> OpeningBlock:
@@ -64,31 +62,6 @@ def opening_block(form: UnilateralForm) -> OpeningBlock:
     )
 
 
-def laws_of(form: UnilateralForm, law: Unilateral, limit: int) -> Laws:
-    """Return the laws of the rows; `limit` bounds the solves before the states are searched."""
-    c = form.contacts
-    m = len(form.B)
-    across = np.arange(m) < c
-    share = form.multiplicity
-    cohesion = law.cohesion if law.friction is not None else math.inf
-    return Laws(
-        contacts=c,
-        compliance=np.where(across, law.compliance, law.softness) / share,
-        lower=np.where(across, -law.pull, -cohesion) * share,
-        upper=np.where(across, math.inf, cohesion) * share,
-        opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
-        slips=law.friction is not None,
-        lagged=law.rules == LAGGED and m > c,
-        paired=m > c and c == 2,
-        banded=False,
-        closing=-law.band[0],
-        retardation=law.damping * law.compliance,
-        together=limit,
-        most=0,
-    )
-
-
 def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool) -> State:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap.
 
@@ -105,8 +78,8 @@ def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, a
     p = late_momentum(scheme, (dt * velocity) * (block.momentum @ form.axes[:, 1]), a)
     opening = np.zeros(m)
     opening[: form.contacts] = gap
-    rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
-    return State(np.zeros(len(p)), p, a.copy(), R, np.zeros(m), rows)
+    state = state_of(len(p), opening, np.where(opening > 0, LOWER, INSIDE))
+    return state._replace(p=p, a=a, R=R)
 
 
 def unknowns_of(block: OpeningBlock, history: History, motion: BaseMotion | None, step: float) -> Array:
