@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dda.contact.rows import INSIDE, LOWER
-from dda.march.step import Body, History, State
+from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, load_share
 from dda.one_block.natural_modes import free_modes
