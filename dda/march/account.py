@@ -103,6 +103,8 @@ def add_contact_losses(
     n = laws.contacts
     rows = after.rows
     for r in range(len(rows.force)):
+        if laws.retardation == 0 and before.rows.force[r] == 0.0 and rows.force[r] == 0.0:
+            continue  # open all the while
         force = (1 - late) * before.rows.force[r] + late * rows.force[r]
         moved = rows.opening[r] - before.rows.opening[r] + (after.path[r] - before.path[r])
         friction = 0.0 - rows.force[r] * rows.slip[r]

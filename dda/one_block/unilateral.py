@@ -17,11 +17,11 @@ import numpy as np
 
 from dda.contact.rows import Laws, laws_of
 from dda.contact.unilateral import Unilateral
-from dda.march.compiled import run_loop
 from dda.march.energy import CONTACT, DASHPOT, energies_of
 from dda.march.energy import IMPACT as IMPACT_LOSS
 from dda.march.methods import Method, make_augmented_steps, make_conserving_steps, make_impact_steps, make_steps
-from dda.march.step import History, course_of, history_of, march, reached_history
+from dda.march.run import run
+from dda.march.step import History, course_of, march
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
@@ -173,11 +173,11 @@ def solve_unilateral(
     motion = model.load.motion
     course = course_of(motion and motion.along(form.axes), form.ramp)
     n = len(form.unknowns)
-    history = history_of(steps, 2 * n + rigid, form.contacts, len(form.B), options.energies)
-    ready = perf_counter()
     loop = LOOPS.get(options.rule, make_steps)
-    (reached, ended), left, how = run_loop(loop, (made, start, start), (course,), (history, steps, options.cut), steps)
-    history = reached_history(history, reached)
+    ready = perf_counter()
+    ran = run(made, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
+    history = ran.history
+    reached = len(history.solves) - 1
     with np.errstate(all="ignore"):
         values = {name: column(model, block, history, name, scheme.step) for name in columns}
     for name, moved in carried(motion, step_times(scheme, reached)).items():
@@ -186,7 +186,7 @@ def solve_unilateral(
     impulses = None
     if options.rule == IMPACT:
         impulses = np.broadcast_to(scheme.step * history.force[1:].T / form.multiplicity, (2, reached))
-    notes = [f"stepped, {how}: contact opens and closes"]
+    notes = [f"stepped, {ran.how}: contact opens and closes"]
     if n < 6:
         notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
 
@@ -195,11 +195,11 @@ def solve_unilateral(
         return momentum / (model.block.total_mass * scheme.step)
 
     return ContactResult(
-        **run_fields(history, ended, scheme, notes, (began, ready)),
+        **run_fields(history, ran.outcome, scheme, notes, (began, ready)),
         columns=values,
         unknowns=n,
         nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=int(left[0].made[0]),
+        factorisations=ran.made,
         contacts=form.contacts,
         multiplicity=form.multiplicity,
         base_contacts=(0, 1),

@@ -14,10 +14,10 @@ import numpy as np
 
 from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
 from dda.contact.unilateral import Unilateral
-from dda.march.compiled import run_loop
 from dda.march.energy import IMPULSE, energies_of
+from dda.march.run import run
 from dda.march.step import Body as ModalBody
-from dda.march.step import History, course_of, history_of, reached_history, state_of
+from dda.march.step import History, course_of, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.one_block.contact_result import ContactResult, run_fields
@@ -245,12 +245,10 @@ def solve_rolling(
         *model.dead,
         options.rotation,
     )
-    history = history_of(steps, STATE, len(body.xi), len(start.path), energies=True)
     ready = perf_counter()
-    (reached, ended), left, how = run_loop(
-        make_steps, (made, start, start), (course_of(base, 0.0),), (history, steps, options.cut), steps
-    )
-    history = reached_history(history, reached)
+    ran = run(made, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
+    history = ran.history
+    reached = len(history.solves) - 1
     motion = motion_of(history.motion)
     values = observed(body, motion, history)
     velocity = motion.V[1:, :2] @ model.body.to_base
@@ -261,13 +259,13 @@ def solve_rolling(
             placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
         return placed[:, 1:] - placed[:, :1]
 
-    note = f"stepped, {how}: outline and contacts anew at every step, {options.rotation} rotation"
+    note = f"stepped, {ran.how}: outline and contacts anew at every step, {options.rotation} rotation"
     return RollingResult(
-        **run_fields(history, ended, scheme, [note], (began, ready)),
+        **run_fields(history, ran.outcome, scheme, [note], (began, ready)),
         columns={name: values[name] for name in columns},
         unknowns=6,
         nonzeros=int(np.count_nonzero(body.M)),
-        factorisations=int(left[0].made[0]),
+        factorisations=ran.made,
         contacts=len(body.xi),
         multiplicity=1.0,
         base_contacts=body.base,
