@@ -176,7 +176,7 @@ def march(
     laws: Laws,
     scheme: Scheme,
     opening: Array,
-    method: Any,
+    method: Any = (),
     averages: bool = True,
     impulses: bool = False,
 ) -> March:
