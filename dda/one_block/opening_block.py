@@ -7,15 +7,12 @@ symmetric motion one row stands for both corners, with twice their forces.
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
-from dda.contact.unilateral import LAGGED, Unilateral
-from dda.march.methods import Method
-from dda.march.step import Body, History, March, State, march
+from dda.contact.rows import INSIDE, LOWER, rows_of
+from dda.march.step import Body, History, State
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, load_share
 from dda.one_block.natural_modes import free_modes
@@ -61,31 +58,6 @@ def opening_block(form: UnilateralForm) -> OpeningBlock:
     )
     moved = form.axes.T @ form.translation.T @ form.M @ shapes
     return OpeningBlock(form, body, np.where(seen[:, None], 0.0, shapes), read, shapes.T @ form.M @ form.translation, moved)
-
-
-def laws_of(form: UnilateralForm, law: Unilateral, limit: int) -> Laws:
-    """Return the laws of the rows; `limit` bounds the solves before the states are searched."""
-    c = form.contacts
-    m = len(form.B)
-    across = np.arange(m) < c
-    share = form.multiplicity
-    cohesion = law.cohesion if law.friction is not None else math.inf
-    return Laws(
-        contacts=c,
-        compliance=np.where(across, law.compliance, law.softness) / share,
-        lower=np.where(across, -law.pull, -cohesion) * share,
-        upper=np.where(across, math.inf, cohesion) * share,
-        opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
-        slips=law.friction is not None,
-        lagged=law.rules == LAGGED and m > c,
-        paired=m > c and c == 2,
-        banded=False,
-        closing=-law.band[0],
-        retardation=law.damping * law.compliance,
-        together=limit,
-        most=0,
-    )
 
 
 def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool) -> State:

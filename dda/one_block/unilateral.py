@@ -16,7 +16,7 @@ from time import perf_counter
 import numpy as np
 
 from dda.contact.rows import Laws
-from dda.contact.unilateral import Unilateral
+from dda.contact.unilateral import Unilateral, laws_of
 from dda.march.compiled import run_loop
 from dda.march.energy import CONTACT, DASHPOT, energies_of
 from dda.march.energy import IMPACT as IMPACT_LOSS
@@ -26,7 +26,7 @@ from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
 from dda.one_block.contact_result import ContactResult, run_fields
-from dda.one_block.opening_block import OpeningBlock, laws_of, observed, opening_block, start_of, unknowns_of
+from dda.one_block.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
 from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
@@ -156,9 +156,10 @@ def solve_unilateral(
         model = replace(model, contact=law)
     form = model.form(True) if options.full else model.reduced
     block = opening_block(form)
-    springs = laws_of(form, law, options.solve_limit)
+    sizes = form.contacts, len(form.B), options.solve_limit, form.multiplicity
+    springs = laws_of(law, *sizes)
     rigid = options.rule == AUGMENTED  # the limit of its passes
-    laws = laws_of(form, replace(law, stiffness=math.inf), options.solve_limit) if rigid else springs
+    laws = laws_of(replace(law, stiffness=math.inf), *sizes) if rigid else springs
     start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
     made = march(
         block.body,
