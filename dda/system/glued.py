@@ -18,7 +18,7 @@ from time import perf_counter
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.model.block import Block, displacement_rows
+from dda.model.block import Block
 from dda.model.checks import check_count
 from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result
@@ -185,13 +185,13 @@ class GluedBlocks:
             If nothing holds the blocks and their loads have a resultant.
         """
         equations = self.statics
-        D, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
+        z, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
         if not self.held:
             inertia = equations.B.T[:, -3:] @ force[-3:]
             size = float(np.sum(np.abs(equations.F)))
             if float(np.max(np.abs(inertia))) > UNBALANCED * size:
                 raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
-        return (D * self.system.load_size).reshape(-1, 6)
+        return np.asarray(equations.shapes @ (z * self.system.load_size)).reshape(-1, 6)
 
     @property
     def strains(self) -> Array:
@@ -227,9 +227,9 @@ class GluedBlocks:
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
         """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
         equations = self.statics
-        squares, shapes, _ = lowest_modes(equations, equations.at_rest, count)
-        D = self.rest.ravel() / self.system.load_size
-        shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ D))
+        squares, shapes, _ = lowest_modes(equations, count)
+        z, _ = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
+        shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ z))
         return modes_of(scheme, np.sqrt(squares), shares, 0 * shares, np.argsort(squares))
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
@@ -245,7 +245,7 @@ class GluedBlocks:
         equations = self.system.equations
         none = np.zeros((len(rows), len(equations.pressure)))
         names = [str(number) for number in range(len(rows))]
-        return stepped(self.system, equations, scheme, steps, names, (rows, none), began)
+        return stepped(self.system, equations, scheme, steps, names, (rows @ equations.shapes, none), began)
 
 
 def _without_rigid_motion(system: BlockSystem) -> Equations:
@@ -253,16 +253,10 @@ def _without_rigid_motion(system: BlockSystem) -> Equations:
     from scipy.sparse import block_diag, csr_array, vstack
 
     equations = system.equations
-    motions = np.zeros((len(system.blocks), 6, 3))
-    for number, block in enumerate(system.blocks):
-        x, y = block.section.centroid
-        motions[number, :3] = np.eye(3)
-        motions[number, :2, 2] = displacement_rows(x, y)[:, 2]
-    momentum = csr_array(equations.blockwise(equations.mass) @ csr_array(motions.reshape(-1, 3)))
-    scale = momentum.max()  # rows of the size of the others
+    momentum = equations.rigid / np.max(equations.rigid)  # rows of the size of the others
     return replace(
         equations,
-        B=csr_array(vstack([equations.B, momentum.T / scale])),
+        B=csr_array(vstack([equations.B, csr_array(momentum.T)])),
         C=csr_array(block_diag([equations.C, csr_array((3, 3))])),
         pressure=np.concatenate([equations.pressure, np.zeros(3)]),
     )

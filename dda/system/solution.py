@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from time import perf_counter
 
 import numpy as np
@@ -61,7 +61,7 @@ def stepped(
     rows: tuple[Array, Array],
     began: float,
 ) -> Result:
-    """Step a system from rest and return what some rows, of D and of the joint forces, observe of it.
+    """Step a system from rest and return what some rows, of z and of the joint forces, observe of it.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ def stepped(
     began
         When the set-up began [s].
     """
-    by_D, by_force = rows
-    if scheme.damped:  # of springs and dashpots together, of which the springs' own force is read from D
-        by_D = by_D + (equations.B.T @ (equations.kappa @ by_force.T)).T
+    by_modes, by_force = rows
+    if scheme.damped:  # of springs and dashpots together, of which the springs' own force is read from z
+        by_modes = by_modes + (equations.B.T @ (equations.kappa @ by_force.T)).T
         by_force = 0 * by_force
     none = np.zeros((0, len(equations.F)))
     laws = laws_of(Unilateral(1.0), 0, 0, 1)
-    observation = Observation(by_D, by_force, energies=False)
+    observation = Observation(by_modes, by_force, energies=False)
     made = glued_march(equations, system.load_size, scheme, observation, steps, laws, none)
     course = course_of(system.motion, 0.0)
     moved = np.zeros(2) if system.motion is None else system.motion.at([0.0])[0]
@@ -111,10 +111,10 @@ def static_system(system: BlockSystem) -> dict[str, float]:
     """Return the value of every column at rest under the constant loads, on the base's last position."""
     equations = system.reached
     names = (*equations.observers, "contact_pressure")
-    by_D, by_force = equations.rows(names)
+    by_modes, by_force = equations.rows(names)
     last = np.zeros(2) if system.motion is None else system.motion.at([math.inf])[0] / system.load_size
-    D, force = equations.at_rest(equations.F, equations.G @ last)
-    values = (by_D @ D + by_force @ force) * system.load_size + 0.0
+    z, force = equations.at_rest(equations.F, equations.G @ last)
+    values = (by_modes @ z + by_force @ force) * system.load_size + 0.0
     return dict(zip(names, values.tolist(), strict=True))
 
 
@@ -129,12 +129,11 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
         Count the modes that no load can reach as well.
     """
     equations = system.equations if full else system.reached
-    solve = equations.at_rest
     F = _pushed(system, equations)
-    D, _ = solve(F, np.zeros(len(equations.pressure)))
+    z, _ = equations.at_rest(F, np.zeros(len(equations.pressure)))
     while True:
-        squares, shapes, forces = lowest_modes(equations, solve, count)
-        shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
+        squares, shapes, forces = lowest_modes(equations, count)
+        shares = (shapes.T @ F) ** 2 / (squares * (F @ z))
         if len(squares) < count or np.max(shares) > 1 - np.sum(shares):
             break
         count *= 2
@@ -146,47 +145,42 @@ def _pushed(system: BlockSystem, equations: Equations) -> Array:
     """Return the load that shares refer to: the constant one, else M R of the moving base, else a weight."""
     if np.any(equations.F):
         return equations.F
-    axes = np.zeros(6)
-    if system.motion is not None:
+    axes = np.array([0.0, 1.0, 0.0])
+    if system.motion is not None and np.any(system.motion.displacement):
         axes[:2] = np.any(np.asarray(system.motion.displacement) != 0, axis=0)
-    if not np.any(axes):
-        axes[1] = 1.0
-    return np.asarray(equations.blockwise(equations.mass) @ axes[equations.kept % 6])
+    return np.asarray(equations.rigid @ axes)
 
 
-def lowest_modes(
-    equations: Equations, solve: Callable[[Array, Array], tuple[Array, Array]], count: int
-) -> tuple[Array, Array, Array]:
-    """Return the lowest w^2, their mass-normalised shapes and the joint forces of the shapes.
+def lowest_modes(equations: Equations, count: int) -> tuple[Array, Array, Array]:
+    """Return the lowest w^2, their normalised shapes and the joint forces of the shapes.
 
     K^-1 is applied by the saddle-point solver, so that stiff joints cost no digits.
     """
     from scipy.linalg import eigh
     from scipy.sparse.linalg import LinearOperator, eigsh
 
-    M = equations.blockwise(equations.mass)
-    n = len(equations.F)
+    n = len(equations.k)
     still = np.zeros(len(equations.pressure))
 
     def flexibility(right: Array) -> Array:
-        return solve(np.ravel(right), still)[0]
+        return equations.at_rest(np.ravel(right), still)[0]
 
     if n <= harmonic.DENSE or count >= n - 1:
-        root = np.linalg.cholesky(M.toarray())
-        values, vectors = eigh(root.T @ np.array([flexibility(column) for column in root.T]).T)
-        order = np.argsort(-values)[:count]
-        squares = 1 / values[order]
-        shapes = np.linalg.solve(root.T, vectors[:, order])
+        values, shapes = eigh(np.array([flexibility(unit) for unit in np.eye(n)]))
     else:
-        inverse = LinearOperator((n, n), matvec=flexibility, dtype=float)
         start = np.random.default_rng(0).standard_normal(n)
-        squares, shapes = eigsh(M, count, M, sigma=0.0, OPinv=inverse, v0=start)
-    forces = [solve(w2 * (M @ phi), still)[1] for w2, phi in zip(squares, shapes.T, strict=True)]
+        values, shapes = eigsh(LinearOperator((n, n), matvec=flexibility, dtype=float), count, v0=start)
+    order = np.argsort(-values)[:count]
+    squares = 1 / values[order]
+    shapes = shapes[:, order]
+    forces = [equations.at_rest(w2 * phi, still)[1] for w2, phi in zip(squares, shapes.T, strict=True)]
     return squares, shapes, np.array(forces).T
 
 
 def highest_frequency(system: BlockSystem) -> float:
     """Return the largest natural frequency [rad/s], which limits a conditionally stable scheme."""
+    from scipy.sparse import diags_array, eye_array
+
     e = system.reached
-    K = e.blockwise(e.elastic) + e.B.T @ e.kappa @ e.B
-    return largest_frequency(K.tocsr(), e.blockwise(e.mass))
+    K = diags_array(e.k) + e.B.T @ e.kappa @ e.B
+    return largest_frequency(K.tocsr(), eye_array(len(e.k), format="csr"))

@@ -47,7 +47,6 @@ from dda.march.step import (
     steps_by,
 )
 from dda.model.arrays import Array
-from dda.one_block.natural_modes import free_modes
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 from dda.system.system import Equations, Factor, factor
@@ -71,7 +70,7 @@ class Damping(NamedTuple):
 class Observation(NamedTuple):
     """What is kept of every step, a row each."""
 
-    displacement: Array  # (c, unknowns) by the unknowns
+    modes: Array  # (c, n) by the modes
     glue: Array  # (c, gaps) and by the forces of the glue [1/N]
     energies: bool  # whether kinetic and strain energy follow
 
@@ -91,7 +90,6 @@ class Glue:
     damping: Damping | None
     by_modes: Array  # (c, n) what is kept, by z
     by_glue: Array  # (c, gaps) and by dt^2 mu
-    momentum: Array  # (2, n) along x and y, by the velocities of the modes; of no use without contacts
     energies: bool
     find: Callable[..., tuple[int, int]]  # `dda.contact.rows.find`, compiled or not
     hold: Callable[[Any], Any]  # returns records of arrays as `find` takes them
@@ -177,31 +175,6 @@ def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
     return stage._replace(gg=gg**ratio, **by_velocity, **by_acceleration)
 
 
-def block_modes(equations: Equations) -> tuple[Array, csr_array]:
-    """Return k and shapes of the free modes of all blocks, in the unknowns that are kept."""
-    count = len(equations.mass)
-    squares = np.zeros((count, 6))
-    shapes = np.zeros((count, 6, 6))
-    kept = np.zeros(6 * count, dtype=bool)
-    kept[equations.kept] = True
-    same: dict[bytes, int] = {}
-    for number, own in enumerate(kept.reshape(count, 6)):
-        matrices = np.array([equations.mass[number], equations.elastic[number]])
-        known = same.setdefault(matrices.tobytes() + own.tobytes(), number)
-        if known != number:
-            squares[number] = squares[known]
-            shapes[number] = shapes[known]
-            continue
-        axes = np.eye(6)
-        if matrices[1, 3, 4] != 0:  # the two direct strains resist in their sum and in their difference
-            axes[3:5, 3:5] = [[1.0, 1.0], [1.0, -1.0]]
-        both = np.ix_(own, own)
-        M, K = ((axes.T @ matrix @ axes)[both] for matrix in matrices)
-        squares[number, own], modes = free_modes(M, np.diag(K))
-        shapes[number][both] = axes[both] @ modes
-    return squares.ravel()[equations.kept], equations.blockwise(shapes)
-
-
 def glued_march(
     equations: Equations,
     size: float,
@@ -220,9 +193,8 @@ def glued_march(
     contact : (m, unknowns) array
         Rows of contact, each of one block with all its unknowns.
     """
-    k, shapes = block_modes(equations)
-    rows = contact @ shapes
-    n = len(k)
+    rows = contact @ equations.shapes
+    n = len(equations.k)
     m = len(rows)
     points = laws.contacts
     if laws.paired:
@@ -232,7 +204,7 @@ def glued_march(
     ground[:points, 1] = 1.0
     ground[points:, 0] = 1.0
     body = Body(
-        k=k,
+        k=equations.k,
         loads=np.zeros((0, n)),
         stored=np.zeros(0),
         first=first,
@@ -254,24 +226,18 @@ def glued_march(
     closed = rows_of(np.zeros(m), np.zeros(m))
     work = work_for(points, m)
     search, hold = called_often(find, (laws, closed, flexible, closed, work), steps * (points // 2) ** 2)
-    B = (equations.B @ shapes).tocsr()
-    momentum = np.zeros((2, n))
-    if m:
-        translations = np.tile(np.eye(2, 6), len(equations.mass))
-        momentum = translations @ equations.blockwise(equations.mass) @ shapes
     glue = Glue(
         scheme=scheme,
         equations=equations,
-        k=dt * dt * k,
-        load=shapes.T @ (dt * dt * size * equations.F),
-        B=B,
-        Bt=B.T.tocsr(),
+        k=dt * dt * equations.k,
+        load=dt * dt * size * equations.F,
+        B=equations.B,
+        Bt=equations.B.T.tocsr(),
         C=equations.C / dt**2,
         contact=rows,
         damping=damping,
-        by_modes=observation.displacement @ shapes,
+        by_modes=observation.modes,
         by_glue=observation.glue / dt**2,
-        momentum=momentum,
         energies=observation.energies,
         find=search,
         hold=hold,
@@ -284,7 +250,7 @@ def glued_march(
         scheme=Numbers(len(stages), scheme.table is None, True, False, scheme.gg, dt, float(scheme.lag)),
         first=stages[0],
         last=stages[-1],
-        between=start_state(glue, np.zeros(m), 0 * k, np.zeros(2)),
+        between=start_state(glue, np.zeros(m), np.zeros(n), np.zeros(2)),
         room=Room([0.0, 0.0], [0.0, 0.0], p=[], a=[], R=[], x=[0.0] * n, pushed=[], free=[0.0] * m, force=[0.0] * m),
         work=hold(work),
         made=np.zeros(2),
@@ -414,7 +380,7 @@ def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     stored = []
     if glue.energies:
         stored = [half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)]
-    rows[number] = np.concatenate([observed, glue.momentum @ p, stored])
+    rows[number] = np.concatenate([observed, p @ glue.equations.rigid[:, :2], stored])
     return bool(np.isfinite(state.z).all())
 
 
