@@ -72,9 +72,7 @@ def run_loop(
         return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
 
 
-def called_often(
-    function: Loop, records: tuple[Any, ...], steps: int
-) -> tuple[Loop, Callable[[Any], Any]]:
+def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, Callable[[Any], Any]]:
     """Return a function that a loop calls at every step which is not compiled itself, and what its records are held by.
 
     Parameters

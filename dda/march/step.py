@@ -170,7 +170,9 @@ class History(NamedTuple):
 # ---- what is set up --------------------------------------------------------------------------------------------------
 
 
-def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False) -> March:
+def march(
+    body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False
+) -> March:
     """Return a march, with what belongs to whole steps made.
 
     Parameters

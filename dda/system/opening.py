@@ -28,7 +28,7 @@ from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED
-from dda.system.step import Observation, glued_march, make_steps, start_state
+from dda.system.step import glued_march, make_steps, start_state
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations
 
@@ -125,11 +125,13 @@ def solve_opening_system(
     laws = laws_of(law, points, len(rows), options.solve_limit)
     slid = opening.tangents @ equations.shapes
     by_modes = np.concatenate([equations.rows(columns)[0], slid, [size * equations.F]])
-    observation = Observation(by_modes, np.zeros((len(by_modes), len(equations.pressure))), options.energies)
-    made = glued_march(equations, size, scheme, observation, steps, laws, rows)
+    observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
+    made = glued_march(equations, size, scheme, laws, rows, observed, options.energies, steps)
+    glue = made.method
+    nonzeros = glue.solver(made.last.numbers, 1.0).factor.nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
     upwards = opening.velocity * equations.rigid[:, 1]
-    start, after = (start_state(made.method, opened, upwards, np.zeros(2)) for _ in range(2))
+    start, after = (start_state(glue, opened, upwards, np.zeros(2)) for _ in range(2))
     course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)
     history = history_of(steps, len(by_modes) + 2 + 2 * options.energies, points, len(rows), options.energies)
     ready = perf_counter()
@@ -148,7 +150,7 @@ def solve_opening_system(
         springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
         return energies_of((*stored, springs, 0.0 - load[0]), history.sums, scheme.table is not None)
 
-    how = PLAIN if made.method.find is find else COMPILED
+    how = PLAIN if glue.find is find else COMPILED
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
         columns={
@@ -156,8 +158,8 @@ def solve_opening_system(
             for i, name in enumerate(columns)
         },
         unknowns=len(equations.F),
-        nonzeros=made.method.solver(made, made.last, 1.0).factor.nonzeros,
-        factorisations=int(made.made[0]),
+        nonzeros=nonzeros,
+        factorisations=glue.solver.cache_info().misses,
         contacts=points,
         multiplicity=1.0,
         base_contacts=(0, -1),

@@ -16,7 +16,8 @@ from dda.one_block.solution import Result, check_damping, check_request, linear_
 from dda.scheme import harmonic
 from dda.scheme.harmonic import largest_frequency
 from dda.scheme.newmark import Scheme
-from dda.system.step import Observation, glued_march, make_steps, start_state
+from dda.scheme.stage import plain_stage
+from dda.system.step import glued_march, make_steps, start_state
 from dda.system.system import BlockSystem, Equations
 
 
@@ -74,18 +75,18 @@ def stepped(
     if scheme.damped:  # of springs and dashpots together, of which the springs' own force is read from z
         by_modes = by_modes + (equations.B.T @ (equations.kappa @ by_force.T)).T
         by_force = 0 * by_force
-    none = np.zeros((0, len(equations.F)))
+    none = np.zeros((0, equations.shapes.shape[0]))
     laws = laws_of(Unilateral(1.0), 0, 0, 1)
-    observation = Observation(by_modes, by_force, energies=False)
-    made = glued_march(equations, system.load_size, scheme, observation, steps, laws, none)
+    made = glued_march(equations, system.load_size, scheme, laws, none, (by_modes, by_force), False, steps)
+    glue = made.method
+    solvers = [glue.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
     course = course_of(system.motion, 0.0)
     moved = np.zeros(2) if system.motion is None else system.motion.at([0.0])[0]
-    start, after = (start_state(made.method, np.zeros(0), 0 * equations.F, moved) for _ in range(2))
+    start, after = (start_state(glue, np.zeros(0), 0 * equations.k, moved) for _ in range(2))
     history = history_of(steps, len(names), 0, 0, energies=False)
     ready = perf_counter()
     with np.errstate(all="ignore"):
         make_steps(made, start, after, course, history, steps, 1.0)
-    solvers = [made.method.solver(made, stage, 1.0) for stage in (made.first, made.last)[-len(scheme.stages) :]]
     return linear_result(
         scheme,
         (began, ready),

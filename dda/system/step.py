@@ -22,89 +22,66 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cached_property, lru_cache, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, find, rows_of, unpair, work_for
+from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, find, rows_of, unpair
 from dda.march.account import account_with
-from dda.march.compiled import called_often
+from dda.march.compiled import as_lists, called_often
 from dda.march.energy import ALGORITHMIC, bulk_loss
 from dda.march.step import (
     Body,
     Course,
     March,
-    Numbers,
     Part,
-    Room,
     StageRoom,
     State,
     end_paths,
     forces_of_ways,
     free_rows,
+    march,
     prescribe,
-    stage_room,
     steps_by,
 )
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
-from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
+from dda.scheme.stage import Stage, implicit_weight, inertia_force, predictor, velocity_corrector
 from dda.system.system import Equations, Factor, factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-LENGTHS = 16  # step lengths whose factors are kept
+LENGTHS = 32  # stages whose factors are kept
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in s from which each correction is due
-
-
-class Damping(NamedTuple):
-    """Viscous damping, in steps."""
-
-    lag: float  # a1/h
-    drag: float  # a0 h
-    mass_factor: float  # m
-    share: float  # alpha/beta
-
-
-class Observation(NamedTuple):
-    """What is kept of every step, a row each."""
-
-    modes: Array  # (c, n) by the modes
-    glue: Array  # (c, gaps) and by the forces of the glue [1/N]
-    energies: bool  # whether kinetic and strain energy follow
 
 
 @dataclass(eq=False)
 class Glue:
-    """Blocks in their free modes, x = shapes z, and their glue; forces and inertia in units of the step dt."""
+    """Blocks in their free modes, and their glue; forces and inertia in units of the step dt."""
 
     scheme: Scheme
     equations: Equations
     k: Array  # (n,) dt^2 k
     load: Array  # (n,) dt^2 F
-    B: csr_array  # (gaps, n)
-    Bt: csr_array
+    Bt: csr_array  # (n, gaps)
     C: csr_array  # C/dt^2
-    contact: Array  # (m, n) openings of the contacts
-    damping: Damping | None
-    by_modes: Array  # (c, n) what is kept, by z
-    by_glue: Array  # (c, gaps) and by dt^2 mu
-    energies: bool
+    contact: Array  # (m, n) openings of the contacts, by the modes
+    paired: bool  # whether two of them are the mean and the difference of two ways
+    observed: tuple[Array, Array]  # (c, n) and (c, gaps) rows of what is kept of every step, by z and by dt^2 mu
+    energies: bool  # whether kinetic and strain energy are kept too
     find: Callable[..., tuple[int, int]]  # `dda.contact.rows.find`, compiled or not
     hold: Callable[[Any], Any]  # returns records of arrays as `find` takes them
-    lengths: dict[tuple[float, float], StageSolver]
+    lag: float  # a1/dt
+    drag: float  # a0 dt
+    mass_factor: float  # m
+    share: float  # alpha/beta
 
-    def solver(self, march: March, stage: StageRoom, ratio: float) -> StageSolver:
-        """Return what belongs to a stage of a step of some length; that of the whole step is always kept."""
-        key = stage.numbers.begin, ratio
-        if key not in self.lengths:
-            if len(self.lengths) >= LENGTHS * march.scheme.stages:
-                for known in [known for known in self.lengths if known[1] != 1]:
-                    del self.lengths[known]
-            self.lengths[key] = StageSolver(march, stage, ratio)
-            march.made[0] += 1
-        return self.lengths[key]
+    @cached_property
+    def solver(self) -> Any:
+        """Function of the numbers of a stage and of a length that returns its equations; the latest ones are kept."""
+        return lru_cache(LENGTHS)(partial(StageSolver, self))
 
 
 class GluedState(State):
@@ -125,27 +102,27 @@ def joint_flexibility(weight: float, C: csr_array, B: csr_array, inverse: Array)
 class StageSolver:
     """The equations of a stage of one length, a share `ratio` of the step."""
 
-    def __init__(self, march: March, stage: StageRoom, ratio: float) -> None:
+    def __init__(self, glue: Glue, stage: Stage, ratio: float) -> None:
         """Factorise the matrix of the glue, and find what forces of the contacts move."""
-        glue = march.method
         self.glue = glue
-        self.numbers = shortened(stage.numbers, march.scheme.gg, ratio)
+        alpha = (stage.alpha + stage.delta * glue.lag) / glue.mass_factor
+        self.numbers = shortened(stage._replace(alpha=alpha), glue.scheme.gg, ratio)
         self.weight = implicit_weight(self.numbers)
         self.s = 1 + self.weight * glue.k
         self.inverse = 1 / self.s
-        self.still = np.zeros(glue.B.shape[0])
-        matrix = joint_flexibility(self.weight, glue.C, glue.B, self.inverse)
+        self.B = glue.equations.B
+        self.still = np.zeros(self.B.shape[0])
+        matrix = joint_flexibility(self.weight, glue.C, self.B, self.inverse)
         self.factor = factor(matrix) if len(self.still) else Factor(np.copy, 0)
         self.corrections = sum(float(np.max(self.s)) > limit for limit in _STIFF)
         if len(glue.contact):
-            dt2 = march.scheme.step**2
-            responses = [self.increments(self.weight * dt2 * row, self.still) for row in glue.contact]
-            self.moved = np.array([x for x, _ in responses]).T
-            self.glued = np.array([dmu for _, dmu in responses]).T
+            push = self.weight * glue.scheme.step**2 * glue.contact
+            responses = [self.increments(row, self.still) for row in push]
+            self.moved, self.glued = (np.array(part).T for part in zip(*responses, strict=True))
             W = glue.contact @ self.moved
             W = (W + W.T) / 2
             flexible = Flexibility(W, W.copy(), np.ones(1))
-            if march.laws.paired:
+            if glue.paired:
                 unpair(flexible.paired, flexible.W)
             self.flexible = glue.hold(flexible)
 
@@ -155,17 +132,18 @@ class StageSolver:
         Where a block's stiffness outweighs its inertia in s, its rigid motion is a small difference
         of joint forces: each correction takes the digits back that this costs.
         """
-        x, dmu = self._solve(r, push)
-        for _ in range(self.corrections):
-            residual = r - self.s * x - self.weight * (self.glue.Bt @ dmu)
-            correction = self._solve(residual, push - self.glue.B @ x + self.glue.C @ dmu)
-            x = x + correction[0]
-            dmu = dmu + correction[1]
+        x: Any = 0.0
+        dmu: Any = 0.0
+        residual = r
+        apart = push
+        for correction in range(1 + self.corrections):
+            if correction:
+                residual = r - self.s * x - self.weight * (self.glue.Bt @ dmu)
+                apart = push - self.B @ x + self.glue.C @ dmu
+            more = self.factor.solve(self.B @ (self.inverse * residual) - apart)
+            dmu = dmu + more
+            x = x + self.inverse * (residual - self.weight * (self.glue.Bt @ more))
         return x, dmu
-
-    def _solve(self, r: Array, push: Array) -> tuple[Array, Array]:
-        dmu = self.factor.solve(self.glue.B @ (self.inverse * r) - push)
-        return self.inverse * (r - self.weight * (self.glue.Bt @ dmu)), dmu
 
 
 def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
@@ -179,12 +157,13 @@ def glued_march(
     equations: Equations,
     size: float,
     scheme: Scheme,
-    observation: Observation,
-    steps: int,
     laws: Laws,
     contact: Array,
+    observed: tuple[Array, Array],
+    energies: bool,
+    steps: int,
 ) -> March:
-    """Return the march of glued blocks, with what belongs to whole steps made.
+    """Return the march of glued blocks.
 
     Parameters
     ----------
@@ -192,73 +171,58 @@ def glued_march(
         Of the loads.
     contact : (m, unknowns) array
         Rows of contact, each of one block with all its unknowns.
+    observed : (c, n) and (c, gaps) arrays
+        What is kept of every step, by the modes and by the forces of the glue.
+    energies
+        Whether the energies of every step are kept, too.
+    steps
+        How many will be made.
     """
     rows = contact @ equations.shapes
-    n = len(equations.k)
     m = len(rows)
-    points = laws.contacts
     if laws.paired:
         rows[2:] = (rows[2] + rows[3]) / 2, rows[3] - rows[2]
-    first = [int(np.argmax(row != 0)) // 6 * 6 for row in contact]
-    ground = np.zeros((m, 2))
-    ground[:points, 1] = 1.0
-    ground[points:, 0] = 1.0
+    first = np.array([int(np.argmax(row != 0)) // 6 * 6 for row in contact], dtype=int)
+    across = np.arange(m) < laws.contacts
     body = Body(
         k=equations.k,
-        loads=np.zeros((0, n)),
+        loads=np.zeros((0, len(equations.k))),
         stored=np.zeros(0),
         first=first,
-        weight=[row[start : start + 6].tolist() for row, start in zip(rows, first, strict=True)],
-        ground=ground.tolist(),
-        mobility=np.ones(n),
+        weight=np.array([row[start : start + 6] for row, start in zip(rows, first, strict=True)]),
+        ground=np.column_stack([~across, across]).astype(float),
+        mobility=np.ones(len(equations.k)),
+    )
+    made = march(body, laws, scheme, np.zeros(m), None)
+    closed = made.between.rows
+    search, hold = called_often(
+        find, (laws, closed, made.last.whole.flexible, closed, made.work), steps * (laws.contacts // 2) ** 2
     )
     dt = scheme.step
-    damping = None
-    numbers = [plain_stage(stage) for stage in scheme.stages]
-    if scheme.damped:
-        lag = scheme.stiffness_damping / dt
-        drag = scheme.mass_damping * dt
-        mass_factor = 1 + scheme.delta * drag
-        beta = scheme.alpha + scheme.delta * lag
-        damping = Damping(lag, drag, mass_factor, scheme.alpha / beta if beta else 1.0)
-        numbers = [numbers[0]._replace(alpha=beta / mass_factor)]
-    flexible = Flexibility(np.zeros((m, m)), np.zeros((m, m)), np.ones(1))
-    closed = rows_of(np.zeros(m), np.zeros(m))
-    work = work_for(points, m)
-    search, hold = called_often(find, (laws, closed, flexible, closed, work), steps * (points // 2) ** 2)
+    lag = scheme.stiffness_damping / dt
+    drag = scheme.mass_damping * dt
+    beta = scheme.alpha + scheme.delta * lag
     glue = Glue(
         scheme=scheme,
         equations=equations,
         k=dt * dt * equations.k,
         load=dt * dt * size * equations.F,
-        B=equations.B,
         Bt=equations.B.T.tocsr(),
         C=equations.C / dt**2,
         contact=rows,
-        damping=damping,
-        by_modes=observation.modes,
-        by_glue=observation.glue / dt**2,
-        energies=observation.energies,
+        paired=laws.paired,
+        observed=(observed[0], observed[1] / dt**2),
+        energies=energies,
         find=search,
         hold=hold,
-        lengths={},
+        lag=lag,
+        drag=drag,
+        mass_factor=1 + scheme.delta * drag,
+        share=scheme.alpha / beta if beta else 1.0,
     )
-    stages = [stage_room(stage, 0, 0, False) for stage in numbers]
-    made = March(
-        body=body,
-        laws=hold(laws),
-        scheme=Numbers(len(stages), scheme.table is None, True, False, scheme.gg, dt, float(scheme.lag)),
-        first=stages[0],
-        last=stages[-1],
-        between=start_state(glue, np.zeros(m), np.zeros(n), np.zeros(2)),
-        room=Room([0.0, 0.0], [0.0, 0.0], p=[], a=[], R=[], x=[0.0] * n, pushed=[], free=[0.0] * m, force=[0.0] * m),
-        work=hold(work),
-        made=np.zeros(2),
-        method=glue,
-    )
-    for stage in stages:
-        glue.solver(made, stage, 1.0)
-    return made
+    between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
+    held: March = as_lists(made)
+    return held._replace(laws=hold(laws), between=between, work=hold(made.work), method=glue)
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
@@ -281,7 +245,7 @@ def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> Gl
     rows = glue.hold(rows_of(opening, np.where(opening > 0, LOWER, INSIDE)))
     state = GluedState(0 * R, p, a, R, [0.0] * len(opening), rows)
     state.glue = force
-    state.felt = 0 * R if glue.damping else state.z
+    state.felt = 0 * R if scheme.damped else state.z
     state.held = R.copy()
     return state
 
@@ -292,18 +256,23 @@ def make_stage(
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
     glue = march.method
     room = march.room
-    solver = glue.solver(march, stage, part.ratio)
+    solver = glue.solver(stage.numbers, part.ratio)
     numbers = solver.numbers
+    damped = glue.scheme.damped
     prescribe(march, course, stage, part)
-    if glue.damping is not None:
-        make_damped_stage(glue, solver, start, after)
-        return FOUND, 0
     ahead = predictor(numbers, start.p, start.a, before.p, before.a)
-    held = inertia_force(numbers, before.held, start.R, start.a)
+    balance = ahead
+    drag = 0.0
+    if damped:
+        coming = velocity_corrector(numbers, start.p, start.a, before.a, 0 * start.a)
+        faster = glue.lag * (coming - start.p)
+        balance = ahead + faster
+        drag = glue.drag * coming
+    balance = balance + numbers.alpha * inertia_force(numbers, before.held - drag, start.R, start.a)
     push = solver.still
     if room.start != room.end:
         push = glue.equations.G @ np.subtract(room.end, room.start)
-    x, dmu = solver.increments(ahead + numbers.alpha * held, push)
+    x, dmu = solver.increments(balance, push)
     outcome = FOUND
     solves = 0
     pushed = 0.0
@@ -319,29 +288,16 @@ def make_stage(
         x = x + solver.moved @ force
         dmu = dmu + solver.glued @ force
         pushed = march.scheme.step**2 * (force @ glue.contact)
-    np.add(before.z, x, out=after.z)
+    np.add(before.felt, x, out=after.felt)
     np.add(before.glue, dmu, out=after.glue)
-    np.subtract(glue.load - glue.k * after.z, glue.Bt @ after.glue, out=after.held)
-    np.add(after.held, pushed, out=after.R)
+    np.subtract(glue.load - glue.k * after.felt, glue.Bt @ after.glue, out=after.held)
+    np.add(after.held, pushed - drag, out=after.R)
     after.a[:] = inertia_force(numbers, after.R, start.R, start.a)
+    if damped:
+        after.a[:] /= glue.mass_factor
+        after.z[:] = before.z + glue.share * x + (1 - glue.share) * ahead - glue.share * faster
     after.p[:] = velocity_corrector(numbers, start.p, start.a, before.a, after.a)
     return outcome, solves
-
-
-def make_damped_stage(glue: Glue, solver: StageSolver, start: GluedState, after: GluedState) -> None:
-    """Make a step with viscous damping."""
-    numbers = solver.numbers
-    lag, drag, mass_factor, share = glue.damping
-    ahead = predictor(numbers, start.p, start.a, start.p, start.a)
-    coming = velocity_corrector(numbers, start.p, start.a, start.a, 0 * start.a)
-    faster = lag * (coming - start.p)
-    x, dmu = solver.increments(ahead + faster + numbers.alpha * (start.held - drag * coming), solver.still)
-    after.z[:] = start.z + share * x + (1 - share) * ahead - share * faster
-    after.felt[:] = start.felt + x
-    after.glue[:] = start.glue + dmu
-    after.held[:] = glue.load - glue.k * after.felt - glue.Bt @ after.glue
-    after.a[:] = (after.held - drag * coming) / mass_factor
-    after.p[:] = coming + glue.scheme.delta * after.a
 
 
 def half_square(x: Array) -> float:
@@ -355,11 +311,11 @@ def add_bulk_loss(march: March, state: GluedState, after: GluedState, part: Part
     delta = glue.scheme.delta
     dt2 = glue.scheme.step**2
     moved = after.z - state.z
-    stiff = strain_energy(glue, moved, after.glue - state.glue)
-    kinetic = (half_square(after.a) - half_square(state.a)) / dt2 / dt2
-    change = half_square(after.a - state.a) / dt2 / dt2
+    stiff = 2 * strain_energy(glue, moved, after.glue - state.glue)
+    kinetic = (half_square(after.a) - half_square(state.a)) / dt2**2
+    change = half_square(after.a - state.a) / dt2**2
     sums[ALGORITHMIC] += (1 - delta) * float(moved @ (state.R - state.a)) / dt2
-    sums[ALGORITHMIC] += bulk_loss(glue.scheme.alpha, delta, dt2 * part.ratio**2, 2 * stiff, kinetic, change)
+    sums[ALGORITHMIC] += bulk_loss(glue.scheme.alpha, delta, dt2 * part.ratio**2, stiff, kinetic, change)
 
 
 def strain_energy(glue: Glue, z: Array, force: Array) -> float:
@@ -370,7 +326,7 @@ def strain_energy(glue: Glue, z: Array, force: Array) -> float:
 def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     """Write what is observed at the end of a step; tell whether it is finite, or without contacts, which never stop."""
     glue = march.method
-    observed = glue.by_modes @ state.z + glue.by_glue @ state.glue
+    observed = glue.observed[0] @ state.z + glue.observed[1] @ state.glue
     if not len(glue.contact):
         rows[number] = observed
         return True
