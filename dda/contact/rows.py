@@ -42,6 +42,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dda.contact.dense import Matrix, Vector, copy, eliminate, scale_of, zeros
+from dda.contact.unilateral import LAGGED, Unilateral
 
 States = Any  # (m,) array, or a list of ints
 
@@ -148,6 +149,36 @@ def flexibility_for(rows: int, banded: bool = False) -> Flexibility:
     """Return room for a flexibility."""
     shape = (2, rows) if banded else (rows, rows)
     return Flexibility(np.zeros(shape), np.zeros((1, 1) if banded else shape), np.ones(1))
+
+
+def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float = 1.0) -> Laws:
+    """Return the laws of contacts that open, or of so many of which each stands for `share` corners.
+
+    Parameters
+    ----------
+    rows
+        n, or 2n with springs along the base.
+    limit
+        Solves before the states are searched.
+    """
+    across = np.arange(rows) < contacts
+    cohesion = law.cohesion if law.friction is not None else math.inf
+    return Laws(
+        contacts=contacts,
+        compliance=np.where(across, law.compliance, law.softness) / share,
+        lower=np.where(across, -law.pull, -cohesion) * share,
+        upper=np.where(across, math.inf, cohesion) * share,
+        opens=across.astype(np.int64),
+        friction=law.friction or 0.0,
+        slips=law.friction is not None,
+        lagged=law.rules == LAGGED and rows > contacts,
+        paired=rows == 4 and contacts == 2,
+        banded=False,
+        closing=-law.band[0],
+        retardation=law.damping * law.compliance,
+        together=limit,
+        most=0,
+    )
 
 
 def rows_of(opening: Vector, state: States) -> Rows:
@@ -701,9 +732,7 @@ def crossing_rate(laws: Laws, before: float, i: int, N: float) -> float:
     return float(laws.compliance[i] * before / reach / reach)
 
 
-def find_crossings(
-    laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work, closing: int
-) -> None:
+def find_crossings(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work, closing: int) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
     for _ in range(CROSSING_STEPS):
         for k in range(closing):

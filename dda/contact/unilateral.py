@@ -23,9 +23,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from dda.contact.rows import Laws
 from dda.model.checks import check_not_negative
 
 CONSISTENT = "consistent"
@@ -107,35 +104,3 @@ class Unilateral:
     def pull(self) -> float:
         """Greatest tension p band[1] of a closed corner [N]."""
         return self.stiffness * self.band[1] if self.band[1] else 0.0
-
-
-def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float = 1.0) -> Laws:
-    """Return the laws of rows of contact.
-
-    Parameters
-    ----------
-    rows
-        Twice the contacts where these have springs or ways along the base, else as many.
-    limit
-        Solves with all states updated at once.
-    share
-        How many corners a contact stands for.
-    """
-    across = np.arange(rows) < contacts
-    cohesion = law.cohesion if law.friction is not None else math.inf
-    return Laws(
-        contacts=contacts,
-        compliance=np.where(across, law.compliance, law.softness) / share,
-        lower=np.where(across, -law.pull, -cohesion) * share,
-        upper=np.where(across, math.inf, cohesion) * share,
-        opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
-        slips=law.friction is not None,
-        lagged=law.rules == LAGGED and rows > contacts,
-        paired=rows == 4 and contacts == 2,
-        banded=False,
-        closing=-law.band[0],
-        retardation=law.damping * law.compliance,
-        together=limit,
-        most=0,
-    )

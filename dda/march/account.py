@@ -8,7 +8,7 @@ from typing import Any
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Laws, Rows
 from dda.march.energy import ALGORITHMIC, CONTACT, DAMPING, FRICTION, GIVEN, IMPULSE, SWITCHING, bulk_loss
-from dda.march.step import Course, March, Part, StageRoom, State, prescribe
+from dda.march.step import AnyState, Course, March, Part, StageRoom, State, prescribe
 
 
 def account_with(
@@ -99,7 +99,14 @@ def account_stage(
 
 
 def add_contact_losses(
-    march: March, laws: Laws, ground: Matrix, before: State, after: State, late: float, length: float, sums: Vector
+    march: March,
+    laws: Laws,
+    ground: Matrix,
+    before: AnyState,
+    after: AnyState,
+    late: float,
+    length: float,
+    sums: Vector,
 ) -> None:
     """Add what the contacts lose in a stage of some length [s], and what the base gives through them [J].
 
@@ -114,6 +121,8 @@ def add_contact_losses(
     n = laws.contacts
     rows = after.rows
     for r in range(len(rows.force)):
+        if laws.retardation == 0 and before.rows.force[r] == 0.0 and rows.force[r] == 0.0:
+            continue  # open all the while
         force = (1 - late) * before.rows.force[r] + late * rows.force[r]
         moved = rows.opening[r] - before.rows.opening[r] + (after.path[r] - before.path[r])
         friction = 0.0 - rows.force[r] * rows.slip[r]

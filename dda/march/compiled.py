@@ -5,10 +5,10 @@ plain Python is several times faster on these. Compiled code takes records, one 
 take 0.1 us a step where loops over named tuples of arrays take 4.
 
 Compiling takes some seconds, once an install: a history of `LONG` steps pays for it, and where compiled code is at hand
-one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the sources
-that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are compiled.
-Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same: nothing is
-reordered or fused.
+one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the
+sources that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are
+compiled. Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same:
+nothing is reordered or fused.
 
 Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
 replaced since, the plain functions run.
@@ -28,6 +28,8 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from dda.march.one_library import library_option
 
 Loop = Callable[..., Any]
 
@@ -223,7 +225,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
         if function is not loop and function not in _jitable:
             # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;
             # and nobody else calls any of these: they have no entry from Python or C
-            options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            options = {**library_option(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             register_jitable(forceinline=function in direct, **options)(function)
             _jitable.add(function)
     directory = cache_directory()
@@ -250,13 +252,15 @@ def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path
     """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
     # nothing is allocated in a loop: without the counting of references a call costs what it does
-    options = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+    options = {**library_option(), "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
     try:
         if directory is not None:
             numba.config.CACHE_DIR = str(directory)
         dispatcher: Any = numba.njit(cache=directory is not None, **options)(loop)
     finally:
         numba.config.CACHE_DIR = before
+    if pipeline := options.get("pipeline_class"):
+        pipeline.library = None
     dispatcher.compile(types)
     machine_code: Loop = dispatcher
     return machine_code

@@ -61,7 +61,9 @@ def account_conserving(march: March, state: State, after: State, course: Course,
 
 
 def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) -> tuple[int, int]:
-    r"""Find the contacts on a rigid stop by passes over springs (Uzawa), preloaded by the forces of the pass before,
+    r"""Find the contacts on a rigid stop by passes over springs (Uzawa).
+
+    These are preloaded by the forces of the pass before,
 
         N = max(0, lam - r w),    w = w_f + W N,    then lam <- N,
 
@@ -80,7 +82,7 @@ def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) ->
         work.mean[r] = 0.0
     start = before
     solves = 0
-    for number in range(1, method.pass_limit + 1):
+    for _ in range(method.pass_limit):
         for r in range(m):
             work.q[r] = gap[r] - work.mean[r] * springs.compliance[r]
         outcome, spent = find(springs, start, flexible, after, work)
@@ -126,7 +128,8 @@ def make_impact_stage(
     e is that of each, as Newton has it: an impulse at one corner changes the rate of the other, which then may leave
     faster than by e times its own. Forces of contact are N = P/h, which grow as 1/h in an impact.
 
-    M. Jean, The non-smooth contact dynamics method, 1999; J. J. Moreau, Numerical aspects of the sweeping process, 1999.
+    M. Jean, The non-smooth contact dynamics method, 1999; J. J. Moreau, Numerical aspects of the sweeping process,
+    1999.
     """
     room = march.room
     body = march.body

@@ -18,8 +18,8 @@ A shorter step costs nothing to set up: s is a number for each mode. The displac
 it is read from the openings where these are known. A base moves from under the rows alone.
 
 Two rules of Newmark's scheme keep the contact force out of a, the block's own, and put one force of the step into the
-displacement, with the weight 1/2 for b, and into the velocity, with 1: that of its end (Kane, Repetto, Ortiz and Marsden
-1999), or that of `dda.contact.conserving`.
+displacement, with the weight 1/2 for b, and into the velocity, with 1: that of its end (Kane, Repetto, Ortiz and
+Marsden 1999), or that of `dda.contact.conserving`.
 
 The state is in units of the scheme's step dt: p = dt v, a for dt^2 a, R for dt^2 R.
 """
@@ -49,12 +49,13 @@ from dda.contact.rows import (
     unpair,
     work_for,
 )
-from dda.model.arrays import Array
 from dda.march.energy import SUMS
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 
+AnyState = Any  # `State`, or what has its fields
 SHORTEST = 0.01  # shortest part of a step that a cut may leave
 
 
@@ -85,7 +86,7 @@ class Numbers(NamedTuple):
 class Length(NamedTuple):
     """What belongs to a stage of one length."""
 
-    numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in the displacement [s^2]; 1 of impulses
+    numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in z [s^2], 1 of impulses
     inverse: Vector  # (n,) 1/s
     flexible: Flexibility
 
@@ -131,7 +132,7 @@ class March(NamedTuple):
     scheme: Numbers
     first: StageRoom  # of two
     last: StageRoom
-    between: State  # at the end of the first one
+    between: AnyState  # at the end of the first one
     room: Room
     work: Work
     made: Vector  # (2,) lengths that were made, and passes since a step was kept
@@ -171,7 +172,13 @@ class History(NamedTuple):
 
 
 def march(
-    body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False
+    body: Body,
+    laws: Laws,
+    scheme: Scheme,
+    opening: Array,
+    method: Any = (),
+    averages: bool = True,
+    impulses: bool = False,
 ) -> March:
     """Return a march, with what belongs to whole steps made.
 
@@ -196,7 +203,7 @@ def march(
         scheme=Numbers(len(rooms), scheme.table is None, averages, impulses, scheme.gg, scheme.step, float(scheme.lag)),
         first=rooms[0],
         last=rooms[-1],
-        between=State(*np.zeros((4, n)), np.zeros(m), rows_of(opening, np.zeros(m))),
+        between=state_of(n, opening, np.zeros(m)),
         room=Room(*vectors),
         work=work_for(laws.contacts, m, laws.banded),
         made=np.zeros(2),
@@ -205,6 +212,12 @@ def march(
     for stage in rooms:
         set_length(made, stage, 1.0, stage.whole)
     return made
+
+
+def state_of(modes: int, opening: Array, state: Any) -> State:
+    """Return a state at rest, without forces."""
+    z, p, a, R = np.zeros((4, modes))
+    return State(z, p, a, R, np.zeros(len(opening)), rows_of(opening, state))
 
 
 def stage_room(stage: Stage, modes: int, rows: int, banded: bool) -> StageRoom:
@@ -317,7 +330,7 @@ def push_modes(march: March, force: Vector) -> None:
 
 
 def forces_of_ways(march: March, force: Vector) -> None:
-    """Write the forces in the coordinates of the body: of two ways that are paired their sum and half their difference."""
+    """Write the forces as rows of the body: of two ways that are paired their sum and half their difference."""
     room = march.room
     copy(force, room.force)
     if march.laws.paired:
@@ -375,7 +388,7 @@ def look_up(course: Course, time: float, out: Vector) -> None:
             out[j] += share * (after[j] - before[j])
 
 
-def begin_step(march: March, start: State, length: Length) -> None:
+def begin_step(march: March, start: AnyState, length: Length) -> None:
     """Write what all stages take from the start of a step; its velocity is discounted here."""
     room = march.room
     ratio = length.numbers[0]
@@ -395,7 +408,7 @@ def load_of(march: March, i: int) -> float:
     return total
 
 
-def free_modes(march: March, stage: StageRoom, length: Length, before: State) -> None:
+def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState) -> None:
     """Write the increments of the modes in a stage without contact forces."""
     room = march.room
     numbers = stage.numbers
@@ -448,7 +461,7 @@ def retard(march: March, stage: StageRoom, length: Length, before: State) -> Non
 
 
 def motion_at_end(
-    march: March, stage: StageRoom, length: Length, before: State, z: float, pushed: float, i: int
+    march: March, stage: StageRoom, length: Length, before: AnyState, z: float, pushed: float, i: int
 ) -> tuple[float, float, float]:
     """Return h^2 R, h^2 a and h v of a mode at the end of a stage, where it is at z under h^2 B' lambda = `pushed`."""
     room = march.room
@@ -460,7 +473,7 @@ def motion_at_end(
     return R, a, velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
 
 
-def end_modes(march: March, stage: StageRoom, length: Length, before: State, after: State) -> None:
+def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, after: AnyState) -> None:
     """Write the modes at the end of a stage under the forces `room.pushed`."""
     room = march.room
     ratio = length.numbers[0]

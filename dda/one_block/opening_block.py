@@ -1,8 +1,13 @@
 r"""One block over corners that open, as a body in its free modes and as rows of contact.
 
-Of the unknowns of `dda.one_block.unilateral_form` the gaps, and the mean way of the base where it has springs in shear,
-are read from the rows of contact, which no rounding of a larger motion reaches; all others follow from the modes. In a
-symmetric motion one row stands for both corners, with twice their forces.
+Its unknowns are those of `dda.one_block.gap_form` without the springs: mean way U and mean gap w of the base, its
+rotation s, and the strains ex, e2, gxy, on which alone its own stiffness acts, K = A diag(E', lambda + 2 G, G). The
+rows of contact are the gaps w -+ (a/2) s of its corners M and N and their ways U -+ (a/2) ex along the base, these as
+mean and difference. So w and s, and U where the corners have springs in shear, are read from the rows, which no
+rounding of a larger motion reaches; all else follows from the modes.
+
+What neither loads nor contact forces reach is dropped. In a symmetric motion nothing reaches U and s: one row then
+stands for both corners, with twice their forces.
 """
 
 from __future__ import annotations
@@ -11,73 +16,132 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dda.contact.rows import INSIDE, LOWER, rows_of
-from dda.march.step import Body, History, State
+from dda.contact.rows import INSIDE, LOWER
+from dda.contact.springs import Contact, base_directions
+from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array
-from dda.model.load import BaseMotion, load_share
+from dda.model.load import BaseMotion, LoadedBlock, load_share
+from dda.one_block.gap_form import UNKNOWNS, gap_form
 from dda.one_block.natural_modes import free_modes
-from dda.one_block.unilateral_form import UnilateralForm
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
+
+SYMMETRIC = ("ex", "e2", "w")  # of a symmetric motion
 
 
 @dataclass(frozen=True, eq=False)
 class OpeningBlock:
-    """A block in its free modes, x = shapes z, and its rows of contact."""
+    """M x'' + K x = F + multiplicity B' lambda of a block in n unknowns, and its free modes, x = shapes z."""
 
-    form: UnilateralForm
+    unknowns: tuple[str, ...]  # names of x
+    M: Array  # (n, n) inertia
+    K: Array  # (n,) diagonal of the elastic stiffness
+    F: Array  # (n,) load
+    B: Array  # (m, n) rows of contact: gaps, then ways
+    ramp: float  # time in which the load rises from zero [s]
+    axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the block
+    contacts: int  # 1 or 2
+    multiplicity: float  # corners that a contact stands for
+    start: Array  # (n,) x at t = 0
+    observers: dict[str, Array]  # displacement column -> (n,) row over x - start
+    slide: Array  # (2, n) way of M and N along the base by x
+    translation: Array  # (n, 2) x of a rigid translation by 1 m along the base and away from it
     body: Body
-    shapes: Array  # (n, modes) unknowns by the modes; zero where they are read from the rows
-    read: Array  # (n, rows) unknowns by the ways of the rows
-    momentum: Array  # (modes,) modal momentum of a rigid translation by 1 m/s away from the base
-    translation: Array  # (2, modes) momentum along and away from the base by modal velocities [kg m/s]
+    shapes: Array  # (n, n) unknowns by the modes; zero where they are read from the rows
+    read: Array  # (n, m) unknowns by the ways of the rows
+    momentum: Array  # (2, n) of a translation along the base and away from it, by the modal velocities
 
 
-def opening_block(form: UnilateralForm) -> OpeningBlock:
-    """Return a block in its free modes."""
-    k, shapes = free_modes(form.M, form.K)
-    n = len(k)
-    rows = form.B @ shapes
-    c = form.contacts
-    m = len(rows)
-    ground = np.zeros((m, 2))
-    ground[:c, 1] = 1.0
-    ground[c:, 0] = 1.0
-    read = np.zeros((n, m))
-    read[n - c :, :c] = np.eye(c)
-    if m == 2 * c and c == 2:
-        read[form.unknowns.index("U"), c:] = 0.5
-    seen = np.any(read != 0, axis=1)
+def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False) -> OpeningBlock:
+    """Return one block over corners that open; `velocity` only tells what moves, `full` keeps all unknowns."""
+    block = model.block
+    material = block.material
+    load = model.load
+    law = model.contact
+    tangent, normal, a = base_directions(block, model.base)
+    axes = np.array([tangent, normal])
+    form = gap_form(block, Contact(1.0), model.base, model.top, load)  # of its springs nothing is used below
+    pushed = form.F + velocity * (form.M[:, :2] @ axes[:, 1])
+    if load.motion is not None:
+        pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
+    reached = dict(zip(UNKNOWNS, form.reached_from(pushed != 0), strict=True))
+    names: tuple[str, ...] = UNKNOWNS
+    if not full and not (reached["U"] or reached["s"] or reached["gxy"]):
+        names = SYMMETRIC if reached["ex"] else SYMMETRIC[1:]
+    kept = form.restricted(np.array([UNKNOWNS.index(name) for name in names]))
+    moduli = {"ex": material.free_modulus, "e2": material.constrained_modulus, "gxy": material.shear_modulus}
+    K = np.array([block.section.area * moduli.get(name, 0.0) for name in names])
+    unit = {name: np.array([float(name == other) for other in names]) for name in UNKNOWNS}
+    sides = (-a / 2, a / 2)
+    slide = np.array([unit["U"] + side * unit["ex"] for side in sides])
+    translation = np.column_stack([unit["U"], unit["w"]])
+    if names == UNKNOWNS:
+        gaps = [unit["w"] + side * unit["s"] for side in sides]
+        ways = [unit["U"], a * unit["ex"]]
+        read = np.outer(unit["w"], [0.5, 0.5]) + np.outer(unit["s"], [-1 / a, 1 / a])
+    else:
+        gaps = [unit["w"]]
+        ways = [slide[1]] if "ex" in names else []  # else the corners do not slide
+        read = unit["w"][:, None]
+    if not law.shear:
+        ways = []
+    elif names == UNKNOWNS:
+        read = np.hstack([read, np.outer(unit["U"], [0.5, 0.5])])
+    else:
+        read = np.hstack([read, np.zeros((len(names), len(ways)))])
+    B = np.array([*gaps, *ways])
+    k, shapes = free_modes(kept.M, K)
+    ground = np.zeros((len(B), 2))
+    ground[: len(gaps), 1] = 1.0
+    ground[len(gaps) :, 0] = 1.0
     body = Body(
         k=k,
-        loads=(shapes.T @ form.F)[None],
+        loads=(shapes.T @ kept.F)[None],
         stored=np.ones(1),
-        first=np.zeros(m, dtype=np.int64),
-        weight=rows,
+        first=np.zeros(len(B), dtype=np.int64),
+        weight=B @ shapes,
         ground=ground,
-        mobility=np.ones(n),
+        mobility=np.ones(len(k)),
     )
-    moved = form.axes.T @ form.translation.T @ form.M @ shapes
-    return OpeningBlock(form, body, np.where(seen[:, None], 0.0, shapes), read, shapes.T @ form.M @ form.translation, moved)
+    seen = np.any(read != 0, axis=1)
+    return OpeningBlock(
+        unknowns=names,
+        M=kept.M,
+        K=K,
+        F=kept.F,
+        B=B,
+        ramp=load.ramp,
+        axes=axes,
+        contacts=len(gaps),
+        multiplicity=2.0 / len(gaps),
+        start=law.gap * unit["w"],
+        observers={name: row for name, row in kept.observers.items() if name != "contact_pressure"},
+        slide=slide,
+        translation=translation,
+        body=body,
+        shapes=np.where(seen[:, None], 0.0, shapes),
+        read=read,
+        momentum=translation.T @ kept.M @ shapes,
+    )
 
 
-def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool) -> State:
+def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool = False) -> State:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap.
 
     Parameters
     ----------
+    velocity
+        Of the block, upwards [m/s].
     at_once
         Whether the block starts with the acceleration of its load, whatever the scheme says.
     """
     dt = scheme.step
-    form = block.form
-    m = len(form.B)
-    R = load_share(form.ramp, 0.0) * (dt * dt * block.body.loads[0])
-    a = R if at_once else initial_acceleration(scheme, R)
-    p = late_momentum(scheme, (dt * velocity) * (block.momentum @ form.axes[:, 1]), a)
-    opening = np.zeros(m)
-    opening[: form.contacts] = gap
-    rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
-    return State(np.zeros(len(p)), p, a.copy(), R, np.zeros(m), rows)
+    R = load_share(block.ramp, 0.0) * (dt * dt * block.body.loads[0])
+    a = R.copy() if at_once else initial_acceleration(scheme, R) + 0.0
+    p = late_momentum(scheme, (dt * velocity) * (block.axes[:, 1] @ block.momentum), a)
+    opening = np.zeros(len(block.B))
+    opening[: block.contacts] = gap
+    state = state_of(len(p), opening, np.where(opening > 0, LOWER, INSIDE))
+    return state._replace(p=p, a=a, R=R)
 
 
 def unknowns_of(block: OpeningBlock, history: History, motion: BaseMotion | None, step: float) -> Array:
@@ -87,15 +151,14 @@ def unknowns_of(block: OpeningBlock, history: History, motion: BaseMotion | None
 
 def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMotion | None, step: float) -> Array:
     """Return what a row over the unknowns observes from t = 0 on, measured from the base, (steps + 1,)."""
-    form = block.form
-    c = form.contacts
+    c = block.contacts
     read = row @ block.read
     parts = [(history.motion, row @ block.shapes), (history.opening, read), (history.path, read[c:])]
     total = np.zeros(len(history.solves))
     for values, weights in parts:
         for j in np.flatnonzero(weights):
             total += weights[j] * values[:, j]
-    if motion is not None and "U" in form.unknowns and len(form.B) == c:  # which no row of contact measures
-        moved = motion.along(form.axes).at(step * np.arange(float(len(total))))
-        total -= row[form.unknowns.index("U")] * moved[:, 0]
+    if motion is not None and "U" in block.unknowns and len(block.B) == c:  # which no row of contact measures
+        moved = motion.along(block.axes).at(step * np.arange(float(len(total))))
+        total -= row[block.unknowns.index("U")] * moved[:, 0]
     return total

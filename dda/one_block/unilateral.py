@@ -15,13 +15,13 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import Laws
-from dda.contact.unilateral import Unilateral, laws_of
-from dda.march.compiled import run_loop
+from dda.contact.rows import Laws, laws_of
+from dda.contact.unilateral import Unilateral
 from dda.march.energy import CONTACT, DASHPOT, energies_of
 from dda.march.energy import IMPACT as IMPACT_LOSS
 from dda.march.methods import Method, make_augmented_steps, make_conserving_steps, make_impact_steps, make_steps
-from dda.march.step import History, course_of, history_of, march, reached_history
+from dda.march.run import run
+from dda.march.step import History, course_of, march
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
@@ -29,7 +29,6 @@ from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
 from dda.one_block.solution import check_request, step_times
 from dda.one_block.two_block import carried
-from dda.one_block.unilateral_form import UnilateralForm, unilateral_form
 from dda.scheme.newmark import Scheme
 
 NEWMARK = "newmark"
@@ -57,13 +56,9 @@ class UnilateralModel(LoadedBlock):
             raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
 
     @cached_property
-    def reduced(self) -> UnilateralForm:
-        """Matrices and load in the unknowns that move."""
-        return self.form()
-
-    def form(self, full: bool = False) -> UnilateralForm:
-        """Return matrices and load in the unknowns that move; in all six if `full`."""
-        return unilateral_form(self, self.contact, self.velocity, full)
+    def reduced(self) -> OpeningBlock:
+        """The block in the unknowns that move."""
+        return opening_block(self, self.velocity)
 
 
 @dataclass(frozen=True)
@@ -154,12 +149,11 @@ def solve_unilateral(
     if frictionless(law, options):  # no corner slides, even if `full` keeps the unknowns that could
         law = replace(law, shear=0.0)
         model = replace(model, contact=law)
-    form = model.form(True) if options.full else model.reduced
-    block = opening_block(form)
-    sizes = form.contacts, len(form.B), options.solve_limit, form.multiplicity
-    springs = laws_of(law, *sizes)
+    block = opening_block(model, model.velocity, full=True) if options.full else model.reduced
+    shape = block.contacts, len(block.B), options.solve_limit, block.multiplicity
+    springs = laws_of(law, *shape)
     rigid = options.rule == AUGMENTED  # the limit of its passes
-    laws = laws_of(replace(law, stiffness=math.inf), *sizes) if rigid else springs
+    laws = laws_of(replace(law, stiffness=math.inf), *shape) if rigid else springs
     start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
     made = march(
         block.body,
@@ -171,13 +165,13 @@ def solve_unilateral(
         impulses=options.rule == IMPACT,
     )
     motion = model.load.motion
-    course = course_of(motion and motion.along(form.axes), form.ramp)
-    n = len(form.unknowns)
-    history = history_of(steps, 2 * n + rigid, form.contacts, len(form.B), options.energies)
-    ready = perf_counter()
+    course = course_of(motion and motion.along(block.axes), block.ramp)
+    n = len(block.unknowns)
     loop = LOOPS.get(options.rule, make_steps)
-    (reached, ended), left, how = run_loop(loop, (made, start, start), (course,), (history, steps, options.cut), steps)
-    history = reached_history(history, reached)
+    ready = perf_counter()
+    ran = run(made, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
+    history = ran.history
+    reached = len(history.solves) - 1
     with np.errstate(all="ignore"):
         values = {name: column(model, block, history, name, scheme.step) for name in columns}
     for name, moved in carried(motion, step_times(scheme, reached)).items():
@@ -185,29 +179,29 @@ def solve_unilateral(
             values[name] = values[name] + moved
     impulses = None
     if options.rule == IMPACT:
-        impulses = np.broadcast_to(scheme.step * history.force[1:].T / form.multiplicity, (2, reached))
-    notes = [f"stepped, {how}: contact opens and closes"]
+        impulses = np.broadcast_to(scheme.step * history.force[1:].T / block.multiplicity, (2, reached))
+    notes = [f"stepped, {ran.how}: contact opens and closes"]
     if n < 6:
-        notes.insert(0, f"both corners as one, unknowns {', '.join(form.unknowns)}")
+        notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
 
     def velocity(axis: int) -> Array:
-        momentum: Array = history.motion[1:, n : 2 * n] @ block.translation[axis]
+        momentum: Array = history.motion[1:, n : 2 * n] @ (block.axes[:, axis] @ block.momentum)
         return momentum / (model.block.total_mass * scheme.step)
 
     return ContactResult(
-        **run_fields(history, ended, scheme, notes, (began, ready)),
+        **run_fields(history, ran.outcome, scheme, notes, (began, ready)),
         columns=values,
         unknowns=n,
-        nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=int(left[0].made[0]),
-        contacts=form.contacts,
-        multiplicity=form.multiplicity,
+        nonzeros=int(np.count_nonzero(block.M)),
+        factorisations=ran.made,
+        contacts=block.contacts,
+        multiplicity=block.multiplicity,
         base_contacts=(0, 1),
         softness=law.softness,
         impulses=impulses,
         step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
         parts={
-            "slide": lambda: form.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+            "slide": lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
             "horizontal_velocity": lambda: velocity(0),
             "velocity": lambda: velocity(1),
         },
@@ -217,11 +211,10 @@ def solve_unilateral(
 
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
     """Return a column of every step."""
-    form = block.form
     if name == "contact_pressure":
-        return np.asarray(history.force[1:, : form.contacts].sum(axis=1) / model.base_length + 0.0)
-    row = form.observers[name]
-    return observed(block, row, history, model.load.motion, step)[1:] - row @ form.start + 0.0
+        return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
+    row = block.observers[name]
+    return observed(block, row, history, model.load.motion, step)[1:] - row @ block.start + 0.0
 
 
 def energies(
@@ -237,14 +230,13 @@ def energies(
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
     """
-    form = block.form
-    n = len(form.unknowns)
+    n = len(block.unknowns)
     z = history.motion[:, :n]
     v = history.motion[:, n : 2 * n] / scheme.step
-    load = form.start @ form.F - observed(block, form.F, history, model.load.motion, scheme.step)
+    load = block.start @ block.F - observed(block, block.F, history, model.load.motion, scheme.step)
     if model.load.motion is not None:
         moved = model.load.motion.at(scheme.step * np.arange(float(len(z))))
-        load -= moved @ (form.axes.T @ form.translation.T @ form.F)
+        load -= moved @ (block.axes.T @ block.translation.T @ block.F)
     springs = history.force
     if model.contact.damping:
         springs = np.maximum(-history.opening, 0.0) / laws.compliance

@@ -12,12 +12,12 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
-from dda.contact.unilateral import LAGGED, Unilateral
-from dda.march.compiled import run_loop
+from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
+from dda.contact.unilateral import Unilateral
 from dda.march.energy import IMPULSE, energies_of
+from dda.march.run import run
 from dda.march.step import Body as ModalBody
-from dda.march.step import History, course_of, history_of, reached_history
+from dda.march.step import History, course_of, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.one_block.contact_result import ContactResult, run_fields
@@ -123,31 +123,8 @@ class RollingModel(LoadedBlock):
         p = late_momentum(scheme, dt * (modes.shapes.T @ body.M @ V), a)
         ways = len(gap) if self.contact.shear else 0
         opening = np.concatenate([gap, np.zeros(ways)])
-        rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
-        return RollingState(np.zeros(6), p, a, R, np.zeros(len(opening)), rows, q, Q)
-
-
-def laws_of(law: Unilateral, contacts: int, limit: int) -> Laws:
-    """Return the laws of so many corners; `limit` bounds the solves before the states are searched."""
-    m = 2 * contacts if law.shear else contacts
-    across = np.arange(m) < contacts
-    cohesion = law.cohesion if law.friction is not None else np.inf
-    return Laws(
-        contacts=contacts,
-        compliance=np.where(across, law.compliance, law.softness),
-        lower=np.where(across, 0.0, -cohesion),
-        upper=np.where(across, np.inf, cohesion),
-        opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
-        slips=law.friction is not None,
-        lagged=law.rules == LAGGED and m > contacts,
-        paired=m == 4 and contacts == 2,
-        banded=False,
-        closing=0.0,
-        retardation=0.0,
-        together=limit,
-        most=0,
-    )
+        state = state_of(6, opening, np.where(opening > 0, LOWER, INSIDE))
+        return RollingState(*state._replace(p=p, a=a, R=R), q, Q)
 
 
 @dataclass(frozen=True)
@@ -245,8 +222,8 @@ def solve_rolling(
     began = perf_counter()
     body = model.body
     law = model.contact
-    corners = laws_of(law, len(body.xi), options.solve_limit)
     start = model.start(scheme)
+    corners = laws_of(law, len(body.xi), len(start.path), options.solve_limit)
     base = base_motion(model)
     weight = body.modes.shapes[:2].T @ (body.M[0, 0] * model.weight)
     rows = 4 if law.shear else 2
@@ -260,7 +237,7 @@ def solve_rolling(
             ground=np.zeros((rows, 2)),
             mobility=np.ones(6),
         ),
-        laws_of(law, 2, options.solve_limit),
+        laws_of(law, 2, rows, options.solve_limit),
         corners,
         scheme,
         body.modes.shapes,
@@ -268,12 +245,10 @@ def solve_rolling(
         *model.dead,
         options.rotation,
     )
-    history = history_of(steps, STATE, len(body.xi), len(start.path), energies=True)
     ready = perf_counter()
-    (reached, ended), left, how = run_loop(
-        make_steps, (made, start, start), (course_of(base, 0.0),), (history, steps, options.cut), steps
-    )
-    history = reached_history(history, reached)
+    ran = run(made, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
+    history = ran.history
+    reached = len(history.solves) - 1
     motion = motion_of(history.motion)
     values = observed(body, motion, history)
     velocity = motion.V[1:, :2] @ model.body.to_base
@@ -284,13 +259,13 @@ def solve_rolling(
             placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
         return placed[:, 1:] - placed[:, :1]
 
-    note = f"stepped, {how}: outline and contacts anew at every step, {options.rotation} rotation"
+    note = f"stepped, {ran.how}: outline and contacts anew at every step, {options.rotation} rotation"
     return RollingResult(
-        **run_fields(history, ended, scheme, [note], (began, ready)),
+        **run_fields(history, ran.outcome, scheme, [note], (began, ready)),
         columns={name: values[name] for name in columns},
         unknowns=6,
         nonzeros=int(np.count_nonzero(body.M)),
-        factorisations=int(left[0].made[0]),
+        factorisations=ran.made,
         contacts=len(body.xi),
         multiplicity=1.0,
         base_contacts=body.base,

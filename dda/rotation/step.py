@@ -19,7 +19,7 @@ Of a convex outline two corners at most touch a plane: the rows are those of one
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,13 +27,13 @@ from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping
 from dda.march.step import (
+    AnyState,
     Body,
     Course,
     Length,
     March,
     Part,
     StageRoom,
-    State,
     add_push,
     begin_step,
     end_modes,
@@ -43,6 +43,7 @@ from dda.march.step import (
     prescribe,
     push_modes,
     set_length,
+    state_of,
     steps_by,
     write_flexibility,
 )
@@ -172,8 +173,9 @@ def rolling_march(
         **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
     )
     made = march(body, pair, scheme, np.zeros(m), rolling)
-    between = RollingState(*made.between._replace(path=np.zeros(len(ground)), rows=rows_of(np.zeros(len(ground)), np.zeros(len(ground)))), np.zeros(6), np.eye(2))
-    return made._replace(between=between, work=work_for(2, m))
+    rows = len(ground)
+    between = state_of(len(body.k), np.zeros(rows), np.zeros(rows))
+    return made._replace(between=RollingState(*between, np.zeros(6), np.eye(2)), work=work_for(2, m))
 
 
 def late_share(delta: float) -> float:
@@ -521,9 +523,7 @@ def accept(
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account(
-    march: March, state: RollingState, after: RollingState, course: Course, part: Part, sums: Vector
-) -> None:
+def account(march: March, state: RollingState, after: RollingState, course: Course, part: Part, sums: Vector) -> None:
     """Add what an accepted part of a step slips, gives and loses by its contacts; the algorithm loses the rest."""
     rolling = march.method
     growth = area_growth(rolling, state.Q)
@@ -532,7 +532,7 @@ def account(
         mass = growth if rolling.translation[i] == 1 else growth * growth
         kinetic += mass * state.p[i] * state.p[i] / 2
     add_damping(march, part, kinetic / (march.scheme.step * march.scheme.step), sums)
-    before = state
+    before: AnyState = state
     if march.scheme.stages == 2:
         account_stage(march, march.first, state, march.between, course, part, sums)
         before = march.between
@@ -542,8 +542,8 @@ def account(
 def account_stage(
     march: March,
     stage: StageRoom,
-    before: RollingState,
-    after: RollingState,
+    before: AnyState,
+    after: AnyState,
     course: Course,
     part: Part,
     sums: Vector,

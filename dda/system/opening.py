@@ -14,9 +14,9 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import find
+from dda.contact.rows import find, laws_of
 from dda.contact.springs import Contact, base_directions
-from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral, laws_of
+from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
 from dda.march.energy import energies_of
 from dda.march.step import course_of, history_of, reached_history

@@ -8,7 +8,8 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.unilateral import Unilateral, laws_of
+from dda.contact.rows import laws_of
+from dda.contact.unilateral import Unilateral
 from dda.march.step import course_of, history_of
 from dda.model.arrays import Array
 from dda.one_block.modes import Mode, modes_of

@@ -20,7 +20,8 @@ from dda.column import contacts as column_contacts
 from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
 from dda.model.block import Block
-from dda.one_block import gap_form, solution, unilateral_step
+from dda.march import step as march_step
+from dda.one_block import gap_form, solution
 from dda.one_block import response as dda_vibration
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
@@ -97,7 +98,7 @@ DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
 DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
 DDA_OPENED = Seam(dda, dda.solve_unilateral)
-DDA_REFERENCES = Seam(unilateral_step, unilateral_step.refer)
+DDA_REFERENCES = Seam(march_step, march_step.end_paths)
 DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 DDA_SCHEME = Seam(dda_adapter, dda_adapter.scheme_of)
 
