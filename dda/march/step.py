@@ -421,7 +421,7 @@ def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState)
         room.x[i] = length.inverse[i] * (moving + numbers.alpha * held)
 
 
-def free_rows(march: March, before: State) -> None:
+def free_rows(march: March, before: AnyState) -> None:
     """Write the openings at the end of a stage without contact forces."""
     body = march.body
     room = march.room
@@ -492,7 +492,7 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, 
         after.p[i] = p / ratio
 
 
-def end_paths(march: March, flexible: Flexibility, before: State, after: State) -> None:
+def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyState) -> None:
     """Write the references: that of a row which slips moves, what is open takes it along."""
     laws = march.laws
     n = laws.contacts

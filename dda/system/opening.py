@@ -19,7 +19,7 @@ from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
 from dda.march.energy import energies_of
-from dda.march.step import course_of, history_of, reached_history
+from dda.march.step import course_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.one_block.contact_result import ContactResult, run_fields
@@ -28,7 +28,7 @@ from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED
-from dda.system.step import glued_march, make_steps, start_state
+from dda.system.step import glued_march, run_glued
 from dda.system.subdivision import Pattern, subdivided
 from dda.system.system import BlockSystem, Equations
 
@@ -131,13 +131,10 @@ def solve_opening_system(
     nonzeros = glue.solver(made.last.numbers, 1.0).factor.nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
     upwards = opening.velocity * equations.rigid[:, 1]
-    start, after = (start_state(glue, opened, upwards, np.zeros(2)) for _ in range(2))
     course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)
-    history = history_of(steps, len(by_modes) + 2 + 2 * options.energies, points, len(rows), options.energies)
     ready = perf_counter()
-    with np.errstate(all="ignore"):
-        reached, ended = make_steps(made, start, after, course, history, steps, options.cut)
-    history = reached_history(history, reached)
+    history, ended = run_glued(made, course, steps, opened, upwards, np.zeros(2), options.cut)
+    reached = len(history.solves) - 1
     pressure = history.force[1:, :points].sum(axis=1) / opening.system.base_length
     mass = math.fsum(block.total_mass for block in opening.system.blocks)
     _, slides, load, momentum, stored = np.split(history.motion.T, np.cumsum([len(columns), points, 1, 2]))

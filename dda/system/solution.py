@@ -10,7 +10,7 @@ import numpy as np
 
 from dda.contact.rows import laws_of
 from dda.contact.unilateral import Unilateral
-from dda.march.step import course_of, history_of
+from dda.march.step import course_of
 from dda.model.arrays import Array
 from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result, check_damping, check_request, linear_result
@@ -18,7 +18,7 @@ from dda.scheme import harmonic
 from dda.scheme.harmonic import largest_frequency
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import plain_stage
-from dda.system.step import glued_march, make_steps, start_state
+from dda.system.step import glued_march, run_glued
 from dda.system.system import BlockSystem, Equations
 
 
@@ -83,11 +83,8 @@ def stepped(
     solvers = [glue.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
     course = course_of(system.motion, 0.0)
     moved = np.zeros(2) if system.motion is None else system.motion.at([0.0])[0]
-    start, after = (start_state(glue, np.zeros(0), 0 * equations.k, moved) for _ in range(2))
-    history = history_of(steps, len(names), 0, 0, energies=False)
     ready = perf_counter()
-    with np.errstate(all="ignore"):
-        make_steps(made, start, after, course, history, steps, 1.0)
+    history, _ = run_glued(made, course, steps, np.zeros(0), 0 * equations.k, moved)
     return linear_result(
         scheme,
         (began, ready),

@@ -27,22 +27,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, find, rows_of, unpair
+from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, find, rows_of, unpair
 from dda.march.account import account_with
 from dda.march.compiled import as_lists, called_often
 from dda.march.energy import ALGORITHMIC, bulk_loss
 from dda.march.step import (
     Body,
     Course,
+    History,
     March,
     Part,
     StageRoom,
-    State,
     end_paths,
     forces_of_ways,
     free_rows,
+    history_of,
     march,
     prescribe,
+    reached_history,
     steps_by,
 )
 from dda.model.arrays import Array
@@ -84,11 +86,18 @@ class Glue:
         return lru_cache(LENGTHS)(partial(StageSolver, self))
 
 
-class GluedState(State):
-    """Where glued blocks are."""
+@dataclass(eq=False)
+class GluedState:
+    """Where glued blocks are: what `dda.march.step.State` has, and the glue."""
 
+    z: Array
+    p: Array
+    a: Array
+    R: Array
+    path: list[float]
+    rows: Rows
     glue: Array  # (gaps,) dt^2 mu
-    felt: Array  # (n,) g; without viscous damping z itself
+    felt: Array  # (n,) g; z without viscous damping
     held: Array  # (n,) dt^2 (F - k g - B' mu)
 
 
@@ -193,7 +202,7 @@ def glued_march(
         ground=np.column_stack([~across, across]).astype(float),
         mobility=np.ones(len(equations.k)),
     )
-    made = march(body, laws, scheme, np.zeros(m), None)
+    made = march(body, laws, scheme, np.zeros(m))
     closed = made.between.rows
     search, hold = called_often(
         find, (laws, closed, made.last.whole.flexible, closed, made.work), steps * (laws.contacts // 2) ** 2
@@ -221,8 +230,8 @@ def glued_march(
         share=scheme.alpha / beta if beta else 1.0,
     )
     between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
-    held: March = as_lists(made)
-    return held._replace(laws=hold(laws), between=between, work=hold(made.work), method=glue)
+    lists: March = as_lists(made)
+    return lists._replace(laws=hold(laws), between=between, work=hold(made.work), method=glue)
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
@@ -240,14 +249,26 @@ def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> Gl
     scheme = glue.scheme
     force = -(scheme.step**2 * (glue.equations.kappa @ (glue.equations.G @ moved)))
     R = glue.load - glue.Bt @ force
-    a = R.copy() if scheme.start == "consistent" else 0 * R
+    a = R if scheme.start == "consistent" else 0 * R
     p = late_momentum(scheme, scheme.step * velocity, a)
     rows = glue.hold(rows_of(opening, np.where(opening > 0, LOWER, INSIDE)))
-    state = GluedState(0 * R, p, a, R, [0.0] * len(opening), rows)
-    state.glue = force
-    state.felt = 0 * R if scheme.damped else state.z
-    state.held = R.copy()
-    return state
+    return GluedState(0 * R, p, a, R, [0.0] * len(opening), rows, force, 0 * R, R)
+
+
+def run_glued(
+    march: March, course: Course, steps: int, opening: Array, velocity: Array, moved: Array, cut: float = 0.3
+) -> tuple[History, int]:
+    """Make the steps from the state of `start_state` on; return them, and how they ended."""
+    glue = march.method
+    start, after = (start_state(glue, opening, velocity, moved) for _ in range(2))
+    m = len(opening)
+    kept = len(glue.observed[0])
+    if m:
+        kept += 2 + 2 * glue.energies
+    history = history_of(steps, kept, march.laws.contacts, m, glue.energies)
+    with np.errstate(all="ignore"):
+        reached, ended = make_steps(march, start, after, course, history, steps, cut)
+    return reached_history(history, reached), ended
 
 
 def make_stage(
@@ -288,15 +309,16 @@ def make_stage(
         x = x + solver.moved @ force
         dmu = dmu + solver.glued @ force
         pushed = march.scheme.step**2 * (force @ glue.contact)
-    np.add(before.felt, x, out=after.felt)
-    np.add(before.glue, dmu, out=after.glue)
-    np.subtract(glue.load - glue.k * after.felt, glue.Bt @ after.glue, out=after.held)
-    np.add(after.held, pushed - drag, out=after.R)
-    after.a[:] = inertia_force(numbers, after.R, start.R, start.a)
+    after.felt = before.felt + x
+    after.glue = before.glue + dmu
+    after.held = glue.load - glue.k * after.felt - glue.Bt @ after.glue
+    after.R = after.held + (pushed - drag)
+    after.a = inertia_force(numbers, after.R, start.R, start.a)
+    after.z = after.felt
     if damped:
-        after.a[:] /= glue.mass_factor
-        after.z[:] = before.z + glue.share * x + (1 - glue.share) * ahead - glue.share * faster
-    after.p[:] = velocity_corrector(numbers, start.p, start.a, before.a, after.a)
+        after.a = after.a / glue.mass_factor
+        after.z = before.z + glue.share * x + (1 - glue.share) * ahead - glue.share * faster
+    after.p = velocity_corrector(numbers, start.p, start.a, before.a, after.a)
     return outcome, solves
 
 
