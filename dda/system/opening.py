@@ -30,7 +30,7 @@ from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED
 from dda.system.step import glued_march, run_glued
 from dda.system.subdivision import Pattern, subdivided
-from dda.system.system import BlockSystem, Equations
+from dda.system.system import BlockSystem
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,17 +38,12 @@ class OpeningSystem:
     """Sub-blocks, glue and the points of the base, in their order from M to N."""
 
     system: BlockSystem  # without supports
-    law: Unilateral  # of each point
-    normals: Array  # (points, unknowns) gap by D
-    tangents: Array  # (points, unknowns) displacement along the base by D
+    law: Unilateral  # of a corner of the block
+    share: float  # of it in the law of a point
+    contact: Array  # (2, points, unknowns) gap, and displacement along the base, by the unknowns of the blocks
     velocity: float  # at t = 0, upwards positive [m/s]
     axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the blocks
     motion: BaseMotion | None  # of the base
-
-    @property
-    def equations(self) -> Equations:
-        """The equations in all unknowns."""
-        return self.system.equations
 
 
 def opening_subdivided(
@@ -67,22 +62,15 @@ def opening_subdivided(
     tangent, normal, _ = base_directions(model.block, model.base)
     supports = [joint for joint in cut.joints if joint.second == FIXED]
     supports.sort(key=lambda joint: float(tangent @ np.array(joint.start)))
-    ends = [(joint.first, np.array(place)) for joint in supports for place in (joint.start, joint.end)]
-    normals, tangents = np.zeros((2, len(ends), len(cut.blocks), 6))
-    for i, (number, (x, y)) in enumerate(ends):
-        T = cut.blocks[number].T(float(x), float(y))
-        normals[i, number] = normal @ T
-        tangents[i, number] = tangent @ T
-    share = supports[0].normal  # a side that is cut evenly has edges of one length
-    contact = model.contact
-    law = replace(
-        contact, stiffness=contact.stiffness * share, shear=contact.shear * share, cohesion=contact.cohesion * share
-    )
+    ends = [(joint.first, place) for joint in supports for place in (joint.start, joint.end)]
+    contact = np.zeros((2, len(ends), len(cut.blocks), 6))
+    for i, (number, place) in enumerate(ends):
+        contact[:, i, number] = np.array([normal, tangent]) @ cut.blocks[number].T(*place)
     return OpeningSystem(
         system=replace(cut, joints=[joint for joint in cut.joints if joint.second != FIXED]),
-        law=law,
-        normals=normals.reshape(len(ends), -1),
-        tangents=tangents.reshape(len(ends), -1),
+        law=model.contact,
+        share=supports[0].normal,  # a side that is cut evenly has edges of one length
+        contact=contact.reshape(2, len(ends), -1),
         velocity=model.velocity,
         axes=np.array([tangent, normal]),
         motion=model.load.motion,
@@ -118,15 +106,14 @@ def solve_opening_system(
         raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
     check_scheme(law, scheme)
     began = perf_counter()
-    equations = opening.equations
-    size = opening.system.load_size
-    points = len(opening.normals)
-    rows = np.concatenate([opening.normals, opening.tangents]) if law.shear else opening.normals
-    laws = laws_of(law, points, len(rows), options.solve_limit)
-    slid = opening.tangents @ equations.shapes
-    by_modes = np.concatenate([equations.rows(columns)[0], slid, [size * equations.F]])
+    equations = opening.system.equations
+    points = opening.contact.shape[1]
+    rows = np.concatenate(opening.contact if law.shear else opening.contact[:1])
+    laws = laws_of(law, points, len(rows), options.solve_limit, opening.share)
+    load = opening.system.load_size * equations.F
+    by_modes = np.concatenate([equations.rows(columns)[0], opening.contact[1] @ equations.shapes, [load]])
     observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
-    made = glued_march(equations, size, scheme, laws, rows, observed, options.energies, steps)
+    made = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
     glue = made.method
     nonzeros = glue.solver(made.last.numbers, 1.0).factor.nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
@@ -137,7 +124,7 @@ def solve_opening_system(
     reached = len(history.solves) - 1
     pressure = history.force[1:, :points].sum(axis=1) / opening.system.base_length
     mass = math.fsum(block.total_mass for block in opening.system.blocks)
-    _, slides, load, momentum, stored = np.split(history.motion.T, np.cumsum([len(columns), points, 1, 2]))
+    _, slides, done, momentum, stored = np.split(history.motion.T, np.cumsum([len(columns), points, 1, 2]))
 
     def slide() -> Array:
         base = 0.0 if opening.motion is None else opening.motion.at(step_times(scheme, reached)) @ opening.axes[0]
@@ -145,7 +132,7 @@ def solve_opening_system(
 
     def balance() -> dict[str, Array]:
         springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
-        return energies_of((*stored, springs, 0.0 - load[0]), history.sums, scheme.table is not None)
+        return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
 
     how = PLAIN if glue.find is find else COMPILED
     return ContactResult(
@@ -160,7 +147,7 @@ def solve_opening_system(
         contacts=points,
         multiplicity=1.0,
         base_contacts=(0, -1),
-        softness=law.softness,
+        softness=law.softness / opening.share,
         parts={
             "slide": slide,
             "horizontal_velocity": lambda: momentum[0, 1:] / (mass * scheme.step),

@@ -10,8 +10,9 @@ import numpy as np
 
 from dda.contact.rows import laws_of
 from dda.contact.unilateral import Unilateral
-from dda.march.step import course_of
+from dda.march.step import March, course_of
 from dda.model.arrays import Array
+from dda.model.load import BaseMotion
 from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result, check_damping, check_request, linear_result
 from dda.scheme import harmonic
@@ -79,17 +80,13 @@ def stepped(
     none = np.zeros((0, equations.shapes.shape[0]))
     laws = laws_of(Unilateral(1.0), 0, 0, 1)
     made = glued_march(equations, system.load_size, scheme, laws, none, (by_modes, by_force), False, steps)
-    glue = made.method
-    solvers = [glue.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
-    course = course_of(system.motion, 0.0)
-    moved = np.zeros(2) if system.motion is None else system.motion.at([0.0])[0]
+    solvers = [made.method.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
     ready = perf_counter()
-    history, _ = run_glued(made, course, steps, np.zeros(0), 0 * equations.k, moved)
     return linear_result(
         scheme,
         (began, ready),
         names,
-        history.motion[1:].T.copy(),
+        observed_steps(made, system.motion, steps),
         system.load_size,
         unknowns=len(equations.F),
         nonzeros=solvers[-1].factor.nonzeros,
@@ -97,6 +94,13 @@ def stepped(
         solves=steps * sum(1 + solver.corrections for solver in solvers),
         notes=_savings(system, equations),
     )
+
+
+def observed_steps(march: March, motion: BaseMotion | None, steps: int) -> Array:
+    """Return what is observed of every step from rest, (columns, steps)."""
+    moved = np.zeros(2) if motion is None else motion.at([0.0])[0]
+    history, _ = run_glued(march, course_of(motion, 0.0), steps, np.zeros(0), 0 * march.method.k, moved)
+    return history.motion[1:].T.copy()
 
 
 def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:

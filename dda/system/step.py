@@ -362,4 +362,5 @@ def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     return bool(np.isfinite(state.z).all())
 
 
-make_steps = steps_by(make_stage, account_with(half_square, add_bulk_loss), keep)
+account = account_with(half_square, add_bulk_loss)
+make_steps = steps_by(make_stage, account, keep)
