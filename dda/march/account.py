@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Laws, Rows
 from dda.march.energy import ALGORITHMIC, CONTACT, DAMPING, FRICTION, GIVEN, IMPULSE, SWITCHING, bulk_loss
 from dda.march.step import AnyState, Course, March, Part, StageRoom, State, prescribe
 
 
-def account(march: March, state: State, after: State, course: Course, part: Part, sums: Vector) -> None:
-    """Add what an accepted part of a step loses, and what loads and base give [J]."""
-    scheme = march.scheme
-    dt2 = scheme.step * scheme.step
-    add_damping(march, part, half_square(state.p) / dt2, sums)
-    before = state
-    if scheme.stages == 2:
-        account_stage(march, march.first, state, march.between, course, part, sums)
-        before = march.between
-    account_stage(march, march.last, before, after, course, part, sums)
-    if scheme.newmark:
-        add_bulk_loss(march, state, after, part, sums)
+def account_with(
+    half_square: Callable[[Any], float], add_bulk_loss: Callable[..., None]
+) -> Callable[[March, State, State, Course, Part, Vector], None]:
+    """Return what adds up the losses of a part of a step.
+
+    Parameters
+    ----------
+    half_square
+        Of a vector of modes.
+    add_bulk_loss
+        Adds what Newmark's step loses beside the contacts: (march, state, after, part, sums).
+    """
+
+    def account(march: March, state: State, after: State, course: Course, part: Part, sums: Vector) -> None:
+        """Add what an accepted part of a step loses, and what loads and base give [J]."""
+        scheme = march.scheme
+        dt2 = scheme.step * scheme.step
+        add_damping(march, part, half_square(state.p) / dt2, sums)
+        before = state
+        if scheme.stages == 2:
+            account_stage(march, march.first, state, march.between, course, part, sums)
+            before = march.between
+        account_stage(march, march.last, before, after, course, part, sums)
+        if scheme.newmark:
+            add_bulk_loss(march, state, after, part, sums)
+
+    return account
 
 
 def add_bulk_loss(march: March, state: State, after: State, part: Part, sums: Vector) -> None:
@@ -129,3 +147,6 @@ def spring_force(laws: Laws, rows: Rows, r: int) -> float:
     if laws.retardation > 0:
         return float(max(0.0 - rows.opening[r], 0.0) / laws.compliance[r])
     return float(rows.force[r])
+
+
+account = account_with(half_square, add_bulk_loss)

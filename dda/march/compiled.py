@@ -74,6 +74,26 @@ def run_loop(
         return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
 
 
+def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, Callable[[Any], Any]]:
+    """Return a function that a loop calls at every step which is not compiled itself, and what its records are held by.
+
+    Parameters
+    ----------
+    function
+        The plain function, of named tuples.
+    records
+        Such ones, which show their types.
+    steps
+        Steps of one block that take as long.
+    """
+    if steps >= SHORT:
+        converted = tuple(as_record(part) for part in records)
+        machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
+        if machine_code is not None:
+            return machine_code, as_record
+    return function, as_lists
+
+
 def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
     """Return what compiled code is made for: the types of its arguments, with the sizes of all arrays of records."""
     return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)

@@ -324,21 +324,27 @@ def moved_row(body: Body, r: int, x: Vector) -> float:
 
 
 def push_modes(march: March, force: Vector) -> None:
-    """Write B' lambda; of two ways that are paired their sum and half their difference push."""
+    """Write B' lambda."""
     room = march.room
     for i in range(len(room.pushed)):
         room.pushed[i] = 0.0
     add_push(march, force)
 
 
-def add_push(march: March, force: Vector) -> None:
-    """Add B' lambda."""
-    body = march.body
+def forces_of_ways(march: March, force: Vector) -> None:
+    """Write the forces as rows of the body: of two ways that are paired their sum and half their difference."""
     room = march.room
     copy(force, room.force)
     if march.laws.paired:
         room.force[2] = force[2] + force[3]
         room.force[3] = (force[3] - force[2]) / 2
+
+
+def add_push(march: March, force: Vector) -> None:
+    """Add B' lambda."""
+    body = march.body
+    room = march.room
+    forces_of_ways(march, force)
     for r in range(len(force)):
         if room.force[r] != 0.0:
             weight = body.weight[r]
@@ -417,7 +423,7 @@ def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState)
         room.x[i] = length.inverse[i] * (moving + numbers.alpha * held)
 
 
-def free_rows(march: March, before: State) -> None:
+def free_rows(march: March, before: AnyState) -> None:
     """Write the openings at the end of a stage without contact forces."""
     body = march.body
     room = march.room
@@ -488,7 +494,7 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, 
         after.p[i] = p / ratio
 
 
-def end_paths(march: March, length: Length, before: State, after: State) -> None:
+def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyState) -> None:
     """Write the references: that of a row which slips moves, what is open takes it along."""
     laws = march.laws
     n = laws.contacts
@@ -496,7 +502,7 @@ def end_paths(march: March, length: Length, before: State, after: State) -> None
     for r in range(len(rows.force)):
         after.path[r] = before.path[r] + rows.slip[r]
         if r >= n and (rows.state[r - n] != INSIDE or before.rows.state[r - n] != INSIDE):
-            way = march.room.free[r] + flexed(laws, length.flexible, r, rows.force)
+            way = march.room.free[r] + flexed(laws, flexible, r, rows.force)
             after.path[r] = before.path[r] + before.rows.opening[r] + way - rows.opening[r]
 
 
@@ -525,7 +531,7 @@ def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int,
         if outcome == FOUND:
             push_modes(march, march.work.mean)
             end_modes(march, stage, length, before, after)
-            end_paths(march, length, before, after)
+            end_paths(march, length.flexible, before, after)
         return outcome, solves
 
     return make_stage

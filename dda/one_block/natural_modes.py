@@ -55,9 +55,9 @@ def free_modes(M: Array, K: Array) -> tuple[Array, Array]:
     rigid = K == 0
     strained = ~rigid
     count = np.count_nonzero(strained)
-    soft = M[np.ix_(rigid, rigid)]
-    follow = -np.linalg.solve(soft, M[np.ix_(rigid, strained)])  # rigid motion that keeps strains free of momentum
-    inertia = M[np.ix_(strained, strained)] + M[np.ix_(strained, rigid)] @ follow
+    soft = M[rigid][:, rigid]
+    follow = -np.linalg.solve(soft, M[rigid][:, strained])  # rigid motion that keeps strains free of momentum
+    inertia = M[strained][:, strained] + M[strained][:, rigid] @ follow
     frequencies, strains = graded_modes((inertia + inertia.T) / 2, K[strained])
     shapes = np.zeros(M.shape)
     shapes[strained, :count] = strains

@@ -10,6 +10,7 @@ have one solution; mu = (R' M R)^-1 R' F is the acceleration that a load without
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,17 +19,18 @@ from time import perf_counter
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.model.block import Block, displacement_rows
+from dda.model.block import Block
 from dda.model.checks import check_count
 from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result
 from dda.scheme.newmark import Scheme
-from dda.system.joints import FIXED, Joint, Point, shared_edges
+from dda.system.joints import FIXED, Joint, Point, common_part, shared_edges
 from dda.system.solution import lowest_modes, stepped
 from dda.system.system import BlockSystem, Equations, SurfaceLoad
 
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
 SAME_LINE = 1e-9  # of the extent: how far a point may lie beside a line
+Piece = tuple[int, Point, Point]  # of the outline, with its block
 
 
 @dataclass(frozen=True)
@@ -76,12 +78,12 @@ def glued_blocks(
     outline = [*_outline(blocks, joints)]
     held = []
     for clamp in clamps:
-        pieces = [*_on_line(outline, *clamp, "clamp")]
+        pieces = _on_line(outline, *clamp, "clamp")
         held += pieces
         joints += [Joint(block, FIXED, start, end, stiffness, stiffness) for block, start, end in pieces]
     loads = []
     for load in tractions:
-        pieces = [*_on_line(outline, load.start, load.end, "load")]
+        pieces = _on_line(outline, load.start, load.end, "load")
         loads += [SurfaceLoad(block, start, end, load.traction) for block, start, end in pieces]
     if any(stress):
         for block, start, end in outline:
@@ -101,64 +103,41 @@ def _traction_of(stress: tuple[float, float, float], start: Point, end: Point) -
     return float(x), float(y)
 
 
-def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[tuple[int, Point, Point]]:
+def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece]:
     """Yield the pieces of the blocks' edges that no joint lies on, each with its block at the left."""
-    joined: dict[int, list[tuple[Array, Array]]] = {}
+    joined: dict[int, list[tuple[Point, Point]]] = {}
     for joint in joints:
         for body in (joint.first, joint.second):
-            joined.setdefault(body, []).append((np.array(joint.start), np.array(joint.end)))
+            joined.setdefault(body, []).append((joint.start, joint.end))
     slack = SAME_LINE * float(np.max(np.ptp(np.vstack([block.corners for block in blocks]), axis=0)))
     for number, block in enumerate(blocks):
         for index in range(len(block.corners)):
             start, end = block.edge(index)
-            length = float(np.hypot(*(end - start)))
-            tangent = (end - start) / length
-            covered = []
-            for piece in joined.get(number, []):
-                offsets = [abs(float(tangent[0] * (p - start)[1] - tangent[1] * (p - start)[0])) for p in piece]
-                if max(offsets) <= slack:
-                    low, high = sorted(float((p - start) @ tangent) for p in piece)
-                    covered.append((max(low, 0.0), min(high, length)))
-            place = 0.0
-            for low, high in sorted([*covered, (length, length)]):
-                if low - place > slack:
-                    ends = start + place * tangent, start + low * tangent
-                    yield number, _point(ends[0]), _point(ends[1])
-                place = max(place, high)
+            parts = [common_part((start, end), piece, slack) for piece in joined.get(number, [])]
+            covered = sorted((part for part in parts if part), key=lambda part: math.dist(part[0], start))
+            place = (float(start[0]), float(start[1]))
+            for low, high in [*covered, (tuple(end.tolist()), place)]:
+                if math.dist(low, start) - math.dist(place, start) > slack:
+                    yield number, place, low
+                place = max(place, high, key=lambda p: math.dist(p, start))
 
 
-def _on_line(
-    outline: Sequence[tuple[int, Point, Point]], start: Point, end: Point, what: str
-) -> Iterator[tuple[int, Point, Point]]:
-    """Yield what lies of the outline between two points of a line.
+def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> list[Piece]:
+    """Return what lies of the outline between two points of a line.
 
     Raises
     ------
     ValueError
         Nothing does.
     """
-    a = np.array(start, float)
-    along = np.array(end, float) - a
-    length = float(np.hypot(*along))
+    length = math.dist(start, end)
     if not length > 0:
         raise ValueError(f"{what}: must have two ends, got {start!r} and {end!r}")
-    tangent = along / length
-    slack = SAME_LINE * length
-    found = False
-    for block, first, last in outline:
-        places = [float((np.array(p) - a) @ tangent) for p in (first, last)]
-        offsets = [abs(float(tangent[0] * (p[1] - a[1]) - tangent[1] * (p[0] - a[0]))) for p in (first, last)]
-        low, high = max(min(places), 0.0), min(max(places), length)
-        if max(offsets) <= slack and high - low > slack:
-            ends = (low, high) if places[0] < places[1] else (high, low)
-            found = True
-            yield block, _point(a + ends[0] * tangent), _point(a + ends[1] * tangent)
-    if not found:
+    parts = [(block, common_part((low, high), (start, end), SAME_LINE * length)) for block, low, high in outline]
+    pieces = [(block, *part) for block, part in parts if part is not None]
+    if not pieces:
         raise ValueError(f"{what}: must lie on the outline, got {start!r} to {end!r}")
-
-
-def _point(place: Array) -> Point:
-    return float(place[0]), float(place[1])
+    return pieces
 
 
 class GluedBlocks:
@@ -185,13 +164,13 @@ class GluedBlocks:
             If nothing holds the blocks and their loads have a resultant.
         """
         equations = self.statics
-        D, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
+        z, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
         if not self.held:
             inertia = equations.B.T[:, -3:] @ force[-3:]
             size = float(np.sum(np.abs(equations.F)))
             if float(np.max(np.abs(inertia))) > UNBALANCED * size:
                 raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
-        return (D * self.system.load_size).reshape(-1, 6)
+        return np.asarray(equations.shapes @ (z * self.system.load_size)).reshape(-1, 6)
 
     @property
     def strains(self) -> Array:
@@ -227,9 +206,9 @@ class GluedBlocks:
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
         """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
         equations = self.statics
-        squares, shapes, _ = lowest_modes(equations, equations.at_rest, count)
-        D = self.rest.ravel() / self.system.load_size
-        shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ D))
+        squares, shapes, _ = lowest_modes(equations, count)
+        z, _ = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
+        shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ z))
         return modes_of(scheme, np.sqrt(squares), shares, 0 * shares, np.argsort(squares))
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
@@ -245,7 +224,7 @@ class GluedBlocks:
         equations = self.system.equations
         none = np.zeros((len(rows), len(equations.pressure)))
         names = [str(number) for number in range(len(rows))]
-        return stepped(self.system, equations, scheme, steps, names, (rows, none), began)
+        return stepped(self.system, equations, scheme, steps, names, (rows @ equations.shapes, none), began)
 
 
 def _without_rigid_motion(system: BlockSystem) -> Equations:
@@ -253,16 +232,10 @@ def _without_rigid_motion(system: BlockSystem) -> Equations:
     from scipy.sparse import block_diag, csr_array, vstack
 
     equations = system.equations
-    motions = np.zeros((len(system.blocks), 6, 3))
-    for number, block in enumerate(system.blocks):
-        x, y = block.section.centroid
-        motions[number, :3] = np.eye(3)
-        motions[number, :2, 2] = displacement_rows(x, y)[:, 2]
-    momentum = csr_array(equations.blockwise(equations.mass) @ csr_array(motions.reshape(-1, 3)))
-    scale = momentum.max()  # rows of the size of the others
+    momentum = equations.rigid / np.max(equations.rigid)  # rows of the size of the others
     return replace(
         equations,
-        B=csr_array(vstack([equations.B, momentum.T / scale])),
+        B=csr_array(vstack([equations.B, csr_array(momentum.T)])),
         C=csr_array(block_diag([equations.C, csr_array((3, 3))])),
         pressure=np.concatenate([equations.pressure, np.zeros(3)]),
     )

@@ -22,6 +22,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block, displacement_rows
@@ -95,24 +96,15 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[tuple[int, int]]]:
     points = np.array([place for joint in joints for place in (joint.start, joint.end)]).reshape(-1, 2)
     if not len(points):
         return []
-    cell = _SAME_PLACE * float(np.max(np.ptp(points, axis=0)))
-    labels = _labels(points - points.min(axis=0), 4 * cell)
-    springs_by_point: dict[int, list[tuple[int, int]]] = {}
-    for number, label in enumerate(labels):
-        springs_by_point.setdefault(label, []).append((number // 2, number % 2))
+    slack = _SAME_PLACE * float(np.max(np.ptp(points, axis=0)))
+    places = np.zeros(points.shape, dtype=int)
+    for axis, x in enumerate(points.T):
+        order = np.argsort(x)
+        places[order[1:], axis] = np.cumsum(np.diff(x[order]) > slack)
+    springs_by_point: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for number, (i, j) in enumerate(places.tolist()):
+        springs_by_point.setdefault((i, j), []).append((number // 2, number % 2))
     return list(springs_by_point.values())
-
-
-def _labels(points: Array, cell: float) -> list[int]:
-    """Return a number for each point, equal where points lie within a quarter of a cell of each other."""
-    label_of_point: dict[tuple[int, int], int] = {}
-    labels = []
-    for number, (x, y) in enumerate((points / cell).tolist()):
-        corners = {(math.floor(x + a), math.floor(y + b)) for a in (-0.25, 0.25) for b in (-0.25, 0.25)}
-        label = next((label_of_point[corner] for corner in corners if corner in label_of_point), number)
-        label_of_point.update(dict.fromkeys(corners, label))
-        labels.append(label)
-    return labels
 
 
 def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
@@ -134,35 +126,27 @@ def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
 def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[int, int]]) -> Gaps:
     """Return the gaps where springs meet in a point: the vector across each branch of a spanning tree."""
     met = sorted(met, key=lambda s: -(joints[s[0]].normal + joints[s[0]].shear))
-    paths: dict[int, tuple[int, Array]] = {}  # body -> (root of its tree, sum of gaps from the root to it)
-    tree: list[tuple[int, int]] = []
-    most = len(met)
-    for j, _ in met:
-        a = joints[j].first
-        b = joints[j].second
-        (root_a, path_a), (root_b, path_b) = (paths.setdefault(x, (x, np.zeros(most))) for x in (a, b))
-        if root_a == root_b:
-            continue
-        # d_a - d_b is the new gap: every body of b's tree is reached from a's root now.
-        shift = path_a - path_b - np.eye(most)[len(tree)]
-        paths |= {x: (root_a, path + shift) for x, (root, path) in paths.items() if root == root_b}
-        tree.append((a, b))
-    size = len(tree)
-    kappa = np.zeros((2 * size, 2 * size))
-    for j, _ in met:
-        across = (paths[joints[j].first][1] - paths[joints[j].second][1])[:size]
-        pairs = np.outer(across, across)[:, None, :, None] * joints[j].stiffness[:, None, :]  # what np.kron multiplies
-        kappa += pairs.reshape(kappa.shape)
-    joint = joints[met[0][0]]
-    end = met[0][1]
-    point = np.array(joint.end if end else joint.start)
-    bodies: dict[int, Array] = {}
-    for branch, (a, b) in enumerate(tree):
-        for body, sign in ((a, 1.0), (b, -1.0)):
-            value = _value(blocks, body, point)
-            rows = bodies.setdefault(body, np.zeros((2 * size, value.shape[1])))
-            rows[2 * branch : 2 * branch + 2] += sign * value
-    return Gaps(bodies, kappa)
+    springs = [joints[j] for j, _ in met]
+    bodies = list(dict.fromkeys(body for joint in springs for body in (joint.first, joint.second)))
+    ends = np.array([[(body == joint.first) - (body == joint.second) for body in bodies] for joint in springs], float)
+    root = {body: body for body in bodies}
+    tree = []
+    for number, joint in enumerate(springs):
+        first = root[joint.first]
+        second = root[joint.second]
+        if first != second:
+            tree.append(number)
+            root = {body: first if known == second else known for body, known in root.items()}
+    branches = ends[tree]
+    across = np.rint(ends @ np.linalg.pinv(branches))  # what each spring spans, by the branches: whole numbers
+    kappa = np.einsum("si,sj,skl->ikjl", across, across, np.array([joint.stiffness for joint in springs]))
+    point = np.array(springs[0].end if met[0][1] else springs[0].start)
+    values = [_value(blocks, body, point) for body in bodies]
+    rows = {
+        body: (branches[:, c, None, None] * value).reshape(-1, value.shape[1])
+        for c, (body, value) in enumerate(zip(bodies, values, strict=True))
+    }
+    return Gaps(rows, kappa.reshape(2 * len(tree), -1))
 
 
 def _value(blocks: Sequence[Block], body: int, point: Array) -> Array:
@@ -183,6 +167,26 @@ def _gradient(body: int, along: Array) -> Array:
     return rows
 
 
+def common_part(edge: ArrayLike, other: ArrayLike, slack: float) -> tuple[Point, Point] | None:
+    """Return the ends of what an edge shares with another one on its line, in its own direction.
+
+    Parameters
+    ----------
+    slack
+        How far the other one may lie beside the line; what is shorter is none [m].
+    """
+    start, end = np.asarray(edge, float)
+    side = end - start
+    length = float(np.hypot(*side))
+    away = np.subtract(other, start)
+    beside = np.abs(side[0] * away[:, 1] - side[1] * away[:, 0]) / length
+    low, high = np.clip(np.sort(away @ side), 0.0, length**2) / length**2
+    if np.max(beside) > slack or not (high - low) * length > slack:
+        return None
+    (x1, y1), (x2, y2) = (start + share * side for share in (low, high))
+    return (float(x1), float(y1)), (float(x2), float(y2))
+
+
 def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[Joint]:
     """Return a joint for every piece of boundary of positive length that two blocks share.
 
@@ -191,21 +195,16 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
     normal, shear : float
         Stiffness of the springs at each end [N/m].
     """
-    edges = [(i, *block.edge(e)) for i, block in enumerate(blocks) for e in range(len(block.corners))]
-    starts, ends = (np.array([edge[k] for edge in edges]) for k in (1, 2))
-    owners = np.array([edge[0] for edge in edges])
-    slack = _SAME_PLACE * float(np.max(np.ptp(np.vstack([starts, ends]), axis=0)))
+    edges = [(i, block.edge(e)) for i, block in enumerate(blocks) for e in range(len(block.corners))]
+    owners = np.array([owner for owner, _ in edges])
+    ends = np.array([edge for _, edge in edges])
+    slack = _SAME_PLACE * float(np.max(np.ptp(ends.reshape(-1, 2), axis=0)))
     joints = []
-    for i, a, b in edges:
-        length = float(np.hypot(*(b - a)))
-        t = (b - a) / length
-        n = np.array([-t[1], t[0]])
-        near = (owners > i) & (np.maximum(abs((starts - a) @ n), abs((ends - a) @ n)) <= slack)
+    for i, (a, b) in edges:
+        n = np.array([a[1] - b[1], b[0] - a[0]]) / np.hypot(*(b - a))
+        near = (owners > i) & np.all(np.abs((ends - a) @ n) <= slack, axis=1)
         for k in np.flatnonzero(near):
-            low, high = sorted(((starts[k] - a) @ t, (ends[k] - a) @ t))
-            low = max(low, 0.0)
-            high = min(high, length)
-            if high - low > slack:
-                first, last = (tuple(float(v) for v in a + s * t) for s in (low, high))
-                joints.append(Joint(i, int(owners[k]), first, last, normal, shear))  # type: ignore[arg-type]
+            part = common_part((a, b), ends[k], slack)
+            if part is not None:
+                joints.append(Joint(i, int(owners[k]), *part, normal, shear))
     return joints

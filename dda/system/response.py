@@ -1,9 +1,9 @@
 r"""Response of a system of blocks to a steady vibration, without a step.
 
-With the static response D0 to the load, (K - W2 M) D = F is (1 - W2 H) D = D0, H = K^-1 M. Lanczos' recursion on H
-from D0, orthogonal in the inertia M, makes vectors with V' M H V = T, tridiagonal, and
+With the static response z0 to the load, (K - W2) z = F is (1 - W2 H) z = z0, H = K^-1. Lanczos' recursion on H
+from z0 makes orthonormal vectors with V' H V = T, tridiagonal, and
 
-    D = V y,      (1 - W2 T) y = |D0| e_1,      remainder  -W2 beta y_m times the next vector,
+    z = V y,      (1 - W2 T) y = |z0| e_1,      remainder  -W2 beta y_m times the next vector,
 
 for every frequency at once. K^-1 is applied to blocks and joint forces together, so that stiff joints cost no digits,
 and every vector carries what is observed of it, forces included. A few blocks, a chain of them, and frequencies that a
@@ -13,7 +13,6 @@ space of `LARGEST` vectors does not resolve or whose wave has decayed to the rou
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,11 +21,7 @@ from dda.model.arrays import Array
 from dda.one_block.solution import check_request
 from dda.scheme.harmonic import Complex, Elimination, answering
 from dda.scheme.newmark import Scheme
-from dda.system.system import BlockSystem, Equations, modulus_of
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
-
+from dda.system.system import BlockSystem, Equations
 
 LARGEST = 600  # vectors
 AT_A_TIME = 16  # vectors between two looks at the remainder
@@ -39,21 +34,17 @@ class _Space:
     """The vectors of the recursion, with what is observed of them."""
 
     def __init__(self, equations: Equations, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
-        """Begin with the static response (D, joint forces)."""
+        """Begin with the static response (modes, joint forces)."""
         self.equations = equations
         self.rows = rows
-        self.M: csr_array = equations.blockwise(equations.mass)
-        D, force = static
-        inertia = self.M @ D
-        self.size = float(np.sqrt(D @ inertia))
+        z, force = static
+        self.size = float(np.sqrt(z @ z))
         scale = 1 / self.size if self.size > 0 else 0.0
-        capacity = min(LARGEST, len(D)) + 1
-        self.vectors = np.empty((capacity, len(D)))
-        self.inertias = np.empty((capacity, len(D)))
+        capacity = min(LARGEST, len(z)) + 1
+        self.vectors = np.empty((capacity, len(z)))
         self.observed = np.empty((capacity, len(rows[0])))
-        self.vectors[0] = scale * D
-        self.inertias[0] = scale * inertia
-        self.observed[0] = scale * (rows[0] @ D + rows[1] @ force)
+        self.vectors[0] = scale * z
+        self.observed[0] = scale * (rows[0] @ z + rows[1] @ force)
         self.diagonal: list[float] = []
         self.beside: list[float] = []
         self.closed = self.size == 0
@@ -62,22 +53,20 @@ class _Space:
         """Add a vector."""
         j = len(self.diagonal)
         earlier = slice(0, j + 1)
-        D, force = self.equations.at_rest(self.inertias[j], np.zeros(len(self.equations.pressure)))
-        observed = self.rows[0] @ D + self.rows[1] @ force
+        z, force = self.equations.at_rest(self.vectors[j], np.zeros(len(self.equations.pressure)))
+        observed = self.rows[0] @ z + self.rows[1] @ force
         inside = 0.0
         for _ in range(2):  # twice is enough
-            part = self.inertias[earlier] @ D
-            D = D - part @ self.vectors[earlier]
+            part = self.vectors[earlier] @ z
+            z = z - part @ self.vectors[earlier]
             observed = observed - part @ self.observed[earlier]
             inside += float(part[j])
-        inertia = self.M @ D
-        size = float(np.sqrt(max(D @ inertia, 0.0)))
+        size = float(np.sqrt(z @ z))
         self.diagonal.append(inside)
         self.beside.append(size)
-        self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(D)
+        self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(z)
         if not self.closed:
-            self.vectors[j + 1] = D / size
-            self.inertias[j + 1] = inertia / size
+            self.vectors[j + 1] = z / size
             self.observed[j + 1] = observed / size
 
     def grown(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
@@ -122,6 +111,8 @@ def system_response(
     ValueError
         If a column is unknown, or gg = 0 has no limit that is exact in time.
     """
+    from scipy.sparse import diags_array
+
     check_request(1, columns)
     W2, factor = answering(scheme, frequencies, exact)
     equations = system.reached
@@ -134,25 +125,13 @@ def system_response(
         push = equations.G @ along
     amplitudes = np.zeros((len(columns), len(W2)), complex)
     resolved = np.zeros(len(W2), bool)
-    elimination = elimination_of(equations)
+    inertia = np.repeat([1 / equations.scale, 0.0], [len(F), len(push)])  # the forces have none
+    elimination = Elimination(equations.saddle, diags_array(inertia, format="csr"))
     if not elimination.narrow:
         amplitudes, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
-    modulus = modulus_of(equations)
-    right = np.concatenate([F / modulus, push])
-    by_both = np.hstack([rows[0], modulus * rows[1]])
+    right = np.concatenate([F / equations.scale, push])
+    by_both = np.hstack([rows[0], equations.scale * rows[1]])
     for i in np.flatnonzero(~resolved):
         solution = elimination.solve(right, complex(W2[i]))
         amplitudes[:, i] = by_both @ solution if np.isfinite(solution).all() else np.inf
     return dict(zip(columns, amplitudes * factor, strict=True))
-
-
-def elimination_of(equations: Equations) -> Elimination:
-    """Return the equations in D and lambda over their largest modulus."""
-    from scipy.sparse import block_array
-
-    modulus = modulus_of(equations)
-    Ke = equations.blockwise(equations.elastic) / modulus
-    M = equations.blockwise(equations.mass) / modulus
-    K = block_array([[Ke, equations.B.T], [equations.B, -modulus * equations.C]], format="csr")
-    M.resize(K.shape)  # the forces have no inertia
-    return Elimination(K, M)

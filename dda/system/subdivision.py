@@ -10,17 +10,16 @@ from typing import Literal
 import numpy as np
 
 from dda.contact.springs import base_directions
-from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.checks import check_positive
 from dda.model.load import at_once, pressed_part
 from dda.one_block.two_block import TwoBlockModel
-from dda.system.joints import FIXED, Joint
+from dda.system.joints import FIXED, Joint, Point, common_part
 from dda.system.system import BlockSystem, SurfaceLoad
 
 Pattern = Literal["squares", "triangles"]
 Corner = tuple[int, int]
-Point = tuple[float, float]
+SLIVER = 1e-12  # of the base: length that is pressed by rounding alone
 
 
 def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares") -> BlockSystem:
@@ -66,7 +65,7 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         if _on_side(start, end, (model.top - model.base) % 4, columns, rows):
             if load.traction:
                 loads.append(SurfaceLoad(number, *ends, (load.traction, 0.0)))
-            part = ends if load.eccentricity == 0 else _overlap(np.array(ends), pressed)
+            part = ends if load.eccentricity == 0 else common_part(ends, pressed, SLIVER * a)
             if part and load.pressure:
                 loads.append(SurfaceLoad(number, *part, (0.0, -load.pressure)))
     return BlockSystem(
@@ -133,17 +132,3 @@ def _on_side(start: Corner, end: Corner, side: int, columns: int, rows: int) -> 
     """Tell whether an edge lies on a side of the block, counted from the base."""
     axis, value = ((1, 0), (0, columns), (1, rows), (0, 0))[side]
     return start[axis] == end[axis] == value
-
-
-def _overlap(ends: Array, pressed: tuple[Array, Array]) -> tuple[Point, Point] | None:
-    """Return the part of an edge between two points of its line, or None."""
-    start = ends[0]
-    side = ends[1] - start
-    length2 = float(side @ side)
-    first, last = sorted(float((p - start) @ side) / length2 for p in pressed)
-    first = max(first, 0.0)
-    last = min(last, 1.0)
-    if not last > first:
-        return None
-    (x1, y1), (x2, y2) = (start + share * side for share in (first, last))
-    return (float(x1), float(y1)), (float(x2), float(y2))

@@ -1,8 +1,8 @@
 """A system of blocks: any number of polygons, locked joints between them and to what is fixed.
 
-The equations are M D'' + Ke D + B' lambda = F and lambda = kappa (B D - G y): blocks that know
-nothing of each other, and the forces lambda of the joints, which are unknowns of their own. Block
-stiffness and joint stiffness are never added, so that stiff joints cost no digits.
+The equations are z'' + k z + B' lambda = F and lambda = kappa (B z - G y): blocks that know nothing of each other, each
+in its own free modes, and the forces lambda of the joints, which are unknowns of their own. Block stiffness and joint
+stiffness are never added, so that stiff joints cost no digits.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.model.arrays import Array, without_rounding
-from dda.model.block import Block
+from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
 from dda.one_block.gap_form import D_COLUMNS
+from dda.one_block.natural_modes import free_modes
 from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
@@ -75,25 +75,27 @@ class BlockSystem:
 
     @cached_property
     def equations(self) -> Equations:
-        """The equations in all six unknowns of every block that moves."""
+        """The equations in all six modes of every block that moves."""
+        k, modes, rigid = zip(*(_free_block(block) for block in self.blocks), strict=True)
+        shapes = _block_diagonal(modes)
         B, G, kappa, C = _springs(self.blocks, self.joints)
-        size = self.load_size or 1.0
         return Equations(
-            mass=np.array([_without_rounding(block.mass()) for block in self.blocks]),
-            elastic=np.array([block.elastic() for block in self.blocks]),
-            B=B,
+            k=np.concatenate(k),
+            shapes=shapes,
+            rigid=np.concatenate(rigid),
+            scale=float(np.max(k)),
+            B=(B @ shapes).tocsr(),
             G=G if self.motion is not None else 0 * G,
             kappa=kappa,
             C=C,
-            F=self._load() / size,
-            observers=self._observers(),
+            F=shapes.T @ self._load() / (self.load_size or 1.0),
+            observers={name: row @ shapes for name, row in self._observers().items()},
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
-            kept=np.arange(6 * len(self.blocks)),
         )
 
     @cached_property
     def reached(self) -> Equations:
-        """The equations without the unknowns and gaps that no load can reach."""
+        """The equations without the modes and gaps that no load can reach."""
         return self.equations.reduced()
 
     def _load(self) -> Array:
@@ -128,77 +130,82 @@ class BlockSystem:
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """M D'' + Ke D + B' lambda = F, B D - C lambda = G y, for a load of unit size; C = kappa^-1."""
+    """z'' + k z + B' lambda = F, B z - C lambda = G y in the free modes of the blocks, D = shapes z; C = kappa^-1.
 
-    mass: Array  # (blocks, 6, 6)
-    elastic: Array  # (blocks, 6, 6) [N/m, N, N m]
-    B: csr_array  # (gaps, unknowns)
+    The load is of unit size. At rest the equations have the matrix `saddle` for z and for lambda over `scale`.
+    """
+
+    k: Array  # (modes,) [1/s^2]
+    shapes: csr_array  # (6 blocks, modes)
+    rigid: Array  # (modes, 3) momentum of unit velocities in x and y, and of a unit turn of everything
+    scale: float  # largest k of all modes
+    B: csr_array  # (gaps, modes)
     G: Array  # (gaps, 2)
     kappa: csr_array  # (gaps, gaps) [N/m]
     C: csr_array  # (gaps, gaps) [m/N]
-    F: Array  # (unknowns,)
-    observers: dict[str, Array]  # column -> (unknowns,) row
+    F: Array  # (modes,)
+    observers: dict[str, Array]  # column -> (modes,) row
     pressure: Array  # (gaps,) row of the contact pressure by lambda [1/m]
-    kept: NDArray[np.intp]  # unknowns, numbered 6 block + component
 
-    def blockwise(self, matrices: Array) -> csr_array:
-        """Return a matrix of 6 x 6 blocks as a sparse one in the kept unknowns."""
-        from scipy.sparse import csr_array
+    @cached_property
+    def saddle(self) -> csr_array:
+        """The matrix of the equations at rest, in moduli near one."""
+        from scipy.sparse import block_array, diags_array
 
-        block, i, k = np.nonzero(matrices)
-        size = 6 * len(matrices)
-        full = csr_array((matrices[block, i, k], (6 * block + i, 6 * block + k)), shape=(size, size))
-        return full if len(self.kept) == size else full[self.kept][:, self.kept]
+        return block_array([[diags_array(self.k / self.scale), self.B.T], [self.B, -self.scale * self.C]], format="csr")
 
     @cached_property
     def at_rest(self) -> Callable[[Array, Array], tuple[Array, Array]]:
-        """The solver (F, g) -> (D, lambda) of Ke D + B' lambda = F, B D - C lambda = g, factorised once."""
-        return saddle(self.blockwise(self.elastic), self.B, self.C, modulus_of(self))
+        """The solver (F, g) -> (z, lambda) of k z + B' lambda = F, B z - C lambda = g, factorised once."""
+        lu = factor(self.saddle, definite=False)
+        n = len(self.k)
+
+        def solve(F: Array, g: Array) -> tuple[Array, Array]:
+            solution = lu.solve(np.concatenate([F / self.scale, g]))
+            return solution[:n], self.scale * solution[n:]
+
+        return solve
 
     def reduced(self) -> Equations:
-        """Return the equations without the unknowns and gaps that no load can reach.
+        """Return the equations without the modes and gaps that no load can reach.
 
-        Reach is the connectivity of the structural non-zeros of M, Ke, B and kappa.
+        Reach is the connectivity of the structural non-zeros of B and kappa.
         """
         from scipy.sparse import block_array
         from scipy.sparse.csgraph import connected_components
 
-        own = abs(self.blockwise(self.mass)) + abs(self.blockwise(self.elastic))
-        pattern = block_array([[own, abs(self.B).T], [abs(self.B), abs(self.kappa)]], format="csr")
+        pattern = block_array([[None, abs(self.B).T], [abs(self.B), abs(self.kappa)]], format="csr")
         _, label = connected_components(pattern, directed=False)
         loaded = np.concatenate([self.F != 0, np.any(self.G != 0, axis=1)])
         reached = np.isin(label, label[loaded])
-        n = len(self.F)
-        return self if reached.all() or not loaded.any() else self._restricted(reached[:n], reached[n:])
-
-    def _restricted(self, unknowns: NDArray[np.bool_], gaps: NDArray[np.bool_]) -> Equations:
+        if reached.all() or not loaded.any():
+            return self
+        modes = reached[: len(self.k)]
+        gaps = reached[len(self.k) :]
         return replace(
             self,
-            B=self.B[gaps][:, unknowns],
+            k=self.k[modes],
+            shapes=self.shapes[:, modes],
+            rigid=self.rigid[modes],
+            B=self.B[gaps][:, modes],
             G=self.G[gaps],
             kappa=self.kappa[gaps][:, gaps],
             C=self.C[gaps][:, gaps],
-            F=self.F[unknowns],
-            observers={name: row[unknowns] for name, row in self.observers.items()},
+            F=self.F[modes],
+            observers={name: row[modes] for name, row in self.observers.items()},
             pressure=self.pressure[gaps],
-            kept=self.kept[unknowns],
         )
 
     def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
-        """Return the rows of some columns by D and by lambda."""
-        by_D = np.zeros((len(columns), len(self.F)))
+        """Return the rows of some columns by z and by lambda."""
+        by_modes = np.zeros((len(columns), len(self.k)))
         by_force = np.zeros((len(columns), len(self.pressure)))
         for i, name in enumerate(columns):
             if name == "contact_pressure":
                 by_force[i] = self.pressure
             else:
-                by_D[i] = self.observers[name]
-        return by_D, by_force
-
-
-def modulus_of(equations: Equations) -> float:
-    """Return the largest modulus, by which forces are scaled to the size of displacements."""
-    return float(np.max(np.abs(equations.elastic)))
+                by_modes[i] = self.observers[name]
+        return by_modes, by_force
 
 
 @dataclass
@@ -223,64 +230,64 @@ def factor(matrix: csr_array, definite: bool = True) -> Factor:
     return Factor(lu.solve, int(matrix.nnz))
 
 
-def saddle(Ke: csr_array, B: csr_array, C: csr_array, modulus: float) -> Callable[[Array, Array], tuple[Array, Array]]:
-    """Return the solver of Ke D + B' lambda = F, B D - C lambda = g, in moduli near one.
-
-    Parameters
-    ----------
-    modulus : float
-        Size of the entries of Ke, by which forces are scaled.
-    """
-    from scipy.sparse import block_array
-
-    lu = factor(block_array([[Ke / modulus, B.T], [B, -modulus * C]], format="csr"), definite=False)
-    n = Ke.shape[0]
-
-    def solve(F: Array, g: Array) -> tuple[Array, Array]:
-        solution = lu.solve(np.concatenate([F / modulus, g]))
-        return solution[:n], modulus * solution[n:]
-
-    return solve
+def _free_block(block: Block) -> tuple[Array, Array, Array]:
+    """Return k and shapes of a block in its free modes, and their momentum in rigid motions of everything."""
+    axes = np.eye(6)
+    K = np.diag(block.elastic()).copy()
+    if block.material.contraction != 0:  # the two direct strains resist in their sum and in their difference
+        axes[3:5, 3:5] = [[1.0, 1.0], [1.0, -1.0]]
+        K[3] *= 2 * (1 + block.material.contraction)
+        K[4] = 4 * block.section.area * block.material.shear_modulus
+    mass = _without_rounding(block.mass())
+    k, modes = free_modes(axes.T @ mass @ axes, K)
+    shapes = axes @ modes
+    motions = np.eye(6, 3)
+    motions[:2] = displacement_rows(*block.section.centroid)[:, :3]
+    return k, shapes, shapes.T @ mass @ motions
 
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
-    """Return B, G, kappa and its inverse."""
-    from scipy.sparse import csr_array
-
+    """Return B by the unknowns of the blocks, G, kappa and its inverse."""
     groups = gap_groups(blocks, joints)
-    total = sum(len(group.stiffness) for group in groups)
-    G = np.zeros((total, 2))
-    entries: list[tuple[Array, NDArray[np.intp], NDArray[np.intp]]] = []
-    first = 0
-    for group in groups:
-        last = first + len(group.stiffness)
+    firsts = np.cumsum([0, *(len(group.stiffness) for group in groups)])
+    G = np.zeros((firsts[-1], 2))
+    pieces = []
+    for first, group in zip(firsts.tolist(), groups, strict=False):
         for body, rows in group.bodies.items():
             if body == FIXED:
-                G[first:last] -= rows
+                G[first : first + len(rows)] -= rows
             else:
-                i, k = np.nonzero(rows)
-                entries.append((rows[i, k], first + i, 6 * body + k))
-        first = last
-    if not groups:
-        return csr_array((0, 6 * len(blocks))), G, csr_array((0, 0)), csr_array((0, 0))
-    data, i, k = (np.concatenate(part) for part in zip(*entries, strict=True))
-    B = csr_array((data, (i, k)), shape=(total, 6 * len(blocks)))
+                pieces.append((first, 6 * body, rows))
+    B = _assembled(pieces, len(G), 6 * len(blocks))
     stiffness = [group.stiffness for group in groups]
-    return B, G, _block_diagonal(stiffness), _block_diagonal([inverses(kappa[None])[0] for kappa in stiffness])
+    return B, G, _block_diagonal(stiffness), _block_diagonal([_inverse(kappa) for kappa in stiffness])
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
     """Return the matrix with square blocks on its diagonal, without their zeros."""
-    from scipy.sparse import block_diag, coo_array, csr_array
+    firsts = np.cumsum([0, *(len(block) for block in blocks)]).tolist()
+    pieces = list(zip(firsts, firsts, blocks, strict=False))
+    return _assembled(pieces, firsts[-1], firsts[-1])
 
-    return csr_array(block_diag([coo_array(block) for block in blocks]))  # whose zeros are not stored
+
+def _assembled(pieces: Sequence[tuple[int, int, Array]], rows: int, columns: int) -> csr_array:
+    """Return the sparse matrix of dense pieces, each with its first row and column, without their zeros."""
+    from scipy.sparse import csr_array
+
+    data = [np.zeros(0)]
+    places = [np.zeros((2, 0), dtype=int)]
+    for row, column, piece in pieces:
+        place = np.array(np.nonzero(piece))
+        data.append(piece[*place])
+        places.append(np.add(place, [[row], [column]]))
+    return csr_array((np.concatenate(data), np.concatenate(places, axis=1)), shape=(rows, columns))
 
 
-def inverses(matrices: Array) -> Array:
-    """Return the inverses of positive definite matrices, scaled so that widely spread diagonals keep their digits."""
-    root = np.sqrt(np.einsum("nii->ni", matrices))
-    scale = root[:, :, None] * root[:, None, :]
-    return np.asarray(np.linalg.inv(matrices / scale) / scale)
+def _inverse(matrix: Array) -> Array:
+    """Return the inverse of a positive definite matrix, scaled so that a widely spread diagonal keeps its digits."""
+    root = np.sqrt(np.diag(matrix))
+    scale = np.outer(root, root)
+    return np.asarray(np.linalg.inv(matrix / scale) / scale)
 
 
 def _without_rounding(M: Array) -> Array:
@@ -297,11 +304,10 @@ def _levers(block: Block) -> Array:
 def _holds(corners: Array, point: Array) -> bool:
     """Tell whether a polygon holds a point, its boundary included."""
     slack = 1e-9 * float(np.max(np.ptp(corners, axis=0)))
-    a = corners - point
-    b = np.roll(corners, -1, axis=0) - point
-    side = b - a
-    along = np.clip(-np.sum(a * side, axis=1) / np.sum(side * side, axis=1), 0, 1)
-    if np.min(np.hypot(*(a + along[:, None] * side).T)) <= slack:
+    start = (corners - point) @ np.array([1, 1j])  # in the plane of complex numbers
+    end = np.roll(start, -1)
+    side = end - start
+    along = np.clip(-(start / side).real, 0, 1)
+    if np.min(np.abs(start + along * side)) <= slack:
         return True
-    turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.sum(a * b, axis=1))
-    return bool(abs(np.sum(turn)) > math.pi)
+    return bool(abs(np.sum(np.angle(end / start))) > math.pi)

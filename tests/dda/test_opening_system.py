@@ -8,8 +8,7 @@ import pytest
 from conftest import thinned
 from oracles.unilateral_checks import apart, complementarity, energy, momentum, random_model, size, sums
 
-import dda.system.opening as opening
-import dda.system.opening as stepping
+import dda.system.step as step
 from dda import (
     Block,
     Contact,
@@ -25,8 +24,9 @@ from dda import (
     solve_unilateral,
     subdivided,
 )
-from dda.contact.kernel import NONE
-from dda.stepping.driver import Part, driver
+from dda.contact.rows import FOUND, NONE
+from dda.march.step import Part, steps_by
+from dda.system.step import make_stage
 
 MATERIAL = Material(2700.0, 1e9, 0.2)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9, 1e9), 5e6)
@@ -58,17 +58,25 @@ def test_one_sub_block_is_the_block(seed, run_):
         assert np.max(np.abs(values - one.energies[name])) < 1e-9 * size(block), name
 
 
-def test_two_halves_of_a_step_are_free_fall_of_the_whole():
+def test_two_halves_of_a_step_are_free_fall_of_the_whole(monkeypatch):
     model = replace(PAPER, pressure=0.0, gravity=9.81, contact=Unilateral(1e9, 1e9, gap=1.0), velocity=-0.5)
     scheme = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
-    body = opening.OpeningBody(opening_subdivided(model, 2, 1, GLUE), scheme, 6, (), 1, False)
-    state, after = body.start_state(), body.start_state()
-    for share in (0.5, 1.0):
-        opening.advance(body, body.shear_law, state, after, None, Part(share - 0.5, 0.5))
-        fallen, time = after.D.reshape(-1, 6)[:, 1], scheme.step * share
+    halves = []
+
+    def halved(march, start, after, course, history, steps, cut):
+        for share in (0.5, 1.0):
+            outcome, _ = make_stage(march, march.last, start, start, after, course, Part(share - 0.5, 0.5))
+            halves.append((outcome, (march.method.equations.shapes @ after.z).reshape(-1, 6)[:, 1], after.rows.opening))
+            start, after = after, start
+        return 0, FOUND
+
+    monkeypatch.setattr(step, "make_steps", halved)
+    run(model, (2, 1), scheme, 1)
+    for share, (outcome, fallen, opening) in zip((0.5, 1.0), halves, strict=True):
+        time = scheme.step * share
+        assert outcome == FOUND
         assert fallen == pytest.approx(np.full(2, -0.5 * time - 9.81 * time**2 / 2), rel=1e-9)
-        assert after.contacts.gap == pytest.approx(np.full(4, 1.0 + fallen[0]), rel=1e-12)
-        state, after = after, state
+        assert opening == pytest.approx(np.repeat([1.0 + fallen[0], 0.0], 4), rel=1e-12, abs=1e-15)
 
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.2])
@@ -117,12 +125,12 @@ def test_long_glued_steps_are_cut_as_those_of_one_block():
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
     given = []
 
-    def stubborn(body, shear_law, state, after, base, part):
-        given.append((part.ratio, state, [np.copy(part) for part in (state.D, state.P, state.f, state.mu)]))
-        outcome, solves = opening.advance(body, shear_law, state, after, base, part)
+    def stubborn(march, stage, start, before, after, course, part):
+        given.append((part.ratio, start, [np.copy(part) for part in (start.z, start.p, start.a, start.glue)]))
+        outcome, solves = make_stage(march, stage, start, before, after, course, part)
         return (NONE if len(given) <= 2 else outcome), solves
 
-    monkeypatch.setattr(stepping, "make_steps", driver(stubborn, opening.account, opening.keep))
+    monkeypatch.setattr(step, "make_steps", steps_by(stubborn, step.account, step.keep))
     model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
     result = run(model, (2, 1), replace(CONSTANT, gg=0.9), 3)
     assert [ratio for ratio, *_ in given[:4]] == pytest.approx([1.0, 0.3, 0.09, 0.91])

@@ -19,8 +19,8 @@ import fem_reference.mesh.elasticity as elasticity
 from dda.column import contacts as column_contacts
 from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
-from dda.model.block import Block
 from dda.march import step as march_step
+from dda.model.block import Block
 from dda.one_block import gap_form, solution
 from dda.one_block import response as dda_vibration
 from dda.rotation import solution as rolling
@@ -28,6 +28,7 @@ from dda.rotation import step as rolling_step
 from dda.scheme import blocked, harmonic, newmark
 from dda.system import glued, joints, subdivision, system
 from dda.system import solution as system_solution
+from dda.system import step as system_step
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
@@ -113,9 +114,9 @@ SYSTEM_GLUE = Seam(dda, dda.subdivided)
 SYSTEM_JOINT_ROWS = Seam(joints, joints._value)
 SYSTEM_MASS = Seam(system, system._without_rounding)
 SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
-SYSTEM_FLEXIBILITY = Seam(system_solution, system_solution.joint_flexibility)
-SYSTEM_VELOCITY = Seam(system_solution, system_solution.velocity_corrector)
-SYSTEM_RUN = Seam(system_solution.Stepper, system_solution.Stepper.run)
+SYSTEM_FLEXIBILITY = Seam(system_step, system_step.joint_flexibility)
+SYSTEM_VELOCITY = Seam(system_step, system_step.velocity_corrector)
+SYSTEM_RUN = Seam(system_solution, system_solution.observed_steps)
 SYSTEM_DENSE = Seam(harmonic, harmonic.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
