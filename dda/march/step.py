@@ -302,7 +302,9 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
 
 
 def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
-    """Return B_r s^-1 B_s' of a row and of one that begins with the same mode or a later one."""
+    """Return B_r s^-1 B_s'."""
+    if body.first[s] < body.first[r]:
+        r, s = s, r
     one = body.weight[r]
     other = body.weight[s]
     first = body.first[s]
