@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-import dda.one_block.unilateral_step as step
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.stepping.driver import driver
+from dda.march.account import account
+from dda.march.step import keep_modes, steps_by
 
 DT = 3e-4
 ENERGIES = UnilateralOptions(energies=True)
@@ -114,6 +114,6 @@ def run(model, alpha=0.5, delta=1.0, gg=1.0, dt=DT, start="zero", steps=400, **o
     return solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), steps, options=UnilateralOptions(**options))
 
 
-def stepping_by(advance):
-    """Return the loop over the steps of one block whose steps are made by another function."""
-    return driver(advance, step.account, step.keep)
+def stepping_by(make_stage):
+    """Return the loop over the steps of one block whose stages are made by another function."""
+    return steps_by(make_stage, account, keep_modes)
