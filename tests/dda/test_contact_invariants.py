@@ -10,6 +10,7 @@ import pytest
 from oracles.contact_bodies import CASES, OneBlock, TurningBlock, put_stage, with_law
 from oracles.unilateral_checks import apart, size
 
+from dda import Load
 from dda.contact.rows import INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
 
@@ -284,7 +285,7 @@ def test_cutting_ends_at_a_hundredth_with_the_named_outcome(name, monkeypatch):
 @pytest.mark.parametrize("name", ["frictionless", "turning"])
 def test_overflow_is_an_outcome(name):
     case = CASES[name](3)
-    model = replace(with_law(case.model, gap=100.0), load=replace(case.model.load, gravity=-1e300))
+    model = replace(with_law(case.model, gap=100.0), load=Load(gravity=-1e300))
     case = replace(case, model=model, scheme=replace(case.scheme, step=1e6))
     result = case.run(20)
     assert result.outcome == "overflow" and len(result.time) < 20
