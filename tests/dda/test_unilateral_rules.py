@@ -1,19 +1,14 @@
 """Two other rules of contact: the force of the end of the step alone, and the force that keeps the energy."""
 
 from dataclasses import replace
-from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import thinned
-from oracles.unilateral_checks import size, sums
 
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact.conserving import conserving
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Flexibility, rows_of, work_for
-from fem_reference.events.block_events import solve as exact_motion
-from fem_reference.events.block_model import BlockProblem
 
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
 CONSERVING = UnilateralOptions(rule="energy-conserving", energies=True)
@@ -22,18 +17,6 @@ IMPLICIT = UnilateralOptions(rule="implicit", energies=True)
 
 def average(dt, gg=1.0, start="zero"):
     return Scheme(0.25, 0.5, gg, dt, start)
-
-
-# ---- energy ----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("p", "dt"), thinned(product([1e9, 1e11, 1e13, 1e16], [2e-3, 3e-4, 2e-5]), 5))
-def test_the_papers_block_keeps_its_energy_at_every_stiffness_and_step(p, dt):
-    result = solve_unilateral(replace(PAPER, contact=Unilateral(p)), average(dt), 250, options=CONSERVING)
-    total, lost = sums(result)
-    assert np.max(np.abs(total)) < 1e-12 * size(result) and np.all(lost == 0)
-    assert np.count_nonzero(np.diff(result.closed_m)) > 1 or dt < 1e-4
-    assert np.all(result.step_solves == 1)
 
 
 def test_it_does_not_matter_how_the_acceleration_starts_but_to_newmarks_rule():
@@ -68,33 +51,6 @@ def test_stiff_implicit_contact_takes_the_speed_of_the_base_away(share):
     model = UnilateralModel(block, Unilateral(1e21, gap=(3 - share) * V * dt), velocity=-V)
     result = solve_unilateral(model, average(dt), 3, options=IMPLICIT)
     assert result.velocity[-1] == pytest.approx(-V * (1 - 2 * share), rel=1e-6)
-
-
-# ---- order -----------------------------------------------------------------------------------------------------------
-
-TRUTH = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
-ECCENTRIC = replace(TRUTH, eccentricity=0.3, poisson=0.2)
-
-
-LONG = pytest.mark.long
-
-
-@pytest.mark.parametrize(
-    "problem", [pytest.param(TRUTH, id="centred"), pytest.param(ECCENTRIC, id="eccentric", marks=LONG)]
-)
-@pytest.mark.parametrize(("options", "order", "scatter"), [(CONSERVING, 2.0, 0.15), (IMPLICIT, 1.0, 0.1)])
-def test_the_order_in_dt_through_switches(problem, options, order, scatter):
-    end, errors, counts = 0.03, [], [200, 400, 800]
-    motion = exact_motion(problem, end)
-    block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, problem.poisson))
-    model = UnilateralModel(block, Unilateral(1e9), 5e6, eccentricity=problem.eccentricity)
-    for n in counts:
-        scheme = average(end / n, start="consistent")
-        result = solve_unilateral(model, scheme, n, options=replace(options, energies=False))
-        v = motion.at(np.minimum(result.time, end)).displacement[1]
-        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
-    assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - order) < scatter, errors
-    assert errors[-1] < (8e-4 if order == 2 else 6e-2)
 
 
 # ---- the forces ------------------------------------------------------------------------------------------------------

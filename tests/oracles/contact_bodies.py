@@ -217,7 +217,7 @@ CASES: dict[str, Callable[[int], Case]] = {
     "implicit, rough": lambda seed: block_case(rubbing_model(seed), AVERAGE, rule="implicit"),
     "implicit, shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), AVERAGE, rule="implicit"),
     "conserving": lambda seed: block_case(
-        random_model(seed, glued=False),
+        with_law(random_model(seed, glued=False), stiffness=[1e9, 1e11, 1e13, 1e16][seed % 4]),
         Scheme(0.25, 0.5, 1.0 if seed % 2 else 0.97, 1e-4 * 4.0 ** (seed % 3)),
         rule="energy-conserving",
     ),
