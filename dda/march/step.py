@@ -303,11 +303,15 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
 
 def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
     """Return B_r s^-1 B_s'."""
-    width = len(body.weight[r])
+    if body.first[s] < body.first[r]:
+        r, s = s, r
+    one = body.weight[r]
+    other = body.weight[s]
+    first = body.first[s]
+    ahead = first - body.first[r]
     total = 0.0
-    for i in range(max(body.first[r], body.first[s]), min(body.first[r], body.first[s]) + width):
-        unit = inverse[i] * body.mobility[i]
-        total += body.weight[r][i - body.first[r]] * unit * body.weight[s][i - body.first[s]]
+    for e in range(len(one) - ahead):
+        total += one[e + ahead] * (inverse[first + e] * body.mobility[first + e]) * other[e]
     return total
 
 
