@@ -58,16 +58,15 @@ class Joint:
             raise ValueError(f"end: must differ from start, got {self.end!r}")
 
     @cached_property
-    def tangent(self) -> Array:
-        """Unit direction from start to end."""
-        t: Array = np.subtract(self.end, self.start) / math.dist(self.start, self.end)
-        return t
+    def frame(self) -> Array:
+        """Unit vectors from start to end, and from the second block to the first, a row each."""
+        x, y = np.subtract(self.end, self.start) / math.dist(self.start, self.end)
+        return np.array([[x, y], [-y, x]])
 
     @cached_property
     def stiffness(self) -> Array:
         """Matrix of the spring at one end, 2 x 2 in global directions [N/m]."""
-        t = self.tangent
-        n = np.array([-t[1], t[0]])
+        t, n = self.frame
         k: Array = self.normal * np.outer(n, n) + self.shear * np.outer(t, t)
         return k
 
@@ -111,16 +110,12 @@ def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
     """Return the four gaps of a joint of its own: means (t, n) and differences (n, t) of its ends."""
     start = np.array(joint.start)
     end = np.array(joint.end)
-    t = joint.tangent
-    n = np.array([-t[1], t[0]])
     bodies = {}
     for body, sign in ((joint.first, 1.0), (joint.second, -1.0)):
-        mean = _value(blocks, body, (start + end) / 2)
-        difference = _gradient(body, end - start)
-        bodies[body] = sign * np.array([t @ mean, n @ mean, n @ difference, t @ difference])
-    kn = joint.normal
-    ks = joint.shear
-    return Gaps(bodies, np.diag([2 * ks, 2 * kn, kn / 2, ks / 2]))
+        means = joint.frame @ _value(blocks, body, (start + end) / 2)
+        differences = joint.frame[::-1] @ _gradient(body, end - start)
+        bodies[body] = sign * np.vstack([means, differences])
+    return Gaps(bodies, np.diag([2 * joint.shear, 2 * joint.normal, joint.normal / 2, joint.shear / 2]))
 
 
 def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[int, int]]) -> Gaps:

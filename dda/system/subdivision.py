@@ -19,7 +19,7 @@ from dda.system.system import BlockSystem, SurfaceLoad
 
 Pattern = Literal["squares", "triangles"]
 Corner = tuple[int, int]
-SLIVER = 1e-12  # of the base: length that is pressed by rounding alone
+SLIVER = 1e-9  # of the base: how far the pressed part may lie beside an edge, and what is too short to be pressed
 
 
 def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares") -> BlockSystem:

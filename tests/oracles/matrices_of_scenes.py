@@ -23,7 +23,12 @@ def matrices(prepared: Prepared) -> tuple[np.ndarray, ...]:
     if isinstance(prepared, SubBlocks):
         e, size = prepared.system.equations, prepared.system.load_size
         K = np.diag(e.k) + (e.B.T @ e.kappa @ e.B).toarray()
-        return np.eye(len(K)), K, size * e.F, np.array([e.observers["displacement"], e.pressure @ (e.kappa @ e.B).toarray()])
+        return (
+            np.eye(len(K)),
+            K,
+            size * e.F,
+            np.array([e.observers["displacement"], e.pressure @ (e.kappa @ e.B).toarray()]),
+        )
     assert isinstance(prepared, OneBlock)
     model = prepared.model
     normal, _ = spring_vectors(model.block, model.base)
