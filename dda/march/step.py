@@ -36,6 +36,7 @@ from dda.contact.dense import Matrix, Vector, copy, copy_matrix
 from dda.contact.rows import (
     FOUND,
     INSIDE,
+    LIMIT,
     NONE,
     OVERFLOW,
     UNREACHED,
@@ -509,8 +510,23 @@ def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int,
 # ---- the steps -------------------------------------------------------------------------------------------------------
 
 
+def keep_rows(march: March, state: State, history: History, number: int) -> None:
+    """Write the rows at the end of a step."""
+    rows = state.rows
+    n = march.laws.contacts
+    for r in range(len(rows.force)):
+        history.force[number, r] = rows.force[r]
+        history.opening[number, r] = rows.opening[r]
+        history.state[number, r] = rows.state[r]
+        if r >= n:
+            history.path[number, r - n] = state.path[r]
+
+
 def steps_by(
-    make_stage: Callable[..., tuple[int, int]], account: Callable[..., None], keep: Callable[..., bool]
+    make_stage: Callable[..., tuple[int, int]],
+    account: Callable[..., None],
+    keep: Callable[..., bool],
+    keep_rows: Callable[..., None] = keep_rows,
 ) -> Callable[..., tuple[int, int]]:
     """Return the loop over the steps of a body.
 
@@ -523,6 +539,8 @@ def steps_by(
         Adds what the part of a step that was made last loses to the sums: (march, state, after, course, part, sums).
     keep
         Writes the state at the end of a step into a row, (march, state, rows, number), and tells whether it is finite.
+    keep_rows
+        Writes what is kept of the rows of contact, (march, state, history, number).
     """
 
     def make_steps(
@@ -558,7 +576,7 @@ def steps_by(
                         outcome, solves = make_stage(march, march.last, state, before, after, course, part)
                         history.solves[row] += solves
                 if outcome != FOUND:
-                    if ratio <= SHORTEST or outcome == UNREACHED:
+                    if ratio <= SHORTEST or outcome == UNREACHED or outcome == LIMIT:
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1
@@ -581,18 +599,6 @@ def steps_by(
         return steps, FOUND
 
     return make_steps
-
-
-def keep_rows(march: March, state: State, history: History, number: int) -> None:
-    """Write the rows at the end of a step."""
-    rows = state.rows
-    n = march.laws.contacts
-    for r in range(len(rows.force)):
-        history.force[number, r] = rows.force[r]
-        history.opening[number, r] = rows.opening[r]
-        history.state[number, r] = rows.state[r]
-        if r >= n:
-            history.path[number, r - n] = state.path[r]
 
 
 def keep_modes(march: March, state: State, rows: Array, number: int) -> bool:
