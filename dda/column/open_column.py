@@ -10,7 +10,7 @@ from dda.column.column import Column, Spring
 from dda.column.step import ABSENT, HALF_SPACE, ROW, SWEEPS, WELDED, Blocks, Observed, of_top
 from dda.column.stepping import Drive
 from dda.contact.rows import INSIDE, LOWER, Laws, find, flexibility_for, rows_of
-from dda.march.step import Body, Course, Length, March, State, write_flexibility
+from dda.march.step import Body, Course, Length, March, State, moved_row, write_flexibility
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
 
@@ -111,8 +111,7 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, made: 
     speed[::2] = blocks.root * column.velocities
     base_speed = float(drive.velocity[0]) if rests else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
-    none = np.zeros(len(opens))
-    speed += B.T @ rigid_forces(made, B @ speed - body.ground[:, 1] * base_speed, welds, none)[0]
+    speed += B.T @ rigid_forces(made, speed, base_speed, welds, np.zeros(len(opens)))
     opening = blocks.gap.copy()
     if blocks.base == ROW:
         opening[0] -= drive.displacement[0]
@@ -126,19 +125,16 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, made: 
         rigid[:] = False
     elif blocks.base == HALF_SPACE:
         force[0] = blocks.impedance * (2 * drive.velocity[0] - body.weight[0, :2] @ speed[:2])
-    state = np.where(opens & (force <= 0), LOWER, INSIDE)
     own = made.room.end[2:] @ body.loads - body.k * z
     a = np.zeros(len(z))
     if scheme.start == "consistent":
         unknown = rigid & (~opens | (opening == 0))
-        q = B @ own - body.ground[:, 1] * drive.acceleration[0]
-        force, states = rigid_forces(made, q, unknown, force)
-        state = np.where(unknown, states, state)
+        force = rigid_forces(made, own, float(drive.acceleration[0]), unknown, force)
         a = own + B.T @ force
     if blocks.base == WELDED:
         force[0] = move_foot(blocks, drive, own, B[1:].T @ force[1:], speed, a)
     R = own + B.T @ force
-    rows = rows_of(opening, state)
+    rows = rows_of(opening, initial_states(laws, force))
     rows.force[:] = force
     p = late_momentum(scheme, dt * speed, dt * dt * a)
     return State(z, p, dt * dt * a, dt * dt * R, np.zeros(len(opening)), rows)
@@ -152,21 +148,28 @@ def matrix_of(body: Body) -> Array:
     return matrix
 
 
-def rigid_forces(made: March, q: Array, unknown: Array, force: Array) -> tuple[Array, Array]:
-    """Return the forces, those of rigid contacts that keep these together, and the states.
+def initial_states(laws: Laws, force: Array) -> Array:
+    """Return the states at t = 0: what opens is closed where it is pressed, what slips holds below its strength."""
+    return np.where((force <= laws.lower) & (laws.opens == 1), LOWER, INSIDE)
+
+
+def rigid_forces(made: March, rates: Array, base: float, unknown: Array, force: Array) -> Array:
+    """Return the forces with those of rigid contacts, by which these keep together.
 
     It is the problem of a step, in the limit of short ones, for velocities or accelerations.
 
     Parameters
     ----------
-    q
-        (rows,) rates of the openings without forces, or impulses.
+    rates
+        (modes,) velocities or accelerations without forces.
+    base
+        That of the base.
     unknown
-        Which forces are unknown.
+        (rows,) which forces, or impulses, are unknown.
     force
         The others.
     """
-    n = len(q)
+    n = len(force)
     laws = made.laws._replace(
         compliance=np.zeros(n),
         lower=np.where(unknown, made.laws.lower, force),
@@ -174,12 +177,13 @@ def rigid_forces(made: March, q: Array, unknown: Array, force: Array) -> tuple[A
         opens=np.where(unknown, made.laws.opens, 0),
         most=0,
     )
-    length = Length(np.zeros(4), np.ones(len(made.body.k)), flexibility_for(n, True))
+    length = Length(np.zeros(4), np.ones(len(rates)), flexibility_for(n, True))
     write_flexibility(made, 1.0, length)
-    made.work.q[:] = q
-    after = rows_of(q, unknown)
-    find(laws, rows_of(q, np.where(unknown, INSIDE, LOWER)), length.flexible, after, made.work)
-    return after.force, after.state
+    for r in range(n):  # no product of a library, whose fused sums tear apart blocks that fall alike
+        made.work.q[r] = moved_row(made.body, r, rates) - made.body.ground[r, 1] * base
+    after = rows_of(force, unknown)
+    find(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, made.work)
+    return np.asarray(after.force)
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> tuple[Array, Array]:
