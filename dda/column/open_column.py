@@ -9,7 +9,8 @@ import numpy as np
 from dda.column.column import Column, Spring
 from dda.column.step import ABSENT, HALF_SPACE, ROW, SWEEPS, WELDED, Blocks, Observed, of_top
 from dda.column.stepping import Drive
-from dda.contact.rows import INSIDE, LOWER, Laws, find, flexibility_for, rows_of
+from dda.contact.band import find_in_band
+from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
 from dda.march.step import Body, Course, Length, March, State, moved_row, write_flexibility
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
@@ -182,7 +183,7 @@ def rigid_forces(made: March, rates: Array, base: float, unknown: Array, force: 
     for r in range(n):  # no product of a library, whose fused sums tear apart blocks that fall alike
         made.work.q[r] = moved_row(made.body, r, rates) - made.body.ground[r, 1] * base
     after = rows_of(force, unknown)
-    find(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, made.work)
+    find_in_band(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, made.work)
     return np.asarray(after.force)
 
 

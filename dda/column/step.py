@@ -30,8 +30,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
-from dda.contact.rows import FOUND, INSIDE, LOWER, find
+from dda.contact.rows import FOUND, LOWER
 from dda.march.account import account, half_square
 from dda.march.energy import GIVEN, IMPULSE, SUMS
 from dda.march.step import (
@@ -49,8 +50,6 @@ from dda.march.step import (
     free_modes,
     free_rows,
     length_of,
-    load_of,
-    motion_at_end,
     prescribe,
     steps_by,
 )
@@ -121,7 +120,7 @@ def make_column_stage(
         follows = free_dashpot(march, stage, length, before)
     elif base == WELDED:
         free_row(march, length, 0.0, length.numbers[3] * top.flexibility)
-    outcome, solves = find(march.laws, before.rows, length.flexible, rows, work)
+    outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, work)
     if outcome != FOUND:
         return outcome, solves
     if base == HALF_SPACE and len(rows.force) > 1:
@@ -179,11 +178,15 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
     body = march.body
     room = march.room
     numbers = stage.numbers
-    late = numbers.delta * (1 - numbers.af) / (1 - numbers.am) * length.numbers[2]
+    ratio = length.numbers[0]
+    h = length.numbers[2]
+    late = numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h
     speed = 0.0
     for i in range(2):
-        moved = motion_at_end(march, stage, length, before, before.z[i] + room.x[i], 0.0, i)
-        speed += body.weight[0][i] * moved[2] / length.numbers[2]
+        force = h * h * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
+        a = inertia_force(numbers, force, room.R[i], room.a[i])
+        p = velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
+        speed += body.weight[0][i] * p / h
     own = 1 + blocks.impedance * late * coupling(body, length.inverse, 0, 0)
     force = blocks.impedance * (2 * room.end[VELOCITY] - speed) / own
     if len(room.free) == 1:
@@ -248,7 +251,7 @@ def free_top(march: March, stage: StageRoom, length: Length, before: State) -> T
 def force_at_top(march: March, h2: float, z: float) -> float:
     """Return h^2 times the force on the top at the end of a stage, by loads, stretch and the base's acceleration."""
     blocks = march.method
-    force = force_on_top(blocks, load_of(march, 0), load_of(march, 1) - march.body.k[1] * z)
+    force = force_on_top(blocks, march.room.load[0], march.room.load[1] - march.body.k[1] * z)
     return h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION])
 
 
@@ -275,10 +278,10 @@ def end_on_base(march: March, stage: StageRoom, length: Length, before: State, a
         after.a[1] = (a - foot_a) / (2 * blocks.half[0]) / (ratio * ratio)
     after.p[0] = root * (p + foot_p) / 2 / ratio
     after.a[0] = root * (a + foot_a) / 2 / (ratio * ratio)
-    after.rows.force[0] = above + root * (root * (a + foot_a) / 2 / (h * h) - load_of(march, 0))
+    after.rows.force[0] = above + root * (root * (a + foot_a) / 2 / (h * h) - march.room.load[0])
     scale = march.scheme.step * march.scheme.step
-    after.R[0] = scale * (load_of(march, 0) + (after.rows.force[0] - above) / root)
-    after.R[1] = scale * (load_of(march, 1) - march.body.k[1] * after.z[1])
+    after.R[0] = scale * (march.room.load[0] + (after.rows.force[0] - above) / root)
+    after.R[1] = scale * (march.room.load[1] - march.body.k[1] * after.z[1])
     after.R[1] -= scale * blocks.half[0] * (after.rows.force[0] + above)
 
 

@@ -118,6 +118,7 @@ class Room(NamedTuple):
     a: Vector
     R: Vector
     x: Vector  # (n,) increments without contact forces
+    load: Vector  # (n,) loads at the end of the stage
     pushed: Vector  # (n,) B' lambda
     free: Vector  # (m,) what the step without forces adds to the openings
     force: Vector  # (m,) forces in the coordinates of the body
@@ -187,7 +188,7 @@ def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, a
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((5, n)), *np.zeros((2, m))
+    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((6, n)), *np.zeros((2, m))
     made = March(
         body=body,
         laws=laws,
@@ -307,20 +308,23 @@ def moved_row(body: Body, r: int, x: Vector) -> float:
 
 def push_modes(march: March, force: Vector) -> None:
     """Write B' lambda; of two ways that are paired their sum and half their difference push."""
-    body = march.body
-    room = march.room
-    copy(force, room.force)
+    first = march.body.first
+    weight = march.body.weight
+    pushed = march.room.pushed
+    by = march.room.force
+    copy(force, by)
     if march.laws.paired:
-        room.force[2] = force[2] + force[3]
-        room.force[3] = (force[3] - force[2]) / 2
-    for i in range(len(room.pushed)):
-        room.pushed[i] = 0.0
+        by[2] = force[2] + force[3]
+        by[3] = (force[3] - force[2]) / 2
+    for i in range(len(pushed)):
+        pushed[i] = 0.0
     for r in range(len(force)):
-        if room.force[r] != 0.0:
-            weight = body.weight[r]
-            first = body.first[r]
-            for e in range(len(weight)):
-                room.pushed[first + e] += weight[e] * room.force[r]
+        push = by[r]
+        if push != 0.0:
+            row = weight[r]
+            mode = first[r]
+            for e in range(len(row)):
+                pushed[mode + e] += row[e] * push
 
 
 def length_of(march: March, stage: StageRoom, ratio: float) -> Length:
@@ -362,67 +366,95 @@ def look_up(course: Course, time: float, out: Vector) -> None:
 
 def begin_step(march: March, start: State, length: Length) -> None:
     """Write what all stages take from the start of a step; its velocity is discounted here."""
-    room = march.room
+    p = march.room.p
+    a = march.room.a
+    R = march.room.R
     ratio = length.numbers[0]
     gg = length.numbers[1]
-    for i in range(len(room.p)):
-        room.p[i] = gg * (ratio * start.p[i])
-        room.a[i] = ratio * ratio * start.a[i]
-        room.R[i] = ratio * ratio * start.R[i]
+    p_0 = start.p
+    a_0 = start.a
+    R_0 = start.R
+    for i in range(len(p)):
+        p[i] = gg * (ratio * p_0[i])
+        a[i] = ratio * ratio * a_0[i]
+        R[i] = ratio * ratio * R_0[i]
 
 
-def load_of(march: March, i: int) -> float:
-    """Return the load of a mode at the end of the stage."""
-    loads = march.body.loads
-    total = 0.0
+def write_loads(loads: Matrix, shares: Vector, out: Vector) -> None:
+    """Write the loads of all modes by the shares of each, which come after the base's displacement."""
+    for i in range(len(out)):
+        out[i] = 0.0
     for j in range(len(loads)):
-        total += march.room.end[2 + j] * loads[j][i]
-    return total
+        share = shares[2 + j]
+        load = loads[j]
+        if share != 0.0:
+            for i in range(len(out)):
+                out[i] += share * load[i]
 
 
 def free_modes(march: March, stage: StageRoom, length: Length, before: State) -> None:
-    """Write the increments of the modes in a stage without contact forces."""
+    """Write the loads at the end of a stage, and the increments of the modes in it without contact forces."""
     room = march.room
     numbers = stage.numbers
+    alpha = numbers.alpha
     k = march.body.k
+    x = room.x
+    p_0 = room.p
+    a_0 = room.a
+    R_0 = room.R
+    z = before.z
+    p = before.p
+    a = before.a
+    load = room.load
+    inverse = length.inverse
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
+    write_loads(march.body.loads, room.end, load)
     for i in range(len(k)):
-        held = inertia_force(numbers, h2 * (load_of(march, i) - k[i] * before.z[i]), room.R[i], room.a[i])
-        moving = predictor(numbers, room.p[i], room.a[i], ratio * before.p[i], ratio * ratio * before.a[i])
-        room.x[i] = length.inverse[i] * (moving + numbers.alpha * held)
+        held = inertia_force(numbers, h2 * (load[i] - k[i] * z[i]), R_0[i], a_0[i])
+        moving = predictor(numbers, p_0[i], a_0[i], ratio * p[i], ratio * ratio * a[i])
+        x[i] = inverse[i] * (moving + alpha * held)
 
 
 def free_rows(march: March, before: State) -> None:
     """Write the openings at the end of a stage without contact forces."""
     body = march.body
     room = march.room
-    work = march.work
+    ground = body.ground
+    free = room.free
+    x = room.x
+    q = march.work.q
     opening = before.rows.opening
-    for r in range(len(room.free)):
-        moved = moved_row(body, r, room.x)
-        if not (march.laws.paired and r == 3):  # a base that moves leaves the difference of two ways alone
-            for axis in range(2):
-                moved -= body.ground[r][axis] * (room.end[axis] - room.start[axis])
-        room.free[r] = moved
-    if march.laws.paired:
-        mean = room.free[2]
-        difference = room.free[3]
-        work.pair[0] = mean + (opening[2] + opening[3]) / 2
-        work.pair[1] = difference + (opening[3] - opening[2])
-        room.free[2] = mean - difference / 2
-        room.free[3] = mean + difference / 2
-    for r in range(len(room.free)):
-        work.q[r] = opening[r] + room.free[r]
+    paired = march.laws.paired
+    along = room.end[0] - room.start[0]
+    away = room.end[1] - room.start[1]
+    for r in range(len(free)):
+        moved = moved_row(body, r, x)
+        if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
+            moved -= ground[r][0] * along
+            moved -= ground[r][1] * away
+        free[r] = moved
+    if paired:
+        mean = free[2]
+        difference = free[3]
+        march.work.pair[0] = mean + (opening[2] + opening[3]) / 2
+        march.work.pair[1] = difference + (opening[3] - opening[2])
+        free[2] = mean - difference / 2
+        free[3] = mean + difference / 2
+    for r in range(len(free)):
+        q[r] = opening[r] + free[r]
 
 
 def retard(march: March, stage: StageRoom, length: Length, before: State) -> None:
     """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
     body = march.body
     room = march.room
+    ratio = length.numbers[0]
     h = length.numbers[2]
     for i in range(len(body.k)):
-        room.pushed[i] = motion_at_end(march, stage, length, before, before.z[i] + room.x[i], 0.0, i)[2]
+        force = h * h * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
+        a = inertia_force(stage.numbers, force, room.R[i], room.a[i])
+        room.pushed[i] = velocity_corrector(stage.numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
     for r in range(len(room.free)):
         rate = moved_row(body, r, room.pushed) / h
         for axis in range(2):
@@ -432,33 +464,34 @@ def retard(march: March, stage: StageRoom, length: Length, before: State) -> Non
         march.work.q[r] += march.work.late[r]
 
 
-def motion_at_end(
-    march: March, stage: StageRoom, length: Length, before: State, z: float, pushed: float, i: int
-) -> tuple[float, float, float]:
-    """Return h^2 R, h^2 a and h v of a mode at the end of a stage, where it is at z under h^2 B' lambda = `pushed`."""
-    room = march.room
-    numbers = stage.numbers
-    ratio = length.numbers[0]
-    h2 = length.numbers[2] * length.numbers[2]
-    R = h2 * (load_of(march, i) - march.body.k[i] * z) + pushed
-    a = inertia_force(numbers, R, room.R[i], room.a[i])
-    return R, a, velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
-
-
 def end_modes(march: March, stage: StageRoom, length: Length, before: State, after: State, force: Vector) -> None:
     """Write the modes at the end of a stage under the forces of the contacts."""
     room = march.room
+    numbers = stage.numbers
+    averages = march.scheme.averages
+    k = march.body.k
+    x = room.x
+    p_0 = room.p
+    a_0 = room.a
+    R_0 = room.R
+    load = room.load
+    pushed = room.pushed
+    z_before = before.z
+    a_before = before.a
+    inverse = length.inverse
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     weight = length.numbers[3]
     push_modes(march, force)
-    for i in range(len(room.x)):
-        z = before.z[i] + room.x[i] + weight * length.inverse[i] * room.pushed[i]
-        pushed = h2 * room.pushed[i]
-        own = pushed if march.scheme.averages else 0.0  # what of it enters a
-        R, a, p = motion_at_end(march, stage, length, before, z, own, i)
-        if not march.scheme.averages:
-            p += pushed
+    for i in range(len(x)):
+        z = z_before[i] + x[i] + weight * inverse[i] * pushed[i]
+        R = h2 * (load[i] - k[i] * z)
+        if averages:
+            R += h2 * pushed[i]
+        a = inertia_force(numbers, R, R_0[i], a_0[i])
+        p = velocity_corrector(numbers, p_0[i], a_0[i], ratio * ratio * a_before[i], a)
+        if not averages:
+            p += h2 * pushed[i]
         after.z[i] = z
         after.R[i] = R / (ratio * ratio)
         after.a[i] = a / (ratio * ratio)
