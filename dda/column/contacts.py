@@ -167,6 +167,7 @@ def solve_contact_column(
         (history, steps, 0.5),
         steps * options.repeats,
     )
+    solves = int(history.solves.sum())  # those of the step that was not reached, too
     history = reached_history(history, reached)
     record = history.motion[:, len(columns) :]
     lowest = int(blocks.base != ROW)
@@ -177,7 +178,7 @@ def solve_contact_column(
         unknowns=n + int(np.count_nonzero(blocks.half)),
         nonzeros=3 * (n - lowest) - 2,
         factorisations=0,
-        solves=int(history.solves.sum()),
+        solves=solves,
         notes=(f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}", *early),
         outcome=OUTCOMES[ended],
         step_solves=history.solves[1:],
@@ -225,8 +226,8 @@ def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[f
         if name not in names:
             raise ValueError(f"columns: must be among {', '.join(names)}, got {name!r}")
     rows = np.array([_observed_column(column, name, heights) for name in columns]).reshape(-1, 4)
-    kinds, places = rows[:, :2].T.astype(np.int64)
-    return Observed(kinds.copy(), places.copy(), rows[:, 2].copy(), rows[:, 3].copy())
+    kind, place, lower, upper = rows.T.copy()
+    return Observed(kind.astype(np.int64), place.astype(np.int64), lower, upper)
 
 
 def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tuple[int, int, float, float]:

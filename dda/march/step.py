@@ -482,6 +482,12 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: State, aft
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     weight = length.numbers[3]
+    per_length = 1 / ratio
+    per_square = per_length * per_length
+    z_end = after.z
+    R_end = after.R
+    a_end = after.a
+    p_end = after.p
     push_modes(march, force)
     for i in range(len(x)):
         z = z_before[i] + x[i] + weight * inverse[i] * pushed[i]
@@ -492,10 +498,10 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: State, aft
         p = velocity_corrector(numbers, p_0[i], a_0[i], ratio * ratio * a_before[i], a)
         if not averages:
             p += h2 * pushed[i]
-        after.z[i] = z
-        after.R[i] = R / (ratio * ratio)
-        after.a[i] = a / (ratio * ratio)
-        after.p[i] = p / ratio
+        z_end[i] = z
+        R_end[i] = R * per_square
+        a_end[i] = a * per_square
+        p_end[i] = p * per_length
 
 
 def end_paths(march: March, length: Length, before: State, after: State) -> None:
@@ -597,17 +603,17 @@ def steps_by(
             while True:
                 part = Part(number + (1.0 - remainder), ratio)
                 outcome = NONE
-                solves = 0
                 if scheme.lag == 0 or ratio == 1.0:  # a velocity of half a step before goes on in equal steps only
-                    outcome = FOUND
                     before = state
-                    if scheme.stages == 2:
-                        outcome, solves = make_stage(march, march.first, state, before, march.between, course, part)
-                        before = march.between
+                    for place in range(scheme.stages):
+                        is_last = place + 1 == scheme.stages
+                        stage = march.last if is_last else march.first
+                        end = after if is_last else march.between
+                        outcome, solves = make_stage(march, stage, state, before, end, course, part)
                         history.solves[row] += solves
-                    if outcome == FOUND:
-                        outcome, solves = make_stage(march, march.last, state, before, after, course, part)
-                        history.solves[row] += solves
+                        if outcome != FOUND:
+                            break
+                        before = end
                 if outcome != FOUND:
                     if ratio <= SHORTEST or outcome == UNREACHED or outcome == LIMIT:
                         return number, outcome
