@@ -34,7 +34,7 @@ from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import FOUND, LOWER
 from dda.march.account import account, half_square
-from dda.march.energy import GIVEN, IMPULSE, SUMS
+from dda.march.energy import GIVEN, IMPULSE
 from dda.march.step import (
     Course,
     History,
@@ -46,12 +46,12 @@ from dda.march.step import (
     begin_step,
     coupling,
     end_modes,
-    push_modes,
     end_paths,
     free_modes,
     free_rows,
     length_of,
     prescribe,
+    push_modes,
     steps_by,
 )
 from dda.scheme.stage import inertia_force, predictor, velocity_corrector
@@ -206,17 +206,17 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
 
 def of_top(blocks: Blocks, x: Vector) -> float:
     """Return what modal values make at the top of the lowest block."""
-    return x[0] / blocks.root[0] + blocks.half[0] * x[1]
+    return float(x[0] / blocks.root[0] + blocks.half[0] * x[1])
 
 
 def of_foot(blocks: Blocks, x: Vector) -> float:
     """Return what modal values make at the foot of the lowest block."""
-    return x[0] / blocks.root[0] - blocks.half[0] * x[1]
+    return float(x[0] / blocks.root[0] - blocks.half[0] * x[1])
 
 
 def force_on_top(blocks: Blocks, mean: float, stretching: float) -> float:
     """Return the force on the top of a block by the modal forces on its mean and its stretch."""
-    return blocks.root[0] / 2 * (mean + stretching / math.sqrt(3))
+    return float(blocks.root[0] / 2 * (mean + stretching / math.sqrt(3)))
 
 
 def free_top(march: March, stage: StageRoom, length: Length, before: State) -> Top:
@@ -240,7 +240,9 @@ def free_top(march: March, stage: StageRoom, length: Length, before: State) -> T
     flexibility = 0.0
     stretch = 0.0
     if blocks.half[0] > 0:
-        flexibility = 1 / (mass / 3 + numbers.alpha * (1 - numbers.af) / (1 - numbers.am) * h2 * march.body.k[1] * mass / 12)
+        flexibility = 1 / (
+            mass / 3 + numbers.alpha * (1 - numbers.af) / (1 - numbers.am) * h2 * march.body.k[1] * mass / 12
+        )
         force = force_at_top(march, h2, before.z[1])
         held = inertia_force(numbers, force, R, mass / 3 * a)
         moving = predictor(numbers, p, a, ratio * of_top(blocks, before.p), a_before)

@@ -649,7 +649,7 @@ def steps_by(
                             break
                         before = end
                 if outcome != FOUND:
-                    if ratio <= SHORTEST or outcome == UNREACHED or outcome == LIMIT:
+                    if ratio <= SHORTEST or outcome in (UNREACHED, LIMIT):
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1
