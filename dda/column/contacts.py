@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
@@ -163,7 +164,7 @@ def solve_contact_column(
     (reached, ended), _, how = run_loop(
         make_column_steps,
         (),
-        (made, start, start, course),
+        (made, start, deepcopy(start), course),  # compiled code works on these themselves
         (history, steps, 0.5),
         steps * options.repeats,
     )

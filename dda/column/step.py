@@ -325,8 +325,6 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
     n = len(rows.state)
     lag = march.scheme.lag
     discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
-    for i in range(2 * n):
-        room.p[i] = discount * state.p[i] + lag * state.a[i]
     columns = len(observed.kind)
     for k in range(columns):
         kind = observed.kind[k]
@@ -336,7 +334,9 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
         if kind == MODES:
             value = lower * state.z[2 * i] + upper * state.z[2 * i + 1]
         elif kind == RATES:
-            value = (lower * room.p[2 * i] + upper * room.p[2 * i + 1]) / march.scheme.step
+            value = lower * (discount * state.p[2 * i] + lag * state.a[2 * i])
+            value += upper * (discount * state.p[2 * i + 1] + lag * state.a[2 * i + 1])
+            value /= march.scheme.step
         elif kind == FORCES:
             value = lower * rows.force[i] + upper * (rows.force[i + 1] if i + 1 < n else room.end[PRESSURE])
         elif kind == GAP:
@@ -347,11 +347,10 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
     row[columns + SWITCHES] = march.made[1]
     march.made[1] = 0.0
     if len(row) > columns + 1:
+        for i in range(2 * n):
+            room.p[i] = discount * state.p[i] + lag * state.a[i]
         keep_record(march, state, row, columns)
-    total = 0.0
-    for i in range(n):
-        total += state.z[2 * i]
-    return math.isfinite(total)
+    return math.isfinite(state.z[2 * n - 2])  # to which all others add
 
 
 def keep_record(march: March, state: State, row: Vector, columns: int) -> None:
