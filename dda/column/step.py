@@ -201,7 +201,7 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
         of_top += body.weight[1][e] * length.inverse[e] * body.weight[1][e]
     free_row(march, length, force, length.numbers[3] * (of_top + follows * across))
     march.work.q[1] += length.numbers[3] * across * force
-    return follows
+    return float(follows)
 
 
 def of_top(blocks: Blocks, x: Vector) -> float:
@@ -256,7 +256,7 @@ def force_at_top(march: March, h2: float, z: float) -> float:
     """Return h^2 times the force on the top at the end of a stage, by loads, stretch and the base's acceleration."""
     blocks = march.method
     force = force_on_top(blocks, march.room.load[0], march.room.load[1] - march.body.k[1] * z)
-    return h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION])
+    return float(h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION]))
 
 
 def end_on_base(march: March, stage: StageRoom, length: Length, before: State, after: State, top: Top) -> None:
