@@ -23,21 +23,6 @@ def kinds(scene):
     return [alarm.kind for alarm in columns.column_alarms(scene)]
 
 
-def test_a_stack_of_rigid_blocks_needs_one_solve_more_than_it_has_contacts():
-    known = columns.limits(stack())
-    assert (known.contacts, known.solves, known.far_face_step) == (10, 11, 0.0)
-    assert known.ring_down == pytest.approx(3.0992, abs=6e-4)
-
-
-def test_the_bound_is_proven_above_the_step_of_the_far_face_only():
-    elastic = RIGID | {"young": 1e9}
-    turns = 1 / math.sqrt(1e9 / 2500) / math.sqrt(6 * 0.5)
-    above = columns.limits(stack(elastic, step=1.01 * turns))
-    below = columns.limits(stack(elastic, step=0.99 * turns))
-    assert (above.solves, below.solves) == (11, None)
-    assert above.lowest is None  # the closed form is that of rigid blocks
-
-
 @pytest.mark.parametrize(("limit", "raised"), [(6, True), (10, True), (11, False)])
 def test_too_few_solves_are_an_alarm(limit, raised):
     assert (columns.FEW_SOLVES in kinds(stack(column={"solve_limit": limit}))) == raised
@@ -59,12 +44,6 @@ def test_gain_by_switching_is_an_alarm_of_average_acceleration(time, raised):
 def test_damping_that_changes_what_slips_is_an_alarm(time, raised):
     sheared = {"motion": "shear", "law": "frictional", "strength": 1e4, "layer": [RIGID | {"velocity": 1.0}]}
     assert (kinds(stack(column=sheared, **time)) == [columns.PATH]) == raised
-
-
-def test_a_bonded_column_has_neither():
-    data = {"column": {"motion": "shear", "layer": [RIGID | {"young": 1e9}]}, "time": {"step": 1e-3, "steps": 10}}
-    scene = parse_scene(data | {"input": {"shape": "ricker", "velocity": 1.0, "frequency": 1.0}}, "bonded")
-    assert columns.limits(scene) is None and kinds(scene) == []
 
 
 def test_advice_names_the_blocks_that_the_step_can_bear():

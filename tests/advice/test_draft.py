@@ -9,7 +9,7 @@ import pytest
 from conftest import refused, typed
 
 from validation import damping, load_scene, solve
-from validation.advice.draft import KINDS, ROCKS, draft
+from validation.advice.draft import KINDS, draft
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
@@ -82,8 +82,3 @@ def test_what_is_refused(options: dict[str, object], field: str) -> None:
     with pytest.raises(InputError) as error:
         draft(options, default)
     assert error.value.field == field
-
-
-def test_rocks_have_waves_of_rock() -> None:
-    for rock in ROCKS.values():
-        assert 2000 < math.sqrt(rock["young"] / rock["density"]) < 6000

@@ -74,19 +74,6 @@ def test_failures_stand_first_and_in_full_and_the_rest_is_counted(made: Results)
     assert all(len(line) <= 80 or " " not in line.strip() for line in lines)
 
 
-def test_alarms_of_a_users_scene_are_explained(made: Results) -> None:
-    lines = said(ran(made, [run_of("made", [])], frozenset({"made"})))
-    assert "  contact ringing: a: it rings" in lines and "  hidden tension: a: x" in lines
-    assert "made: has no gates: nothing was judged" in lines
-
-
-def test_what_comes_next_is_the_report_and_every_gate_where_the_study_is_no_user_s(made: Results) -> None:
-    report = f"dda-validate report --results {made.directory} writes the PDF"
-    what = ran(made, [run_of("made", [judge(GATE, 0.04)])])
-    assert answer.next_commands(what) == [report, "the same command with --verbose lists every gate"]
-    assert answer.next_commands(replace(what, user_scenes=frozenset({"made"}))) == [report]
-
-
 def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made: Results) -> None:
     runs = [run_of("made" if i == 19 else f"s{i}", [judge(GATE, 0.04 if i != 18 else 1.0)], ENDS) for i in range(25)]
     lines = [text for text, _ in answer.summary(ran(made, runs), 80)]

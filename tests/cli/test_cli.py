@@ -1,6 +1,5 @@
 """The command line as a user types it: exit status, one line for bad input, nothing half-written."""
 
-import json
 import os
 import signal
 import subprocess
@@ -19,21 +18,6 @@ def test_fields_are_written_for_paraview(scene_file: Path, tmp_path: Path) -> No
     done = typed("solve", scene_file, "--solver", "fem", "--fields", tmp_path / "f.vtu")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "f.vtu").stat().st_size > 1000
-
-
-def test_a_run_prints_one_table_and_keeps_everything(scene_file: Path, tmp_path: Path) -> None:
-    gate = '\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [{}, {}]\nreason = "model form"\n'
-    scene_file.write_text(SCENE + gate.format(0.03, 0.07))
-    passed = typed("run", scene_file, "--results", tmp_path / "r")
-    assert passed.returncode == 0, passed.stderr
-    assert all(word in passed.stdout for word in ("scene", "pair", "metric", "value", "band", "verdict", "seconds"))
-    assert "1 PASS, 0 FAIL, 0 NOT RUN" in passed.stdout
-    scene_file.write_text(SCENE + gate.format(0.0, 0.001))
-    failed = typed("run", scene_file, "--results", tmp_path / "r")
-    assert failed.returncode == 1
-    assert "model form" in failed.stdout
-    verdict = json.loads((tmp_path / "r" / "verdicts.json").read_text())[0]
-    assert (verdict["id"], verdict["verdict"]) == ("small:dda-bar:displacement.l2", "FAIL")
 
 
 def test_full_gives_the_same_numbers(scene_file: Path, tmp_path: Path) -> None:

@@ -9,9 +9,8 @@ from conftest import refused, typed
 from validation.advice.plain import in_columns
 from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
-from validation.scenes.keys import default_of, keys_of, range_of
+from validation.scenes.keys import keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
-from validation.scenes.tables import ContactSection
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
 from validation.suite.folders import get_study, study_names
@@ -101,14 +100,6 @@ def test_every_key_of_a_scene_is_described_once() -> None:
         names |= {f"{place}.{name}" for name in described_names}
     lines = [line.split(maxsplit=1)[0] for line in typed("list", "keys").stdout.splitlines() if line.strip()]
     assert names <= {*lines}
-
-
-def test_bounds_units_and_defaults_of_keys_are_those_of_the_schema() -> None:
-    fields = {name: (default_of(field), range_of(field), key.unit) for name, field, key in keys_of(ContactSection)}
-    assert fields["friction"] == ("-", "> -90 and < 90 and >= 0", "deg")
-    assert fields["cut"] == ("0.3", "> 0 and < 1", "")
-    assert fields["stiffness"] == ("required", "> 0", "N/m")
-    assert fields["rules"] == ("consistent", '"consistent" or "lagged"', "")
 
 
 @pytest.mark.parametrize("place", [place for place in tables_of_scenes() if place != "gate"])

@@ -149,10 +149,6 @@ def test_a_solution_says_its_peak_in_the_unit_of_the_column() -> None:
     assert "peak energy_1 2," in repr(beside)
 
 
-def test_the_force_in_a_column_stays_a_stress() -> None:
-    assert axis_of("force_1") == ("Force 1", "Pa")
-
-
 def test_rounding_of_a_box_at_rest_is_drawn_as_rest() -> None:
     time = np.linspace(0.01, 1, 100)
     history = History(time, {"angle_1": 1e-16 * np.sin(time)})

@@ -5,22 +5,19 @@ import os
 import resource
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
 from validation.engine.measured import JudgedStudy, covers, missing_gates
-from validation.engine.run import run_study
 from validation.gates.gate import Gate, Status, Verdict
 from validation.report import book
 from validation.report.blocks import Callout, FigureBlock, Heading
 from validation.runs.results import Results
-from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.suite.folders import get_study, study_names
+from validation.suite.folders import get_study
 
 RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
@@ -59,11 +56,6 @@ def test_a_case_that_ends_badly_is_no_green(way: str, scene_file: Path, tmp_path
     assert typed("run", scene_file, "--results", "r", "--baseline", "r", cwd=tmp_path).returncode == 1
 
 
-def test_a_scene_without_gates_that_ran_well_says_that_nothing_was_judged(scene_file: Path, tmp_path: Path) -> None:
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 0 and "small: has no gates: nothing was judged" in done.stdout
-
-
 def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(
     scene_file: Path, tmp_path: Path
 ) -> None:
@@ -78,11 +70,6 @@ def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_
     scene_file.write_text(text + gate.replace('"..."', '"a reason"'))
     done = typed("run", scene_file, "--results", tmp_path / "r")
     assert done.returncode == 0 and "1 PASS, 0 FAIL" in done.stdout and "[[gate]]" not in done.stdout
-
-
-def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE + RUN.format('["dda"]'))
-    assert "name two solvers or more that apply" in typed("run", scene_file, "--results", tmp_path / "r").stdout
 
 
 def test_a_scene_of_which_one_solver_completed_says_that_the_other_did_not(scene_file: Path, tmp_path: Path) -> None:
@@ -105,21 +92,6 @@ def test_where_no_solver_applies_nothing_is_green(scene_file: Path, tmp_path: Pa
     scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["bar"]'))
     done = typed("run", scene_file, "--results", tmp_path / "r")
     assert done.returncode == 1 and "small: no case was measured" in done.stdout
-
-
-def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("steps = 50", "steps = 3000\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
-    unstable = load_scene(scene_file).with_values({"time.step": 0.1})
-    changed = {"scenes": [unstable], "solvers": ("dda",), "extra": (), "gates": tuple, "derived": tuple}
-    study = replace(get_study("core"), name="x", **changed)
-    run_study(study, Results(tmp_path))
-    ends = {("small", "dda"): Outcome.OVERFLOW}
-    for expects, failed in (((), True), ((Outcome.OVERFLOW,), False), ((Outcome.MISPREDICTED,), True)):
-        run = JudgedStudy(replace(study, expects=expects), [], ends)
-        assert bool(run.failed) is failed
-    found = [row.outcome for row in Results(tmp_path).rows().values()]
-    assert found == [Outcome.OVERFLOW]
-    assert [name for name in study_names() if get_study(name).expects] == ["stability-small", "stability", "field"]
 
 
 # ---- required solvers -----------------------------------------------------------------------------------------------

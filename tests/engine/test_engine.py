@@ -220,13 +220,6 @@ def test_other_values_are_rounded_to_digits() -> None:
     assert [rounded(value) for value in (0.0363249, -3.2e-14, 0.0)] == [0.03632, -1e-13, 0.0]
 
 
-def test_columns_that_are_asked_are_kept_and_no_others(scene: Scene) -> None:
-    asked = scene.with_values({"run.columns": ["displacement"]})
-    row, history = execute(Case(asked, "dda"), "k", "s")
-    assert history is not None and list(history.columns) == ["displacement"]
-    assert row.metrics["pressure.final"] == "not reported"
-
-
 def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references() -> None:
     names = {"dda", "fem", "bar", "continuum"}
     assert list(_ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]

@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 import pytest
-from oracles.made_cases import made_history, made_row
+from oracles.made_cases import made_row
 
-from validation.engine import horizon
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
 from validation.engine.measured import JudgedStudy, complaints
 from validation.gates.gate import Gate, Status, Verdict
 from validation.runs.results import Results
 from validation.runs.row import Value
-from validation.runs.run import Outcome, Run
-from validation.scenes.scene import load_scene
-from validation.solvers.contract import Solver
+from validation.runs.run import Outcome
 from validation.suite.folders import get_study
 
 
@@ -49,23 +45,6 @@ def test_what_is_derived_ends_as_the_run_that_it_needs(ended: Outcome | None, st
     assert verdict.status is status and "needs dda on scene" in verdict.why
 
 
-@pytest.mark.parametrize(
-    ("metric", "ended", "status"),
-    [
-        ("stability.growth", Outcome.OVERFLOW, Status.PASS),
-        ("stability.growth", Outcome.UNSTABLE, Status.PASS),
-        ("stability.growth", Outcome.MISPREDICTED, Status.FAIL),
-        ("displacement.static", Outcome.UNSTABLE, Status.FAIL),
-    ],
-)
-def test_of_a_run_that_grew_only_its_stability_is_judged(
-    metric: str, ended: Outcome, status: Status, tmp_path: Path
-) -> None:
-    row = made_row("dda", {metric: 1.5}, "scene", outcome=ended)
-    gate = Gate("scene", ("dda",), metric, 1.0, 2.0, "why")
-    assert evaluate(gate, Finished({("scene", "dda"): row}, Results(tmp_path))).status is status
-
-
 # ---- what a run complains of ----------------------------------------------------------------------------------------
 
 
@@ -91,20 +70,3 @@ def test_complaints_count_what_they_do_not_name(run: JudgedStudy, said: list[str
 
 
 # ---- how far two runs agree -----------------------------------------------------------------------------------------
-
-
-class Ends(Solver):
-    """A solver whose runs all end in one way, with the history of what went before."""
-
-    name = "ends"
-
-    def __init__(self, outcome: Outcome) -> None:
-        self.outcome = outcome
-
-    def solve(self, scene: object, full: bool = False, fields: Path | None = None) -> Run:
-        return Run(self.outcome, made_history(0.1, np.zeros(3)))
-
-
-@pytest.mark.parametrize(("outcome", "kept"), [(Outcome.COMPLETED, True), (Outcome.OVERFLOW, False)])
-def test_a_second_run_that_did_not_complete_gives_no_horizon(outcome: Outcome, kept: bool) -> None:
-    assert (horizon.shadow(Ends(outcome), load_scene("figures-3-4").expand()[0], False) is not None) == kept

@@ -17,7 +17,7 @@ from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed, decisions, first, pages
 from validation.report.front.groups import paper_scene
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.theory import spectra, statics
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
@@ -28,19 +28,6 @@ FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the pa
 
 
 # ---- closed forms -------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("values", [
-    {"time.step": 1e-3}, {"time.step": 2e-3, "time.gg": 0.95}, {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-    {"time.step": 1e-5, "time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-])  # fmt: skip
-@pytest.mark.parametrize("scene", [PAPER, OTHER])
-def test_a_damping_ratio_is_that_of_the_schemes_own_formulas(scene: Scene, values: dict[str, float]) -> None:
-    changed = scene.with_values(values)
-    frequency, t = spectra.dda_frequency(changed), changed.time
-    wanted = float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
-    assert closed.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
-    assert math.isnan(closed.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
 
 
 def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
@@ -220,17 +207,6 @@ def test_a_rate_damps_alike_while_the_step_is_short() -> None:
         assert (abs(xi / 0.05 - 1) < 0.1) is (omega < 1)
         held = closed.timed(base, gg_rate=rate, step=step)
         assert closed.first_damping(held) == pytest.approx(xi, rel=1e-6)
-
-
-def test_the_rule_of_four_holds_up_to_ten_per_cent() -> None:
-    for xi, within in ((0.01, True), (0.1, True), (0.2, False)):
-        step = closed.step_for(PAPER, xi)
-        assert (abs(step * FREQUENCIES[1.0] / (4 * xi) - 1) < 0.03) is within
-    assert closed.most_damped(PAPER) == pytest.approx(3.27, abs=5e-3)
-    around = [float(spectral.damping_ratio(omega, 0.5, 1.0)) for omega in (3.17, 3.27, 3.37)]
-    assert max(around) == around[1] == pytest.approx(0.373, abs=5e-4)
-    before, beyond = (spectral.eigenvalues(omega, 0.5, 1.0, 1.0) for omega in (3.99, 4.01))
-    assert np.abs(np.imag(before)).max() > 0 and np.abs(np.imag(beyond)).max() == 0 and np.real(beyond).min() < 0
 
 
 # ---- what is drawn ------------------------------------------------------------------------------------------------
