@@ -100,9 +100,3 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
-
-
-def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:
-    cases = [oblong(time__step=step, time__gg=gg) for gg in (0.97, 0.9) for step in (2e-4, 1e-4)]
-    found = list(budget.budgets(cases))
-    assert [(b["gg"], b["steps"]) for b in found] == [(0.97, [1e-4, 2e-4]), (0.9, [1e-4, 2e-4])]

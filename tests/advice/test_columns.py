@@ -1,7 +1,5 @@
 """What is known of a column before a step is made, and which of its scenes raise an alarm."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -54,11 +52,6 @@ def test_advice_names_the_blocks_that_the_step_can_bear():
         finer = stack(RIGID | {"young": 1e9, "blocks": count}, step=1e-4, alpha=0.25, delta=0.5)
         assert (columns.limits(finer).far_face_step > 1e-4 * (1 + 1e-9)) == below
     assert any(f"{blocks} blocks in the layers" in sentence for sentence in columns.advised(scene, known))
-
-
-def test_a_stack_that_nothing_damps_never_comes_to_rest():
-    undamped = stack(alpha=0.25, delta=0.5)
-    assert columns.limits(undamped).ring_down == math.inf and columns.rest(undamped) is None
 
 
 STACKS = {  # blocks, w1 dt of rigid ones, velocity [m/s], gap [m], Young's modulus, a heavy block on top

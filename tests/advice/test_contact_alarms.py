@@ -19,7 +19,6 @@ from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
-from validation.theory import landing
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}
@@ -77,25 +76,6 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float
     first, later = np.diff(history.displacement)[[0, 10]]
     constant = 0.0 if later == 0 else -10 * scene.time.step / math.log(later / first)
     assert alarm.values["constant"] == pytest.approx(constant, rel=1e-9)
-
-
-def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_one() -> None:
-    may = {(0.4, 1.0), (0.45, 0.9), (0.25, 0.5), (0.55, 1.2)}
-    cannot = {(0.5, 1.0), (0.75, 1.0), (0.6, 1.2), (0.75, 1.5)}
-    for alpha, delta in may | cannot:
-        scene = PAPER.with_values({"time.alpha": alpha, "time.delta": delta, "time.allow_unstable": True})
-        assert landing.cannot_gain(scene) == ((alpha, delta) in cannot)
-    assert landing.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
-
-
-def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
-    """A block that is dropped penetrates by 1.48 V sqrt(m / (8 p)), in the second of its contacts."""
-    fallen = PAPER.with_values({"load.pressure": 0.0, "block.velocity": -1.0, "time.step": 1e-5, "time.steps": 500})
-    found = contact.needed(fallen, 1.0, 1e-4)
-    assert found.stiffness == pytest.approx(1.471**2 * 10800 / 8e-8, rel=1e-2)
-    row, _ = execute(Case(fallen.with_values({"contact.stiffness": found.stiffness}), "block-events"), "", "")
-    assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.02)
-    assert contact.needed(PAPER, 0.0, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
 def test_a_landing_is_not_known_for_every_scene() -> None:

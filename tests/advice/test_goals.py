@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 
@@ -11,7 +10,7 @@ import pytest
 from conftest import typed
 
 from validation import damping, load_scene, solve
-from validation.advice import goals
+from validation.advice import cuts, goals
 from validation.advice.cuts import of_beam, of_column
 from validation.advice.goals import Recommendation, recommend
 from validation.advice.overview import overview
@@ -30,7 +29,6 @@ GRANITE = {
     "time.step": 1e-3,
 }
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002})
-SLOPE = load_scene("slope-drag").with_values({"time.gg": 0.98, "time.step": 0.001, "time.steps": 200})
 
 
 def granite() -> Scene:
@@ -82,20 +80,6 @@ def test_a_quake_is_followed_in_the_contact_force_too() -> None:
     assert "sideways" in offer.condition and finer.force_error is not None and finer.force_error <= 0.01
 
 
-def test_a_block_that_slides_is_judged_by_a_rigid_one() -> None:
-    (offer,) = recommend(SLOPE, "static", 0.02)
-    assert offer.goal == "slide" and offer.settings["time.gg"] == 1.0 and offer.is_reached
-    case = with_settings(SLOPE, offer, **{"time.steps": offer.steps})
-    columns = ["horizontal_displacement", "contact_pressure"]
-    history = solve(case.with_values({"run.columns": columns}), "dda").history
-    assert history is not None
-    slope, friction = math.radians(28.9), math.radians(15.0)
-    distance = 9.81 * (math.sin(slope) - math.tan(friction) * math.cos(slope)) * offer.duration**2 / 2
-    assert abs(abs(history.columns[columns[0]][-1]) / distance - 1) == pytest.approx(offer.displacement_error, abs=1e-6)
-    present = overview(SLOPE, ()).present  # with a discount that brakes it
-    assert present is not None and present.displacement > 0.1
-
-
 @pytest.mark.parametrize(
     ("scene", "goal"),
     [(PAPER.with_values({"load.pressure": 0.0}), "static"), (load_scene("quadrilateral"), "impact")],
@@ -139,13 +123,6 @@ def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
     assert load_scene(words[0]).with_values(settings).time.gg == 1.0
 
 
-def test_the_page_on_one_goal_is_asked_for_as_that_on_all_was() -> None:
-    options = ["--error", "0.3", "--frequency", "40", "--keep-springs"]
-    page = typed("advise", "figures-3-4", "--set", "time.step=0.002", *options).stdout
-    named = page.rpartition("next: ")[2].partition(" --goal ")[0]
-    assert named.split()[-len(options) :] == options
-
-
 # ---- columns and beams ----------------------------------------------------------------------------------------------
 
 
@@ -160,9 +137,10 @@ def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
         of_column(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
 
 
-def test_a_beam_of_squares_that_lock_is_cut_into_triangles() -> None:
+def test_a_beam_of_squares_that_lock_is_cut_into_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cuts, "MOST_BLOCKS", 100)  # squares lock in any number
     scene = load_scene("beams-squares").expand()[0].with_values({"plane.subdivide": [1, 8]})
-    sentence, offer = of_beam(scene, 0.3)
+    sentence, offer = of_beam(scene, 0.5)
     assert offer.settings["plane.pattern"] == "triangles" and offer.is_reached
     case = with_settings(scene, offer)
     euler = 1e4 * 8**3 / (3 * 1e9 / 12)  # and 2 % of shear

@@ -19,14 +19,6 @@ AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 SPEED = (1e9 / 2700) ** 0.5
 
 
-def test_ten_blocks_a_wavelength_let_less_than_a_hundredth_arrive() -> None:
-    frequency, height = SPEED / 20.0, 2.0  # ten blocks a wavelength
-    scene = COLUMN.with_values({"time.step": 0.5 * height / SPEED})
-    present = advise_wave(scene, frequency, 0.1, 10.0).present
-    assert 1 - present.loss == pytest.approx(0.008969, abs=1e-6)
-    assert -present.delay == pytest.approx(10 * (1 - 1 / 1.016724), abs=1e-4)
-
-
 def test_what_limits_blocks_and_step_is_named() -> None:
     both = advise_wave(COLUMN.with_values({"time.gg": 0.99}), 5.0, 0.1)
     assert (both.advised, both.limits_step) == (None, "gg")

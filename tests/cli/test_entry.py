@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.metadata
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -91,9 +90,3 @@ def test_no_command_shows_thecommand_line() -> None:
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert "export-pack" in done.stdout
-
-
-def test_a_report_is_a_pdf(tmp_path: Path) -> None:
-    text = tmp_path / "x.txt"
-    assert "--out: must end in .pdf" in refused("report", "--out", text)
-    assert not text.exists()

@@ -4,9 +4,8 @@ import math
 from pathlib import Path
 
 import pytest
-from conftest import refused, typed
+from conftest import typed
 
-from validation.advice.plain import in_columns
 from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
 from validation.scenes.keys import keys_of, range_of
@@ -36,15 +35,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
         found[cells[0]] = cells[1:]
     for metric in CATALOGUE.values():
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
-def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> None:
-    lines = [("name", "meaning"), ("a" * 10, "word " * 30), (), ("b", "short")]
-    assert in_columns(lines).splitlines()[1] == "a" * 10 + "  " + ("word " * 30).strip()
-    beside = in_columns(lines, 60, "  ").splitlines()
-    assert max(map(len, beside)) <= 60 and beside[2].startswith(" " * 14 + "word")
-    below = in_columns(lines, 40).splitlines()
-    assert max(map(len, below)) <= 40 and below[2].startswith("    word")
 
 
 def test_studies_scenes_and_solvers_have_a_line_each() -> None:
@@ -83,11 +73,6 @@ def test_the_plain_list_counts_what_the_others_hold() -> None:
     counts = {name: int(count) for name, count, *_ in lines[:6]}
     known = {"studies": study_names(), "scenes": scene_names(), "solvers": solver_names(), "metrics": CATALOGUE}
     assert {name: counts[name] for name in known} == {name: len(names) for name, names in known.items()}
-
-
-def test_another_word_is_bad_input() -> None:
-    names = "keys, metrics, scenes, schemes, solvers, studies"
-    assert refused("list", "gates") == f"error: list: must be one of {names}, got 'gates'\n"
 
 
 def test_every_key_of_a_scene_is_described_once() -> None:

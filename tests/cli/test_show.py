@@ -122,17 +122,6 @@ def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction
     assert topples or turned < 0.01
 
 
-def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
-    found = single(shown("waves-site"))
-    rock, lowest = 2400.0 * 900, 2100.0 * 500
-    assert found["1: c"] == pytest.approx(500) and found["4: c dt/h"] == pytest.approx(150 * 0.002 / 0.5)
-    assert found["3: f10"] == pytest.approx(220 / (10 * 0.5), rel=1e-4)
-    assert found["H/c"] == pytest.approx(15 / 500 + 10 / 350 + 8 / 220 + 5 / 150, rel=1e-4)
-    assert found["reflected"] == pytest.approx(100 * (rock - lowest) / (rock + lowest))
-    half = "column.layer=[{thickness=12.0, density=2000.0, young=2.0e9, blocks=24}]"
-    assert shown("waves-glue", "--set", half)["numbers"]["blocks"] == {"low": 50.0, "high": 50.0, "unit": ""}
-
-
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
 def test_every_built_in_scene_is_shown(name: str) -> None:
     found = shown(name)

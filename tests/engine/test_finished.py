@@ -10,12 +10,10 @@ from oracles.made_cases import made_row
 
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
-from validation.engine.measured import JudgedStudy, complaints
-from validation.gates.gate import Gate, Status, Verdict
+from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.row import Value
 from validation.runs.run import Outcome
-from validation.suite.folders import get_study
 
 
 def test_a_derived_row_is_computed_once_for_all_gates(tmp_path: Path) -> None:
@@ -46,27 +44,6 @@ def test_what_is_derived_ends_as_the_run_that_it_needs(ended: Outcome | None, st
 
 
 # ---- what a run complains of ----------------------------------------------------------------------------------------
-
-
-def judged(ends: list[Outcome], *words: Status) -> JudgedStudy:
-    gate = Gate("s", ("dda",), "displacement.static", 0.0, 1.0, "why")
-    cases = {("s", f"a:{i}"): ended for i, ended in enumerate(ends)}
-    return JudgedStudy(get_study("core"), [Verdict(gate, None, word) for word in words], cases)
-
-
-@pytest.mark.parametrize(
-    ("run", "said"),
-    [
-        (judged([Outcome.COMPLETED], Status.PASS, Status.NOT_RUN), []),
-        (judged([Outcome.COMPLETED], Status.NOT_RUN, Status.NOT_RUN),
-         ["core: none of its 2 gates was judged, all are NOT RUN"]),
-        (judged([Outcome.COMPLETED, Outcome.RAISED]), ["core: ended without a measurement: s a:1"]),
-        (judged([Outcome.COMPLETED, *[Outcome.TIMEOUT] * 3]), ["core: ended without a measurement: s a:1 and 2 more"]),
-        (judged([Outcome.NOT_RUN]), ["core: no case was measured"]),
-    ],
-)  # fmt: skip
-def test_complaints_count_what_they_do_not_name(run: JudgedStudy, said: list[str]) -> None:
-    assert list(complaints([run])) == said
 
 
 # ---- how far two runs agree -----------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,51 +16,20 @@ from oracles.made_cases import made_history, made_row
 
 from validation.engine import measure, origin
 from validation.engine.case import Case
-from validation.engine.finished import Finished
-from validation.engine.judge import evaluate
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.gates.gate import Gate
-from validation.metrics import growth
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.runs import provenance
-from validation.runs.history import History
-from validation.runs.modes import Mode
 from validation.runs.results import Results
-from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 
 # ---- windows ------------------------------------------------------------------------------------------------------
 
 
-def finished(tmp_path: Path, rows: dict[str, tuple[dict[str, Any], History]]) -> Finished:
-    results, kept = Results(tmp_path), {}
-    for solver, (found, history) in rows.items():
-        row = made_row(solver, found)
-        results.append(row, history)
-        kept["s", solver] = row
-    return Finished(kept, results)
-
-
-def gate(metric: str, until: float | None = None, pair: tuple[str, ...] = ("dda", "bar")) -> Gate:
-    return Gate("s", pair, metric, -1e9, 1e9, "a test", until=until)
-
-
 # ---- comparisons --------------------------------------------------------------------------------------------------
-
-STATICS = {  # an error of 0.5 beside a reference of 2 at most
-    "dda": ({"displacement.static": 10.0, "pressure.static": 25.0}, made_history(0.1, [0.5, 2.5], [0.0, 2.5])),
-    "bar": ({"displacement.static": 4.0, "pressure.static": 5.0}, made_history(0.1, [0.0, 2.0], [0.5, 2.0])),
-}
-
-
-def test_a_metric_of_one_run_is_compared_as_a_ratio_to_the_reference(tmp_path: Path) -> None:
-    made = finished(tmp_path, STATICS)
-    assert evaluate(gate("displacement.static"), made).value == pytest.approx(1.5)
-    assert evaluate(gate("displacement.static", pair=("bar",)), made).value == 4.0
 
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
@@ -80,14 +48,6 @@ def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> No
         "stability.growth": "undefined",
         "stability.kind": "stable",
     }
-
-
-def test_the_drift_is_that_of_the_energy_the_square_of_the_amplitude() -> None:
-    n = np.arange(1, 2 * growth.WINDOW + 1)
-    shape = 1 + np.where(n <= growth.WINDOW, 0.5, 0.6) * np.cos(0.3 * n + 0.7)
-    turning = Mode(300.0, 1.0, (complex(np.exp(0.3j)), complex(np.exp(-0.3j))))
-    found = growth.drift(Measurable(made_history(0.1, -0.01 * shape), 0.1, {"displacement": -0.01}, (turning,)))
-    assert found == pytest.approx(0.36 / 0.25 - 1, rel=1e-9)
 
 
 # ---- provenance ---------------------------------------------------------------------------------------------------
@@ -113,26 +73,6 @@ def test_what_differs_between_rows_is_told_with_the_number_of_each() -> None:
     rows = [made_row("dda", provenance={"commit": commit}) for commit in ("then", "now", "then")]
     assert origin.of_rows(rows)["commit"] == "then (2 rows); now (1 row)"
     assert origin.of_rows(rows[1:2])["commit"] == "now"
-
-
-def test_a_timed_run_keeps_the_least_seconds_their_spread_and_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the least run, 3 s of the processor, a quarter steps by the clock; what interrupts it counts nowhere."""
-    clocks = {"process_time": 0.0, "perf_counter": 0.0}
-    runs = iter([(9.0, 9.0, 1.0), (5.0, 5.0, 1.0), (3.0, 40.0, 10.0), (4.0, 4.0, 1.0)])
-
-    def solve(scene: Scene, full: bool) -> Run:
-        processor, clock, stepping = next(runs)
-        clocks["process_time"] += processor
-        clocks["perf_counter"] += clock
-        return Run(Outcome.COMPLETED, seconds={"setup": 0.1, "stepping": stepping})
-
-    fake: Any = SimpleNamespace(**{name: partial(clocks.__getitem__, name) for name in clocks})
-    monkeypatch.setattr(measure, "time", fake)
-    case = Case(load_scene("figure-8"), "dda", repeats=3)
-    solver: Any = SimpleNamespace(solve=solve)
-    run, spread = measure.timed(Run(Outcome.COMPLETED, work={"steps": 7}), solver, case)
-    assert run.seconds == {"setup": 2.25, "stepping": 0.75} and spread == 2.0
-    assert run.work["steps"] == 7 and run.work["lines"] > 4
 
 
 def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:

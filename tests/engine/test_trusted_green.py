@@ -26,9 +26,8 @@ from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
-from validation.runs.run import Outcome, Run
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.contract import Solver
 
 
 def ran(scene: Scene, results: Results) -> list[str]:
@@ -191,48 +190,6 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path,
 
 
 # ---- cases that end badly -------------------------------------------------------------------------------------------
-
-
-class Wrong(Solver):
-    """A solver whose error, static solution or history is at the edge."""
-
-    def __init__(self, way: str) -> None:
-        self.way = self.name = way
-
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        if self.way == "surrogate":
-            raise ValueError("a lone \udcff and \x1b[31m red")
-        if self.way == "memory":
-            raise MemoryError
-        time = scene.time.step * np.arange(1, scene.time.steps + 1)
-        extra = {"extra": np.full(3, np.nan)} if self.way == "extra" else {}
-        return Run(Outcome.COMPLETED, History(time, {"displacement": -0.01 * np.sin(time), **extra}))
-
-    def static(self, scene: Scene) -> dict[str, float]:
-        return {"displacement": 1e-320}
-
-
-@pytest.mark.parametrize(
-    ("way", "outcome", "note"),
-    [
-        ("surrogate", Outcome.RAISED, r"ValueError: a lone \udcff and \x1b[31m red"),
-        ("memory", Outcome.RAISED, "MemoryError"),
-        ("static", Outcome.COMPLETED, ""),
-        ("extra", Outcome.COMPLETED, ""),
-    ],
-)
-def test_odd_errors_and_values_are_named_outcomes(
-    way: str, outcome: Outcome, note: str, scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Case, "make_solver", lambda self: Wrong(way))
-    results = Results(tmp_path)
-    run_study(Study("test", "t", "p", [scene], ("dda",)), results)
-    (row,) = results.rows().values()
-    assert row.outcome is outcome and (row.notes[-1] if note else "") == note
-    assert outcome is not Outcome.COMPLETED or row.metrics["mode1.measured_damping"] == "undefined"
-    history = results.history(row.key)
-    assert (history is not None) == (outcome is Outcome.COMPLETED)
-    assert history is None or list(history.columns) == ["displacement"]
 
 
 def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(

@@ -10,7 +10,7 @@ import pytest
 from conftest import beside
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import lines_of, names_at, rules_of
+from oracles.made_cases import lines_of, names_at
 
 from validation.advice.budget import budgets
 from validation.engine.run import run_study
@@ -19,7 +19,7 @@ from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import CONTACT_COLOR, MARGINS, budget_panel
 from validation.report.chapters.registry import chapter_of
 from validation.report.figures.charts import chart_figure
-from validation.report.figures.curves import GREY, style_of
+from validation.report.figures.curves import style_of
 from validation.report.front.groups import groups_of_studies
 from validation.scenes.scene import load_scene
 from validation.suite import Study
@@ -60,17 +60,6 @@ def test_the_damping_budget_names_a_part_where_it_ends() -> None:
     record["modes"]["contact"]["total"] = [*np.linspace(0.9, 0.3, 15), *[None] * 5]
     (axes,) = chart_figure([budget_panel("", record)], 40.0, MARGINS).axes
     assert names_at(axes)["contact"][0] == pytest.approx(30)
-
-
-def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
-    record = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    (axes,) = chart_figure([budget_panel("", record)], 40.0, MARGINS).axes
-    assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
-    (steps,) = [x for colour, x, y in lines_of(axes) if colour == "#000000"]
-    assert list(steps) == [1e-3, 2e-3]
-    marks = {text.get_text(): text.xy[0] for text in axes.texts if hasattr(text, "xy")}
-    assert marks["a/c"] == 3e-4
-    assert rules_of(axes, to_hex(GREY)) == ([], [3e-4])
 
 
 @pytest.mark.long

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from oracles.made_cases import names_at, rules_of
+from oracles.made_cases import names_at
 
 from validation.report.chapters import ledger
 from validation.report.figures import curves
@@ -14,17 +14,6 @@ from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 
 def color(name: str) -> str:
     return to_hex(curves.style_of(name).color)
-
-
-def test_names_of_a_chart_stand_at_last_values_with_their_notes() -> None:
-    n = np.array([4.0, 8.0, 16.0])
-    lines = [ChartLine("fem", n, np.array([3.0, 2.0, 1.0]), note=": falls"), ChartLine("bar", n, 1 + n / 8)]
-    (axes,) = chart_figure([ChartPanel("", "n", "v", lines, levels={"": 2.0})]).axes
-    assert names_at(axes) == {
-        "fem: falls": (pytest.approx(1.0), color("fem")),
-        "bar": (pytest.approx(3.0), color("bar")),
-    }
-    assert rules_of(axes, to_hex(curves.GREY)) == ([2.0], [])
 
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from oracles.made_cases import kept_study, made_case, made_group, made_history, names_at
+from oracles.made_cases import kept_study, made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
 from validation.report.appendix.gates import gate_table
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
-from validation.report.chapters.scene import history_block, lead_figure
+from validation.report.chapters.scene import history_block
 from validation.report.figures import motion
 from validation.report.figures.curves import HistoryPanel
 from validation.runs.results import Results
@@ -101,18 +101,6 @@ def test_a_figure_ends_when_all_lines_have_long_settled(drawn: dict[str, Figure]
     caption = history_block(group, ["displacement"], tmp_path).caption
     assert "settled" not in caption and "bar lies on dda (within <10⁻¹²)." in caption
     assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
-
-
-def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure], tmp_path: Any) -> None:
-    """The bar lies on fem and has no line of its own; what is apart from it is drawn all the same."""
-    bar = made_history(0.002, np.linspace(-0.02, -0.01, 100))
-    histories = {"dda": made_history(0.002, np.linspace(-0.025, -0.01, 100)), "fem": bar, "bar": bar}
-    group = made_group(made_case(PAPER, {}, histories))
-    (block,) = lead_figure(group, tmp_path)
-    caption = block.caption
-    top, below = drawn["scene-lead.svg"].axes
-    assert "|Δ|: from bar" in caption and below.get_ylabel() == "|Δ| / largest"
-    assert set(names_at(below)) == {"dda"} and set(names_at(top)) == {"dda", "fem, bar"}
 
 
 def test_a_count_that_is_none_is_no_small_number() -> None:

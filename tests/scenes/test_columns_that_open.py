@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -25,16 +24,6 @@ def scene_with(column: dict[str, Any], **tables: Any) -> Scene:
     return parse_scene(
         data | {"time": {"step": 1e-3, "steps": 10}, "run": {"solvers": ["dda"]}} | tables, "column.toml"
     )
-
-
-def test_every_face_is_a_contact_unless_it_has_a_joint_of_its_own() -> None:
-    joint = {"height": 3.0, "stiffness": "inf", "gap": 0.1}
-    column = scene_with({"gap": 0.2, "joint": [joint]}).column
-    assert column is not None
-    assert column.faces == (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
-    numbers = [(one.height, one.stiffness, one.gap, one.strength) for one in column.contacts]
-    others = [(height, 1e9, 0.2, math.inf) for height in (0.0, 1.0, 2.0, 4.0)]
-    assert numbers == sorted([*others, (3.0, math.inf, 0.1, math.inf)])
 
 
 REFUSED = [

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene, parse_assignment
+from validation.scenes.scene import Scene, load_scene
 
 
 @pytest.mark.parametrize(
@@ -25,15 +25,6 @@ def test_a_defect_of_a_scene_says_where_it_is(scene: Scene, values: dict[str, ob
     with pytest.raises(InputError) as refused:
         scene.with_values(values)
     assert (refused.value.source, refused.value.field, refused.value.value) == (scene.name, field, value)
-
-
-def test_files_and_options_are_told_from_keys() -> None:
-    with pytest.raises(InputError) as refused:
-        load_scene("nowhere.toml")
-    assert (str(refused.value.source), refused.value.field) == ("nowhere.toml", None)
-    with pytest.raises(InputError) as refused:
-        parse_assignment("no equals sign")
-    assert (refused.value.source, refused.value.field) == (None, "--set")
 
 
 def test_a_decimal_comma_of_a_file_is_named(tmp_path: Path) -> None:

@@ -2,21 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from validation.errors import InputError
 from validation.scenes.outline import check_polygon
-from validation.scenes.record import read_record
 
 PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
-
-
-def test_a_record_that_goes_back_is_named_by_its_instants(tmp_path: Path) -> None:
-    (tmp_path / "r.csv").write_text("time,x\n0,0\n5,1\n3,2\n9,3\n")
-    with pytest.raises(InputError, match="time must increase from row to row, got 3 after 5"):
-        read_record(tmp_path / "r.csv")
 
 
 @pytest.mark.parametrize(

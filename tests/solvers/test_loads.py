@@ -21,9 +21,6 @@ def scene_with(tmp_path: Path, load: str, record: str | None = None) -> Path:
     return path
 
 
-LOADS = ("pressure = 1e6\neccentricity = 0.2", "traction = 2e5", "gravity = 9.81", 'base_motion = "quake.csv"')
-
-
 @pytest.mark.parametrize(
     ("record", "words"),
     [

@@ -109,24 +109,6 @@ def test_a_corner_that_is_off_by_rounding_leaves_a_rectangle(right: float, recta
     assert found == (0.3, 1.0) if rectangle else found is None
 
 
-@pytest.mark.parametrize("elements", [2, 3, 4, 5])
-def test_the_middle_of_triangles_is_read_in_its_own_triangle(elements: int) -> None:
-    """Any nodal values, linear in each triangle: the middle's own triangle is found by its barycentric coordinates."""
-    vertices = ((0.0, 0.0), (3.0, 0.0), (2.0, 1.6), (0.4, 1.0))
-    problem = make(vertices, elements=elements, degree=1, cells="triangles")  # type: ignore[arg-type]
-    assembled = assemble(problem)
-    mesh, values = assembled.basis.mesh, np.random.default_rng(elements).standard_normal(assembled.basis.N)
-    for name, dofs in (
-        ("horizontal_displacement", assembled.basis.nodal_dofs[0]),
-        ("displacement", assembled.basis.nodal_dofs[1]),
-    ):
-        found = []
-        for cell in mesh.t.T:
-            weights = np.linalg.solve(np.vstack([mesh.p[:, cell], np.ones(3)]), [*problem.centroid, 1.0])
-            found += [weights @ values[dofs[cell]]] * bool(np.all(weights >= -1e-12))
-        assert assembled.observers[name] @ values == pytest.approx(found[0], rel=1e-11)
-
-
 def test_a_load_on_a_block_that_is_not_there_is_refused() -> None:
     block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
     load = dda.SurfaceLoad(1, (0.0, A), (A, A), (0.0, -Q))

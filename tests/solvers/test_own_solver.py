@@ -29,7 +29,7 @@ from validation.solvers.user import ALLOWANCE, VARIABLE
 from validation.suite.own_solver import block as block_module
 from validation.suite.own_solver import block_data, gates
 from validation.suite.own_solver.block import block, first, outside
-from validation.suite.own_solver.history import AT_REST, TAIL, rest, root
+from validation.suite.own_solver.history import AT_REST, root
 from validation.suite.own_solver.session import GateReport, Session
 from validation.theory import spectra
 
@@ -248,12 +248,6 @@ def test_what_is_no_sum_of_two_modes_shows_none() -> None:
     assert root(scene, swinging(scene, 200, 0.01)) is None
     for x in (np.zeros(200), np.full(200, np.inf), np.ones(9)):
         assert root(scene, History(x, {"displacement": x})) is None
-
-
-def test_where_a_motion_rests_is_known_to_what_still_moves() -> None:
-    n = np.arange(200)
-    middle, width = rest(-0.01 + 0.001 * 0.98**n * np.cos(0.7 * n))
-    assert abs(middle + 0.01) <= width < 2e-4 and width > 1e-5
 
 
 def test_what_the_solver_does_not_report_is_not_run() -> None:
@@ -528,17 +522,6 @@ def test_wrong_statics_of_the_square_are_looked_for_first() -> None:
     lines = block([of(status="FAIL", value=2.0, results="/nowhere"), replace(failed, results="/nowhere")])
     assert [line.split(" - ")[0] for line in lines if line.startswith("wrong:")] == ["wrong:  statics"]
     assert f"        {gates.BLOCK_DATA}: may follow from it, look again when it is right" in lines
-
-
-def test_the_scenes_of_the_data_are_at_rest_by_their_spectral_radius() -> None:
-    """What still moves after n steps is r^n of the first, r the largest root of a step over the modes of the scene.
-
-    The last fifth of the steps is measured: what moves there is below the band of the closed form.
-    """
-    for scene in block_data.scenes():
-        modes = get_solver("dda").modes(scene)  # type: ignore[attr-defined]
-        radius = max(abs(z) for mode in modes for z in mode.eigenvalues)
-        assert radius ** (scene.time.steps * (1 - 1 / TAIL)) < block_data.ROUNDED
 
 
 def test_a_scheme_that_does_not_damp_hides_a_misread_datum_but_makes_none_up(

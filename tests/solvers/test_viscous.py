@@ -2,15 +2,10 @@
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.plain_newmark import stepped
 
 import dda
-import fem_reference
-from dda.scheme import roots
-from fem_reference.scheme import modal
-from fem_reference.scheme.eigen import eigenvalues
 from validation import advise, damping, load_scene, solve
 from validation.advice.rayleigh import Rayleigh
 from validation.advice.wave_advice import advise_wave
@@ -46,35 +41,6 @@ def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: d
     history = solve(scene, solver).history
     for column, values_ in zip(COLUMNS, expected, strict=True):
         assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))
-
-
-@pytest.mark.parametrize(
-    "values", thinned([{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}], 3)
-)
-def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
-    errors = []
-    for step in (4e-4, 1e-4):
-        scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.03 / step)} | values)
-        bar, exact = (solve(scene, solver).history for solver in ("bar", "continuum"))
-        errors.append([np.max(np.abs(bar.columns[c] - exact.columns[c])) for c in COLUMNS])
-    assert np.all(np.log2(np.divide(*errors)) > 2.8)  # of two halvings, each of order two or nearly so
-
-
-@pytest.mark.parametrize("frequency", [3.0, 300.0, 2000.0, 2e5])
-@pytest.mark.parametrize("gg", [1.0, 0.97, 0.0])
-def test_eigenvalues_are_those_of_the_steps_own_operator(frequency: float, gg: float) -> None:
-    own = dda.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
-    theirs = fem_reference.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
-    three = eigenvalues(frequency, theirs)  # the least is zero
-    pairs = (
-        dda.one_block.modes.scalar_eigenvalues(own, frequency),
-        roots.eigenvalues(own, frequency * 2e-3),
-        modal.roots(frequency * 2e-3, theirs)[:2],
-        three[:2],
-    )
-    sums, products = [sum(pair) for pair in pairs], [pair[0] * pair[1] for pair in pairs]
-    assert np.allclose(sums, sums[1], rtol=1e-7, atol=1e-9)
-    assert np.allclose(products, products[1], rtol=1e-7, atol=1e-9)
 
 
 def test_the_operator_of_the_assembled_step_has_the_modes_eigenvalues() -> None:
