@@ -265,7 +265,7 @@ def answer(command: str) -> Any:
 
 
 SETTINGS = [
-    {"solve_for": "dt"},
+    pytest.param({"solve_for": "dt"}, marks=pytest.mark.long),
     {"solve_for": "gg", "step": 3e-4, "alpha": 0.25, "delta": 0.5, "stiffness_ratio": 10, "target": 0.08},
     {"solve_for": "scheme", "step": 1e-3, "gg": 0.99, "young": 4e9, "side": 3, "target": 0.3},
     {"solve_for": "dt", "alpha": 0.3025, "delta": 0.6, "gg": 0.98, "density": 2000, "target": 0.02},
