@@ -155,24 +155,3 @@ def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
         advise(BASE, damping=wanted, solve_for=solve_for)
     with pytest.raises(InputError, match="one value must be picked"):
         damping(load_scene("figures-3-4"))
-
-
-def test_a_contact_that_opens_is_what_is_blamed() -> None:
-    with pytest.raises(InputError) as error:
-        advise(BASE.with_values({"load.gravity": 9.81, "contact.law": "unilateral"}), damping=0.05)
-    assert error.value.value == "one with unilateral contact"
-    assert "advise contact" in str(error.value.advice)
-
-
-def test_damping_tells_parts_and_the_mode_that_flips() -> None:
-    first, contact = damping(LIGHT).modes
-    assert (first.name, contact.name) == ("first axial", "contact")
-    assert first.damping == pytest.approx(0.0296, abs=5e-5)
-    assert first.algorithmic == pytest.approx(0, abs=1e-15) and first.kinetic == pytest.approx(first.damping)
-    both = damping(BASE.with_values({"time.gg": 0.98})).modes[0]
-    assert both.damping == pytest.approx(both.algorithmic + both.kinetic, rel=1e-12)
-    stiff = damping(BASE.with_values({"contact.stiffness": 1e11}))
-    assert stiff.modes[1].flips and "flips sign every step" in stiff.sentence
-    lateral = damping(BASE.with_values({"block.poisson": 0.3, "contact.stiffness": 1e11}))
-    assert sorted(m.name for m in lateral.modes) == ["contact", "first axial", "mode 3"]
-    assert max(lateral.modes, key=lambda m: m.frequency).name == "contact"

@@ -11,10 +11,9 @@ import pytest
 from oracles.made_cases import made_row
 
 from validation.advice import budget
-from validation.advice.alarms import RINGING, TENSION, alarms, fixed_discount
+from validation.advice.alarms import TENSION, alarms, fixed_discount
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
-from validation.theory import spectra
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
@@ -52,24 +51,6 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> No
         "dda.minimum": -0.4321e6, "dda.time": 0.0025, "dda.duration": 0.0375,
         "bar.minimum": -1.25e6, "bar.time": 0.015, "bar.duration": 0.003,
     }  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("root", "radius", "words"),
-    [
-        (-0.95, 0.95, "a root of the contact mode is -0.95: the contact force rings from step to step and takes 90 "
-         "steps to fall to 1 %"),
-        (-0.91, 0.98, "a root of the contact mode is -0.91: the contact force rings from step to step and takes 228 "
-         "steps to fall to 1 %"),
-        (-1.0, 1.0, "a root of the contact mode is -1: the contact force rings from step to step and hardly "
-         "decays"),
-        (-0.89, 0.98, None),
-    ],
-)  # fmt: skip
-def test_ringing_falls_to_one_per_cent_in_so_many_steps(root: float, radius: float, words: str | None) -> None:
-    """0.95^90 = 0.0099 and 0.98^228 = 0.00999."""
-    alarm = raised(SCENE, {"dda": {"contact.least_root": root, "contact.spectral_radius": radius}}).get(RINGING)
-    assert (None if alarm is None else alarm.sentence) == words
 
 
 def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:
@@ -110,54 +91,6 @@ def frequencies(scene: Scene) -> np.ndarray:
     return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
 
 
-def of_scheme(omega: float, alpha: float, delta: float, gg: float) -> tuple[float, float]:
-    """Return xi and |lambda| of a complex pair from trace and determinant of a step."""
-    beta = 1 + alpha * omega**2
-    trace = 1 - omega**2 / (2 * beta) + gg * (1 - delta * omega**2 / beta)
-    roots = np.roots([1.0, -trace, gg * (1 + (0.5 - delta) * omega**2 / beta)])
-    log = np.log(complex(roots[0]))
-    return float(-log.real / abs(log)), float(np.abs(roots).max())
-
-
-@pytest.mark.parametrize(("name", "mode"), [("first axial", 0), ("contact", 1)])
-def test_a_budget_holds_each_modes_total_algorithmic_and_kinetic_damping(name: str, mode: int) -> None:
-    scene = oblong()
-    (found,) = budget.budgets([scene])
-    w, curves, dt = frequencies(scene)[mode], found["modes"][name], np.array(found["dt"])
-    middle = [i for i in range(len(dt)) if 0.2 < w * dt[i] < 1.5]
-    assert len(middle) > 10
-    for i in middle:
-        total, radius = of_scheme(w * dt[i], 0.36, 0.7, 0.97)
-        own, _ = of_scheme(w * dt[i], 0.36, 0.7, 1.0)
-        told = [curves[part][i] for part in ("total", "algorithmic", "kinetic", "spectral_radius")]
-        assert told == pytest.approx([total, own, total - own, radius], rel=1e-4)  # five digits are kept
-
-
-def test_a_budget_of_a_rate_takes_the_discount_of_each_step() -> None:
-    scene = oblong(time__gg_rate=30.0)
-    (found,) = budget.budgets([scene])
-    assert found["gg_rate"] == 30.0
-    w, first, dt = frequencies(scene)[0], found["modes"]["first axial"], np.array(found["dt"])
-    i = int(np.argmin(np.abs(w * dt - 0.5)))
-    total, radius = of_scheme(w * dt[i], 0.36, 0.7, math.exp(-30.0 * dt[i]))
-    assert [first["total"][i], first["spectral_radius"][i]] == pytest.approx([total, radius], rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("changes", "speed"),
-    [
-        ({}, math.sqrt(4e9 / 2500)),
-        ({"block.poisson": 0.3, "block.hypothesis": "plane strain"}, math.sqrt(4e9 / (1 - 0.09) / 2500)),
-        ({"block.width": 5.0, "block.young": 1e9}, math.sqrt(1e9 / 2500)),
-    ],
-)
-def test_a_wave_crosses_the_height_and_not_the_width(changes: dict[str, Any], speed: float) -> None:
-    scene = oblong(**changes)
-    assert spectra.transit(scene) == pytest.approx(3.0 / speed, rel=1e-12)
-    (found,) = budget.budgets([scene])
-    assert found["limits"]["wave transit"] == pytest.approx(3.0 / speed, rel=1e-3)
-
-
 def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> None:
     """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
     scene = oblong()
@@ -167,9 +100,3 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
-
-
-def test_each_setting_has_a_budget_of_its_own_with_all_its_steps() -> None:
-    cases = [oblong(time__step=step, time__gg=gg) for gg in (0.97, 0.9) for step in (2e-4, 1e-4)]
-    found = list(budget.budgets(cases))
-    assert [(b["gg"], b["steps"]) for b in found] == [(0.97, [1e-4, 2e-4]), (0.9, [1e-4, 2e-4])]

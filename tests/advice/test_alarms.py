@@ -1,15 +1,13 @@
 """Alarms are raised where they should be, stay silent where not, and reach verdicts."""
 
-import json
 from pathlib import Path
 
 import pytest
 from conftest import beside
 
-from validation.advice.alarms import RINGING, TENSION, Alarm, alarms
+from validation.advice.alarms import RINGING, Alarm, alarms
 from validation.advice.coarse import AGREEMENT, SAMPLED
-from validation.engine.run import finish, run_study
-from validation.gates.gate import Gate
+from validation.engine.run import finish
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.declaration import Study
 
@@ -40,16 +38,3 @@ def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path, finished_ca
     assert RINGING not in raised(soft, finished_cases, tmp_path) and RINGING not in raised(
         stiff, finished_cases, tmp_path
     )
-
-
-def test_alarms_reach_verdicts_and_the_manifest(tmp_path: Path, finished_cases: Path) -> None:
-    scenes = STIFFNESS.expand()[1:]
-    gates = tuple(Gate(scene.name, ("dda", "bar"), "displacement.l2", 0.0, 1.0, "any") for scene in scenes)
-    study = Study("two", "", "", scenes, ("dda", "bar", "continuum"), gates=lambda: gates)
-    run_study(study, beside(finished_cases, tmp_path))
-    verdicts = json.loads((tmp_path / "verdicts.json").read_text())
-    ringing = {v["scene"] for v in verdicts if RINGING in v["alarms"]}
-    assert ringing == {"figures-5-6[contact.stiffness=1e+11]"}
-    assert len(verdicts) == 2 and all(AGREEMENT in v["alarms"] for v in verdicts)
-    kinds = {alarm["kind"] for alarm in json.loads((tmp_path / "studies/two.json").read_text())["alarms"]}
-    assert kinds == {AGREEMENT, RINGING, TENSION}

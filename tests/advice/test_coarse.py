@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import json
 import math
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms, removal_of
+from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
 from validation.cli.app import app
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.front.groups import groups_of_studies
@@ -81,19 +80,6 @@ CH = {"scheme": "chung-hulbert", "rho_inf": 0.0, "steps": 200}
 )
 def test_a_step_that_is_too_long_is_told_without_a_run(case: Scene, raised: set[str]) -> None:
     assert kinds(case) == raised
-
-
-@pytest.mark.parametrize(("gg", "damping"), [(1.0, 0.0), (0.95, 0.0), (1.0, 1e-4)])
-def test_what_the_scheme_takes_in_a_period(gg: float, damping: float) -> None:
-    """(1/2, 1) has z^2 (1 + W2 / 2) - 2 z + 1 = 0 with W2 = (w dt)^2; discount and tables are not the scheme's."""
-    case = scene(time__gg=gg, damping__stiffness=damping)
-    omega_dt = 1.7
-    removal = removal_of(case, omega_dt / case.time.step)
-    root = (1 + cmath.sqrt(1 - 1 * (1 + omega_dt**2 / 2))) / (1 + omega_dt**2 / 2)
-    period = 2 * math.pi / omega_dt
-    assert removal.by_scheme == pytest.approx(1 - abs(root) ** period, rel=1e-9)
-    rate = damping * (omega_dt / case.time.step) ** 2 * case.time.step
-    assert removal.by_damping == pytest.approx(1 - (gg * math.exp(-rate)) ** (period / 2), rel=1e-9)
 
 
 @pytest.mark.parametrize(

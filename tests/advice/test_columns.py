@@ -1,7 +1,5 @@
 """What is known of a column before a step is made, and which of its scenes raise an alarm."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -21,21 +19,6 @@ def stack(layer=RIGID, column=(), **time):
 
 def kinds(scene):
     return [alarm.kind for alarm in columns.column_alarms(scene)]
-
-
-def test_a_stack_of_rigid_blocks_needs_one_solve_more_than_it_has_contacts():
-    known = columns.limits(stack())
-    assert (known.contacts, known.solves, known.far_face_step) == (10, 11, 0.0)
-    assert known.ring_down == pytest.approx(3.0992, abs=6e-4)
-
-
-def test_the_bound_is_proven_above_the_step_of_the_far_face_only():
-    elastic = RIGID | {"young": 1e9}
-    turns = 1 / math.sqrt(1e9 / 2500) / math.sqrt(6 * 0.5)
-    above = columns.limits(stack(elastic, step=1.01 * turns))
-    below = columns.limits(stack(elastic, step=0.99 * turns))
-    assert (above.solves, below.solves) == (11, None)
-    assert above.lowest is None  # the closed form is that of rigid blocks
 
 
 @pytest.mark.parametrize(("limit", "raised"), [(6, True), (10, True), (11, False)])
@@ -61,12 +44,6 @@ def test_damping_that_changes_what_slips_is_an_alarm(time, raised):
     assert (kinds(stack(column=sheared, **time)) == [columns.PATH]) == raised
 
 
-def test_a_bonded_column_has_neither():
-    data = {"column": {"motion": "shear", "layer": [RIGID | {"young": 1e9}]}, "time": {"step": 1e-3, "steps": 10}}
-    scene = parse_scene(data | {"input": {"shape": "ricker", "velocity": 1.0, "frequency": 1.0}}, "bonded")
-    assert columns.limits(scene) is None and kinds(scene) == []
-
-
 def test_advice_names_the_blocks_that_the_step_can_bear():
     scene = stack(RIGID | {"young": 1e9, "blocks": 5}, step=1e-4, alpha=0.25, delta=0.5)
     known = columns.limits(scene)
@@ -75,11 +52,6 @@ def test_advice_names_the_blocks_that_the_step_can_bear():
         finer = stack(RIGID | {"young": 1e9, "blocks": count}, step=1e-4, alpha=0.25, delta=0.5)
         assert (columns.limits(finer).far_face_step > 1e-4 * (1 + 1e-9)) == below
     assert any(f"{blocks} blocks in the layers" in sentence for sentence in columns.advised(scene, known))
-
-
-def test_a_stack_that_nothing_damps_never_comes_to_rest():
-    undamped = stack(alpha=0.25, delta=0.5)
-    assert columns.limits(undamped).ring_down == math.inf and columns.rest(undamped) is None
 
 
 STACKS = {  # blocks, w1 dt of rigid ones, velocity [m/s], gap [m], Young's modulus, a heavy block on top

@@ -19,7 +19,6 @@ from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
-from validation.theory import landing
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}
@@ -54,11 +53,6 @@ def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expecte
     assert set(raised(PAPER.with_values(values), tmp_path, *solvers)) == expected
 
 
-def test_a_peak_not_far_above_that_of_the_bar_is_no_alarm(tmp_path: Path) -> None:
-    scene = PAPER.with_values({"contact.stiffness": 2.2e9, "time.step": 2e-5, "time.steps": 400})
-    assert not raised(scene, tmp_path, "dda", "bar-events")  # 1.4 times and less, of springs stiffer than the bar
-
-
 def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
     large = raised(PAPER.with_values(STIFF), tmp_path)[kinds.LARGE_STEP]
     assert large.values["omega"] == pytest.approx(math.sqrt(8e11 / 10800) * 1e-3, rel=1e-2)  # 8.6, a quarter of m
@@ -82,66 +76,6 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float
     first, later = np.diff(history.displacement)[[0, 10]]
     constant = 0.0 if later == 0 else -10 * scene.time.step / math.log(later / first)
     assert alarm.values["constant"] == pytest.approx(constant, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {},
-        {"load.gravity": 9.81 * 50, "contact.stiffness": 7e9},
-        {"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.9},
-        {"block.young": 3e9, "block.density": 2400.0, "block.side": 1.5},
-    ],
-)
-def test_the_opening_is_hidden_from_the_limit_on(values: dict[str, Any]) -> None:
-    scene = PAPER.with_values(values)
-    limit = landing.hidden_from(scene)
-    assert limit is not None
-    for factor, opens in ((0.999, True), (1.001, False)):
-        row, _ = execute(Case(scene.with_values({"time.step": factor * limit, "time.steps": 1}), "dda"), "", "")
-        assert (row.metrics["contact.gap"] > 0) == opens  # type: ignore[operator]
-
-
-def test_the_opening_is_hidden_at_the_known_limits() -> None:
-    assert landing.hidden_from(PAPER) == pytest.approx(1.8973665961e-3, rel=1e-10)
-    assert landing.hidden_from(PAPER.with_values(AVERAGE)) == pytest.approx(2.6832815730e-3, rel=1e-10)
-    for none in ({"contact.gap": 0.1}, {"block.velocity": -1.0}, {"load.gravity": 2000.0}, {"load.pressure": -1.0}):
-        assert landing.hidden_from(PAPER.with_values(none)) is None
-
-
-def test_delta_of_one_is_no_guard_below_alpha_of_one_half_and_larger_delta_is_one() -> None:
-    may = {(0.4, 1.0), (0.45, 0.9), (0.25, 0.5), (0.55, 1.2)}
-    cannot = {(0.5, 1.0), (0.75, 1.0), (0.6, 1.2), (0.75, 1.5)}
-    for alpha, delta in may | cannot:
-        scene = PAPER.with_values({"time.alpha": alpha, "time.delta": delta, "time.allow_unstable": True})
-        assert landing.cannot_gain(scene) == ((alpha, delta) in cannot)
-    assert landing.cannot_gain(PAPER.with_values(AVERAGE | {"contact.rule": "implicit"}))
-
-
-@pytest.mark.parametrize(
-    ("alpha", "delta", "risen"),  # by a recursion of two unknowns, without dda
-    [(0.6, 1.2, 0.0), (0.75, 1.0, 2.4874)],
-)
-def test_without_switching_energy_rises_at_2_alpha_above_delta_only(alpha: float, delta: float, risen: float) -> None:
-    scheme = {"time.alpha": alpha, "time.delta": delta, "time.step": 1e-2, "time.steps": 20, "time.start": "consistent"}
-    row, _ = execute(Case(PAPER.with_values(scheme), "dda"), "", "")
-    rise, gained = row.metrics["energy.rise"], row.metrics["energy.switching_gain"]
-    assert isinstance(rise, float) and isinstance(gained, float) and gained <= 1e-12
-    assert rise == pytest.approx(risen, rel=1e-4, abs=1e-10)
-    from_zero, _ = execute(Case(PAPER.with_values(scheme | {"time.start": "zero"}), "dda"), "", "")
-    assert from_zero.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-10) or delta > 1
-    # the second term of the energy that falls, at the start: (alpha - delta/2) dt^2 4 F^2/(2 m)
-    assert rise * float(row.metrics["energy.given"]) <= (alpha - delta / 2) * 1e-4 * 2 * 1e7**2 / 10800 + 1e-4
-
-
-def test_the_springs_that_are_advised_keep_the_penetration_asked_for() -> None:
-    """A block that is dropped penetrates by 1.48 V sqrt(m / (8 p)), in the second of its contacts."""
-    fallen = PAPER.with_values({"load.pressure": 0.0, "block.velocity": -1.0, "time.step": 1e-5, "time.steps": 500})
-    found = contact.needed(fallen, 1.0, 1e-4)
-    assert found.stiffness == pytest.approx(1.471**2 * 10800 / 8e-8, rel=1e-2)
-    row, _ = execute(Case(fallen.with_values({"contact.stiffness": found.stiffness}), "block-events"), "", "")
-    assert row.metrics["contact.penetration"] == pytest.approx(1e-4, rel=0.02)
-    assert contact.needed(PAPER, 0.0, 1e-4).stiffness == pytest.approx(1e7 / 2e-4)  # the load alone
 
 
 def test_a_landing_is_not_known_for_every_scene() -> None:

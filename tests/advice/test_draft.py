@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from conftest import refused, typed
 
-from validation import damping, load_scene, solve
-from validation.advice.draft import KINDS, ROCKS, draft
+from validation import load_scene, solve
+from validation.advice.draft import KINDS, draft
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
@@ -32,15 +32,6 @@ def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock
     before = (tmp_path / "mine.toml").read_bytes()
     assert "mine.toml" in refused("new", "mine.toml", cwd=tmp_path)
     assert (tmp_path / "mine.toml").read_bytes() == before
-
-
-def test_springs_and_step_of_a_block_are_those_that_the_comments_say(tmp_path: Path) -> None:
-    path = tmp_path / "block.toml"
-    path.write_text(draft({"width": 3.0, "height": 2.0, "rock": "sandstone", "pressure": 2e6}, default))
-    scene = load_scene(path)
-    assert scene.contact.stiffness == pytest.approx(2e10 * 3.0 / (2.0 * 0.05))
-    assert damping(scene).modes[0].damping == pytest.approx(0.05, abs=0.005)
-    assert (scene.block.density, scene.load.pressure, scene.load.gravity) == (2300.0, 2e6, 9.81)
 
 
 def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path: Path) -> None:
@@ -82,8 +73,3 @@ def test_what_is_refused(options: dict[str, object], field: str) -> None:
     with pytest.raises(InputError) as error:
         draft(options, default)
     assert error.value.field == field
-
-
-def test_rocks_have_waves_of_rock() -> None:
-    for rock in ROCKS.values():
-        assert 2000 < math.sqrt(rock["young"] / rock["density"]) < 6000

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import math
 from pathlib import Path
 from typing import Any
 
 import pytest
-from oracles.made_cases import made_row
 
-from validation import load_scene, solve
+from validation import load_scene
 from validation.advice import friction as advice
 from validation.advice.alarms import alarms
 from validation.engine.run import finish
@@ -19,8 +16,6 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
-from validation.theory import friction
-from validation.theory.friction import distance_share
 
 SLIDES = load_scene("slope-drag").expand()[0]
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
@@ -57,55 +52,3 @@ def test_a_run_without_states_is_told_what_to_do() -> None:
     (alarm, *_) = advice.friction_alarms(STANDS, {"dda": row})
     assert alarm.kind == advice.STATELESS
     assert "smaller time.step" in alarm.sentence
-
-
-def test_a_slope_to_the_other_side_is_the_same_slope(tmp_path: Path) -> None:
-    here = advice.sliding(SLIDES)
-    there = SLIDES.with_values({"load.slope": -SLIDES.load.slope})
-    assert here is not None and not here.stands
-    assert advice.sliding(there) == here
-    assert raised(there.with_values({"time.steps": 100}), tmp_path) == {advice.BRAKES}
-
-
-def test_a_discount_of_nothing_has_no_rate(tmp_path: Path) -> None:
-    case = SLIDES.with_values({"time.gg": 0.0, "time.steps": 20})
-    found = advice.sliding(case)
-    assert found is not None and found.rate is None and "takes the whole velocity" in found.drag
-    json.dumps(found.as_dict(), allow_nan=False)
-    assert raised(case, tmp_path) == {advice.BRAKES}
-
-
-@pytest.mark.parametrize(("gg", "step", "cut"), [(0.98, 1e-3, 0.1148), (0.99, 1e-2, 0.8963), (0.98, 1e-2, 0.6892)])
-def test_what_a_discount_leaves_of_a_way_is_what_dda_slides(gg: float, step: float, cut: float) -> None:
-    case = SLIDES.with_values({"time.gg": gg, "time.step": step, "time.steps": round(1 / step)})
-    found = advice.sliding(case)
-    assert found is not None and not found.stands
-    assert found.braked == pytest.approx(cut, abs=6e-5)
-    run = solve(case, "dda").history.columns["horizontal_displacement"][-1]
-    assert run == pytest.approx(found.braked + found.offset, rel=1e-6)
-    assert distance_share(gg, step, 1.0) == pytest.approx(found.braked / found.run_out, rel=1e-12)
-    assert distance_share(1.0, step, 1.0) == 1
-
-
-def test_ringing_that_a_step_hides_is_told_by_its_period() -> None:
-    told = {alarm.kind: alarm for alarm in advice.friction_alarms(STANDS, {"dda": made_row("dda")})}[advice.HIDES]
-    period = 2 * math.pi / friction.normal_frequency(STANDS)
-    assert f"of the period {period:.3g} s" in told.sentence
-    assert told.values["phase"] == pytest.approx(2 * math.pi * STANDS.time.step / period)
-
-
-@pytest.mark.parametrize(
-    ("slope", "friction_angle", "shear", "speed"),
-    [(10.0, 30.0, 1e9, 0.0), (20.0, 60.0, 1e9, 0.0), (10.0, 30.0, 4e8, 0.25), (20.0, 30.0, 1e9, 0.89)],
-)
-def test_a_slip_is_hidden_only_where_the_exact_block_slips(
-    slope: float, friction_angle: float, shear: float, speed: float
-) -> None:
-    """Speeds over g / w_n in the second half of a second, by average acceleration at w_n dt = 0.09."""
-    values = {"load.slope": slope, "contact.friction": friction_angle, "contact.shear_stiffness": shear}
-    case = STANDS.with_values(values)
-    raised_kinds = {alarm.kind for alarm in advice.friction_alarms(case, {"dda": made_row("dda")})}
-    assert (advice.HIDES in raised_kinds) == (speed > 0)
-    exact = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "time.step": 2e-4, "time.steps": 5000}
-    slide = solve(case.with_values(exact), "dda").history.columns["slide_m"]
-    assert (slide[-1] - slide[2499]) / 0.5 / friction.creep_scale(case) == pytest.approx(speed, abs=0.06)

@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 from oracles.made_cases import made_row
 
-from validation.advice.across import advise_across
 from validation.advice.columns import column_alarms
 from validation.advice.contact_alarms import GAINED, gained
 from validation.advice.overshoot import OVERSHOOT, overshoot_alarms, start_rise
 from validation.runs.contact import STORED
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
-from validation.theory import overshoot, stages
 
 CH = {"time.scheme": "chung-hulbert", "time.rho_inf": 0.0, "time.start": "consistent", "time.steps": 20}
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.01, "contact.law": "unilateral"})
@@ -53,23 +51,6 @@ def test_a_start_raises_the_energy_as_the_modes_say(stiffness: float, step: floa
 )
 def test_no_start_is_blamed_that_adds_nothing(changes: dict[str, Any]) -> None:
     assert not list(overshoot_alarms(BLOCK.with_values(CH | changes), {"dda": made_row("dda", {})}))
-
-
-@pytest.mark.parametrize("omega", [0.3, 1.08, 6.57, 40.0])
-def test_the_first_step_of_chung_and_hulbert(omega: float) -> None:
-    expected = omega**6 / (16 * (2 + omega**2) ** 2)
-    assert overshoot.energies(stages.chung_hulbert(0.0), omega, True)[0] == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("start", "first"), [("zero", "chung-hulbert (rho_inf = 0)"), ("consistent", "Newmark (0.5, 1)")]
-)
-def test_schemes_are_ranked_by_what_their_start_adds(start: str, first: str) -> None:
-    scene = load_scene("field-locked").with_values({"time.start": start})
-    offers = {offer.name: offer for offer in advise_across(scene, 0.05, 5.0, no_gain=True).offers}
-    assert next(iter(offers)) == first
-    assert offers["chung-hulbert (rho_inf = 0)"].start_rise == pytest.approx(5.37, rel=1e-3)
-    assert offers["Newmark (0.5, 1)"].start_rise == 0
 
 
 SPLIT = {"energy.given": 100.0, "energy.switching_gain": 0.585, "energy.lost_switching": -58.5, "switches.count": 4.0}

@@ -1,7 +1,5 @@
 """Blocks and step for a wave: what is advised is just good enough, and what the present ones do."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -19,51 +17,6 @@ COLUMN = load_scene("figures-3-4").with_values(
 )
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 SPEED = (1e9 / 2700) ** 0.5
-
-
-def passage(scene: Scene, found: wave_advice.WaveAdvice, blocks: int, step: float) -> wave_advice.Passage:
-    """Return what becomes of the advised way with other blocks or another step."""
-    layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
-    way = wave_advice._WavePath((layer,), found.frequency, found.distance / 100.0)
-    return way.passage(Stepping.of(scene).at(step))
-
-
-@pytest.mark.parametrize(
-    ("values", "wavelengths", "limit"),
-    [
-        ({}, None, "loss"),
-        ({}, 10.0, "loss"),
-        (AVERAGE, 10.0, "phase error"),
-        ({"time.gg_rate": 0.2}, None, "loss"),
-        ({"time.gg": 0.9999}, None, "loss"),
-        ({"block.glue_ratio": 1.0}, None, "loss"),
-        ({"time.alpha": 0.0, "time.delta": 0.5}, 0.5, "stability"),
-    ],
-)
-def test_what_is_advised_is_just_good_enough(values: dict[str, object], wavelengths: float | None, limit: str) -> None:
-    scene = COLUMN.with_values(values)
-    found = advise_wave(scene, 5.0, 0.1, wavelengths)
-    assert found.limits_step == limit
-    assert found.advised.loss <= 0.1 * (1 + 1e-9)
-    assert abs(found.advised.delay) <= 0.05 * (1 + 1e-9)
-    (blocks,) = found.blocks
-    layer = replace(wave_advice.layers_of(scene)[0], blocks=blocks)
-    exact = wave_advice._WavePath((layer,), 5.0, found.distance / 100.0)
-    w2 = np.array([exact.omega**2 + 0j])
-    assert abs(exact.passed(w2)[1][0]) <= 0.025
-    fewer = replace(exact, layers=(replace(exact.layers[0], blocks=max(blocks - 1, 1)),))
-    assert abs(fewer.passed(w2)[1][0]) > 0.025 or blocks == 1
-    if limit != "stability":
-        larger = passage(scene, found, blocks, 1.001 * found.advised.step)
-        assert larger.loss > 0.1 or abs(larger.delay) > 0.05
-
-
-def test_ten_blocks_a_wavelength_let_less_than_a_hundredth_arrive() -> None:
-    frequency, height = SPEED / 20.0, 2.0  # ten blocks a wavelength
-    scene = COLUMN.with_values({"time.step": 0.5 * height / SPEED})
-    present = advise_wave(scene, frequency, 0.1, 10.0).present
-    assert 1 - present.loss == pytest.approx(0.008969, abs=1e-6)
-    assert -present.delay == pytest.approx(10 * (1 - 1 / 1.016724), abs=1e-4)
 
 
 def test_what_limits_blocks_and_step_is_named() -> None:
@@ -136,20 +89,6 @@ def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
     for dt, loss in zip((0.01, 0.005), losses, strict=False):
         a0, _ = Stepping(dt, 0.25, 0.5, 0.99).rayleigh()
         assert -np.log(1 - loss) == pytest.approx(a0 / 2 * 100 / SPEED, rel=(w * dt) ** 2)
-
-
-def test_layers_of_a_column_are_cut_each_for_its_own_speed() -> None:
-    found = advise_wave(load_scene("waves-site"), 8.0, 0.1)
-    assert found.limits_step == "phase error"  # average acceleration loses nothing
-    assert len(found.blocks) == 4
-    heights = found.advised.heights
-    speeds = np.array([500.0, 350.0, 220.0, 150.0])
-    assert np.all(np.array(heights) * 8.0 / speeds < 0.3)
-    lossy = load_scene("waves-site").with_values({"time.alpha": 0.5, "time.delta": 1.0})
-    stepping, w = Stepping.of(lossy), 2 * np.pi * 8.0
-    thickness = np.array([15.0, 10.0, 8.0, 5.0])
-    exponent = np.sum(thickness / speeds) * stepping.rayleigh()[1] * w**2 / 2
-    assert -np.log(1 - advise_wave(lossy, 8.0, 0.1).present.loss) == pytest.approx(exponent, rel=0.01)
 
 
 def test_a_block_that_is_no_rectangle_is_refused() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, refused, typed
+from conftest import SCENE, typed
 from oracles.made_cases import kept_study, made_row
 
 from validation import load_scene
@@ -49,42 +49,6 @@ def made(tmp_path: Path) -> Results:
                ("contact ringing", "a", "it rings"))]  # fmt: skip
     kept_study(results, [(CASE, row, None) for row in rows], alarms=alarms)
     return results
-
-
-def test_failures_stand_first_and_in_full_and_the_rest_is_counted(made: Results) -> None:
-    lines = said(ran(made, [run_of("made", [judge(GATE, 0.0512), judge(GATE, 0.04), NOT_RUN], ENDS)]))
-    assert lines[0] == f"FAIL {GATE.id}: 0.0512 is outside [0.031, 0.042]"
-    reason = lines[1 : next(i for i, line in enumerate(lines) if line.startswith(CASE.name))]
-    assert " ".join(" ".join(reason).split()) == GATE.reason.strip() and all(line.startswith("  ") for line in reason)
-    text = " ".join(" ".join(lines).split())
-    assert f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3" in text
-    assert f"{CASE.name} fem" not in text, "what the study expects is counted"
-    at = lines.index("study  passed  failed  not run  seconds")
-    assert lines[at + 1 : at + 3] == ["made        1       1        1      1.2", "1 PASS, 1 FAIL, 1 NOT RUN in 1.2 s"]
-    for words in (
-        "a: no case was measured",
-        "NOT RUN 1: fenicsx: needs the package dolfinx",
-        "2 of 4 runs did not complete, as their studies allow: 1 overflow, 1 not applicable",
-        "alarms: hidden tension in 2 cases, contact ringing in 1 case",
-        f"results: {made.directory}",
-        f"next: dda-validate report made --figures figures --results {made.directory} draws the histories",
-    ):
-        assert words in text
-    assert "it rings" not in text
-    assert all(len(line) <= 80 or " " not in line.strip() for line in lines)
-
-
-def test_alarms_of_a_users_scene_are_explained(made: Results) -> None:
-    lines = said(ran(made, [run_of("made", [])], frozenset({"made"})))
-    assert "  contact ringing: a: it rings" in lines and "  hidden tension: a: x" in lines
-    assert "made: has no gates: nothing was judged" in lines
-
-
-def test_what_comes_next_is_the_report_and_every_gate_where_the_study_is_no_user_s(made: Results) -> None:
-    report = f"dda-validate report --results {made.directory} writes the PDF"
-    what = ran(made, [run_of("made", [judge(GATE, 0.04)])])
-    assert answer.next_commands(what) == [report, "the same command with --verbose lists every gate"]
-    assert answer.next_commands(replace(what, user_scenes=frozenset({"made"}))) == [report]
 
 
 def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made: Results) -> None:
@@ -144,4 +108,3 @@ def test_json_and_quiet_give_the_same_status_as_the_text(scene_file: Path, tmp_p
     assert "FAIL small[time.step=0.001]:dda-bar:displacement.l2: " in text.stdout
     assert "\x1b" not in text.stdout + full.stdout, "colours are for terminals"
     assert "time.step=0.002" in full.stdout and "1 PASS, 1 FAIL, 0 NOT RUN" in full.stdout
-    assert refused(*command, "--json", "--quiet") == "error: --json, --quiet: exclude each other, got both\n"

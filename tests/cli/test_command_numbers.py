@@ -25,9 +25,6 @@ from validation.runs.run import Outcome
 from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
 from validation.suite.claims import page
 
-CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
-
-
 # ---- solve and run ------------------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,6 @@ from oracles.made_cases import made_row
 
 from validation import load_scene
 from validation.advice import contact_page
-from validation.cli import contact as command
 from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.measure import execute
@@ -37,49 +36,12 @@ def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
     assert {"dda", "block-events"} <= set(page["runs"])
 
 
-def test_each_line_of_the_table_has_its_own_metric_in_its_own_unit() -> None:
-    run = {
-        "horizontal.final": 9e-3, "switches.count": 6.0,
-        "contact.open_share": 0.25, "contact.gap": 2e-3, "contact.penetration": 3e-3,
-        "contact.peak_force": 4e6, "contact.impulse": 5e6, "contact.landing_speed": 1.5, "contact.restitution": 0.7,
-        "contact.restitution_first": 0.8, "contact.restitution_mean": 0.9, "energy.switching_gain": 0.01,
-        "energy.rise": 0.02, "contact.slip": 7e-3, "contact.slip_rate": 8e-3, "energy.lost_algorithmic": 1100.0,
-        "energy.lost_kinetic_damping": 1200.0, "energy.lost_switching": 1300.0, "energy.lost_friction": 1400.0,
-        "contact.mean_solves": 1.25, "contact.most_solves": 3.0, "horizon.time": 0.05,
-        "switches.first_opening": 0.016, "switches.first_closing": 0.02,
-    }  # fmt: skip
-    scene = load_scene("slope-sliding").expand()[0]
-    _, *lines = contact_page.table(scene, {"dda": run})
-    assert lines == [
-        ("first opening", "0.016 s"), ("first landing", "0.02 s"), ("switches", "6"),
-        ("share of the time open", "25 %"), ("largest gap", "2 mm"), ("largest penetration", "3 mm"),
-        ("peak contact force", "4 MN"), ("impulse of the contact", "5 MN s"), ("fastest landing", "1.5 m/s"),
-        ("restitution, centre of mass", "0.7"),
-        ("rate of the gap after / before, first contact", "0.8"),
-        ("rate of the gap after / before, mean of contacts", "0.9"),
-        ("energy gained by switching", "1 %"), ("energy, greatest above the start", "2 %"),
-        ("displacement along the base", "9 mm"), ("slip", "7 mm"),
-        ("slip per second, at the end", "8 mm/s"), ("energy lost by the scheme", "1.1 kJ"),
-        ("energy lost by gg", "1.2 kJ"), ("energy lost by switching", "1.3 kJ"), ("energy lost by friction", "1.4 kJ"),
-        ("solves per step, mean and most", "1.25, 3"), ("repeatable to 1e-6 up to", "0.05 s"),
-    ]  # fmt: skip
-
-
 def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     ended = made_row("dda", outcome=Outcome.NO_CONTACT_STATE, notes=("at step 3",))
     monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
     done = typed("advise", "contact", "unlocked-constant", *SHORT)
     assert done.returncode == 3
     assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
-
-
-def test_the_landing_is_the_exact_block_s_then_dda_s_then_that_of_a_free_fall() -> None:
-    scene = load_scene("unlocked-constant").expand()[0].with_values({"contact.gap": 0.2, "load.gravity": 10.0})
-    rows = {name: made_row(name, {"contact.landing_speed": speed})
-            for name, speed in ((contact_page.own(), 3.0), (contact_page.exact(), 1.5))}  # fmt: skip
-    assert contact_page.landing_speed(scene, rows) == 1.5
-    assert contact_page.landing_speed(scene, {contact_page.own(): rows[contact_page.own()]}) == 3.0
-    assert contact_page.landing_speed(scene, {}) == pytest.approx(2.0)  # sqrt(2 g h)
 
 
 def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:
@@ -120,13 +82,3 @@ def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked(
     stays = typed("advise", "contact", *slope, "--penetration", "1e-3").stdout
     assert "hops  " not in stays and "A gap may open faster than it closed without any gain of energy" in stays
     assert "Asked for: a penetration below 0.001 m" in stays
-
-
-def test_every_run_is_announced_before_it_starts() -> None:
-    scene = load_scene("unlocked-constant").with_values({"time.step": 0.001, "time.steps": 8})
-    scenes = contact_page.scenes(scene)
-    calls: list[tuple[int, int, str]] = []
-    command._rows(scenes, lambda *call: calls.append(call))
-    assert [(done, label.split(", ")) for done, _, label in calls] == [
-        (done, [f"at most; {name}", "8 steps"]) for done, name in enumerate(scenes)
-    ]

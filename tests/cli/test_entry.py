@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-import re
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,14 +90,3 @@ def test_no_command_shows_thecommand_line() -> None:
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert "export-pack" in done.stdout
-
-
-def test_paragraphs_of_a_help_page_are_broken_by_the_terminal_alone() -> None:
-    for command in entry.app.registered_commands:
-        assert not re.search(r"[^\n]\n[^\n]", command.help or "")
-
-
-def test_a_report_is_a_pdf(tmp_path: Path) -> None:
-    text = tmp_path / "x.txt"
-    assert "--out: must end in .pdf" in refused("report", "--out", text)
-    assert not text.exists()

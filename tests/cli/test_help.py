@@ -49,12 +49,6 @@ def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -
         assert {word for word in words if word.startswith("--")} <= known
 
 
-def test_help_pages_show_it() -> None:
-    for command in ([], ["run"], ["advise"], ["advise", "damping"], ["advise", "figures-3-4"]):
-        done = typed(*command, "--help")
-        assert done.returncode == 0 and "Example: " in done.stdout
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("name", sorted(set(COMMANDS) - UNTRIED))
 def test_examples_run_as_they_stand(

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import re
 
 import pytest
 from conftest import SCENE, typed
-
-from validation.runs.text import visible
 
 CLEAR, OVERRIDE, SCRIPT = "\x1b[2J", "\u202e", "<script>alert(1)</script>"
 EVIL = f"r {CLEAR} {SCRIPT} {OVERRIDE} a | `b`"
@@ -40,13 +37,3 @@ def test_control_characters_and_overrides_of_direction_are_escapes(pages: dict[s
 @pytest.mark.parametrize("page", ["summary", "site"])
 def test_markup_is_text(pages: dict[str, str], page: str) -> None:
     assert "<script>alert" not in pages[page]
-
-
-def test_a_cell_of_the_summary_ends_where_it_should(pages: dict[str, str]) -> None:
-    rows = [line for line in pages["summary"].splitlines() if "alert" in line]
-    assert rows
-    assert all(len(re.findall(r"(?<!\\)\|", row)) == 5 for row in rows)
-
-
-def test_lines_and_tabs_stay() -> None:
-    assert visible("a\n\tb\r\x07") == "a\n\tb\\r\\x07"

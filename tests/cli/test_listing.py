@@ -4,14 +4,12 @@ import math
 from pathlib import Path
 
 import pytest
-from conftest import refused, typed
+from conftest import typed
 
-from validation.advice.plain import in_columns
 from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE, KIND, Metric
-from validation.scenes.keys import default_of, keys_of, range_of
+from validation.scenes.keys import keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
-from validation.scenes.tables import ContactSection
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
 from validation.suite.folders import get_study, study_names
@@ -37,15 +35,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning() -> None:
         found[cells[0]] = cells[1:]
     for metric in CATALOGUE.values():
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
-def test_a_last_column_is_wrapped_to_a_terminal_and_left_alone_in_a_pipe() -> None:
-    lines = [("name", "meaning"), ("a" * 10, "word " * 30), (), ("b", "short")]
-    assert in_columns(lines).splitlines()[1] == "a" * 10 + "  " + ("word " * 30).strip()
-    beside = in_columns(lines, 60, "  ").splitlines()
-    assert max(map(len, beside)) <= 60 and beside[2].startswith(" " * 14 + "word")
-    below = in_columns(lines, 40).splitlines()
-    assert max(map(len, below)) <= 40 and below[2].startswith("    word")
 
 
 def test_studies_scenes_and_solvers_have_a_line_each() -> None:
@@ -86,11 +75,6 @@ def test_the_plain_list_counts_what_the_others_hold() -> None:
     assert {name: counts[name] for name in known} == {name: len(names) for name, names in known.items()}
 
 
-def test_another_word_is_bad_input() -> None:
-    names = "keys, metrics, scenes, schemes, solvers, studies"
-    assert refused("list", "gates") == f"error: list: must be one of {names}, got 'gates'\n"
-
-
 def test_every_key_of_a_scene_is_described_once() -> None:
     names = set()
     for place, table in tables_of_scenes().items():
@@ -101,14 +85,6 @@ def test_every_key_of_a_scene_is_described_once() -> None:
         names |= {f"{place}.{name}" for name in described_names}
     lines = [line.split(maxsplit=1)[0] for line in typed("list", "keys").stdout.splitlines() if line.strip()]
     assert names <= {*lines}
-
-
-def test_bounds_units_and_defaults_of_keys_are_those_of_the_schema() -> None:
-    fields = {name: (default_of(field), range_of(field), key.unit) for name, field, key in keys_of(ContactSection)}
-    assert fields["friction"] == ("-", "> -90 and < 90 and >= 0", "deg")
-    assert fields["cut"] == ("0.3", "> 0 and < 1", "")
-    assert fields["stiffness"] == ("required", "> 0", "N/m")
-    assert fields["rules"] == ("consistent", '"consistent" or "lagged"', "")
 
 
 @pytest.mark.parametrize("place", [place for place in tables_of_scenes() if place != "gate"])

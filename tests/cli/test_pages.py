@@ -51,6 +51,17 @@ metric = "displacement.l2"
 band = [0.0, 1e-6]
 reason = "the same model and scheme"
 """
+GATED = '[[gate]]\npair = ["{}"]\nmetric = "{}"\nband = [{}]\nreason = "r"\n'
+REFUSED = {  # what is added to a scene of no tables [run], [[gate]]
+    "unknown-solver": '[run]\nsolvers = ["dda", "sofa"]',
+    "unknown-pair": GATED.format("sofa", "displacement.final", "0, 1"),
+    "no-pair": GATED.format("dda", "displacement.l2", "0, 1"),
+    "infinite-band": GATED.format("dda", "displacement.final", "-inf, inf"),
+    "one-gate-twice": 2 * GATED.format("dda", "displacement.final", "0, 1"),
+    "core": "",  # the name of a study
+    "figure-8": "",  # the name of a built-in scene
+}
+BOXES = "[rigid]\nbox = {}\n[time]\nstep = 0.01\nsteps = 20\n"
 BROKEN = """import numpy as np
 def raises(scene):
     raise ValueError("no step left")
@@ -98,6 +109,10 @@ def desk() -> Path:
     np.savetxt(place / "four-digits.csv", right.T, "%.4g", ",", header=header, comments="")
     (place / "broken.py").write_text(BROKEN)
     (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    for name, more in REFUSED.items():
+        (place / f"{name}.toml").write_text(SCENE.partition("[run]")[0] + more)
+    for name, boxes in {"number": "3", "numbers": "[3]", "no": "[]", "table": "{}", "word": '"one"'}.items():
+        (place / f"{name}-box.toml").write_text(BOXES.format(boxes))
     for name in ("raises", "not_a_number", "exits", "short"):
         (place / f"{name}.toml").write_text((SCENE + ONE_GATE).replace("SOLVER", f'"broken:{name}"'))
     return place
@@ -122,7 +137,9 @@ def page(line: str) -> str:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_prints_what_it_did(command: str) -> None:
     for line in COMMANDS[command]:
-        printed, kept = page(line), KEPT[line]
+        kept, files = KEPT[line], sorted(desk().iterdir())
+        printed = page(line)
+        assert not kept.endswith("[exit 2]\n") or sorted(desk().iterdir()) == files, line
         assert NUMBER.sub("#", printed) == NUMBER.sub("#", kept), line
         numbers = [[float(text) for text in NUMBER.findall(text)] for text in (printed, kept)]
         assert numbers[0] == pytest.approx(numbers[1], rel=2e-3, abs=1e-9), line

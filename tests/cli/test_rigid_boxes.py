@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import refused, typed
+from conftest import typed
 
 from validation import solve
 from validation.report.chapters.text import parameter_items
@@ -96,30 +96,6 @@ def test_a_landing_a_contact_and_a_ground_that_moves(tmp_path: Path) -> None:
     assert any("slips" in remark for remark in page["remarks"])
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("advise",),
-        ("advise", "contact"),
-        ("advise", "damping"),
-        ("advise", "step", "--damping", "0.05"),
-        ("advise", "wave", "--fmax", "5"),
-        ("advise", "response"),
-        ("advise", "rayleigh"),
-        ("solve", "--solver", "fem"),
-        ("solve", "--solver", "column-events"),
-    ],
-)
-def test_what_is_not_of_rigid_boxes_refuses_them(arguments: tuple[str, ...], rigid_file: Path) -> None:
-    assert "rigid boxes" in refused(*arguments, rigid_file)
-
-
-def test_compare_refuses_them_before_it_looks_for_columns(rigid_file: Path, tmp_path: Path) -> None:
-    history = tmp_path / "theirs.csv"
-    history.write_text("time,x_1\n0.01,0\n")
-    assert "rigid boxes" in refused("compare", rigid_file, history)
-
-
 @pytest.mark.long
 def test_a_scene_of_boxes_is_run_reported_and_drawn(rigid_file: Path, tmp_path: Path) -> None:
     results = ("--results", tmp_path / "results")
@@ -149,10 +125,6 @@ def test_a_solution_says_its_peak_in_the_unit_of_the_column() -> None:
     assert "peak energy_1 2," in repr(beside)
 
 
-def test_the_force_in_a_column_stays_a_stress() -> None:
-    assert axis_of("force_1") == ("Force 1", "Pa")
-
-
 def test_rounding_of_a_box_at_rest_is_drawn_as_rest() -> None:
     time = np.linspace(0.01, 1, 100)
     history = History(time, {"angle_1": 1e-16 * np.sin(time)})
@@ -165,10 +137,3 @@ def test_parameters_name_what_all_boxes_have_in_common() -> None:
     assert items[:4] == ["2 boxes", "width = 0.6 m", "height = 1.2 m", "density by box"]
     assert "φ = 30°" in items
     assert not any(item.startswith(("α", "δ", "degree", "foundation")) for item in items)
-
-
-@pytest.mark.parametrize("boxes", ["3", "[3]", "[]", "{}", '"one"'])
-def test_boxes_that_are_no_list_of_tables_are_refused(boxes: str, tmp_path: Path) -> None:
-    file = tmp_path / "boxes.toml"
-    file.write_text(f"[rigid]\nbox = {boxes}\n[time]\nstep = 0.01\nsteps = 20\n")
-    assert "rigid.box" in refused("show", file)

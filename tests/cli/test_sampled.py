@@ -5,16 +5,7 @@ from __future__ import annotations
 import pytest
 from conftest import typed
 
-from validation import load_scene
-from validation.advice.wave_advice import advise_wave
 from validation.cli.printing import tables
-
-STEP = ("--set", "time.step=0.002")
-
-
-def test_a_wave_of_two_steps_a_period_is_answered() -> None:
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
-    assert advise_wave(scene, 250.0, 0.1).frequency == 250.0
 
 
 def test_what_the_steps_show_of_an_alias_is_no_peak() -> None:

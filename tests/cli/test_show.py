@@ -46,13 +46,6 @@ def test_numbers_of_a_block_are_those_of_the_formulas(
     assert "dt stable" not in found and "Omega" not in found
 
 
-def test_a_wave_crosses_the_height_and_the_load_stands_on_the_width(scene_file: Path) -> None:
-    found = single(shown(scene_file, "--set", "block.width=3.0", "--set", "block.height=1.25"))
-    c = math.sqrt(1e9 / 2700)
-    wanted = {"m": 2700 * 3.75, "h/c": 1.25 / c, "c dt/h": c * 0.002 / 1.25, "F/2p": 5e6 * 3 / 2e9}
-    assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=1e-9)
-
-
 def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: Path) -> None:
     explicit = ("--set", "time.alpha=0", "--set", "time.delta=0.5", "--set", "time.allow_unstable=true")
     found = shown(scene_file, *explicit)
@@ -77,11 +70,6 @@ def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[s
     assert solve(strict.with_values({"time.step": limit}), "dda").time.size == 2
     with pytest.raises(InputError, match="the stability limit"):
         solve(strict.with_values({"time.step": 1.0001 * limit}), "dda")
-
-
-def test_a_scheme_without_a_stable_step_shows_none() -> None:
-    found = numbers(load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.delta": 0.4}))
-    assert next(number.value for number in found if number.name == "dt stable") == 0
 
 
 def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file: Path) -> None:
@@ -132,17 +120,6 @@ def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction
     turned = abs(solve(slender, "dda").history.columns["rotation"][-1])
     assert (turned > 0.1) == topples
     assert topples or turned < 0.01
-
-
-def test_a_column_shows_its_layers_and_what_its_base_reflects() -> None:
-    found = single(shown("waves-site"))
-    rock, lowest = 2400.0 * 900, 2100.0 * 500
-    assert found["1: c"] == pytest.approx(500) and found["4: c dt/h"] == pytest.approx(150 * 0.002 / 0.5)
-    assert found["3: f10"] == pytest.approx(220 / (10 * 0.5), rel=1e-4)
-    assert found["H/c"] == pytest.approx(15 / 500 + 10 / 350 + 8 / 220 + 5 / 150, rel=1e-4)
-    assert found["reflected"] == pytest.approx(100 * (rock - lowest) / (rock + lowest))
-    half = "column.layer=[{thickness=12.0, density=2000.0, young=2.0e9, blocks=24}]"
-    assert shown("waves-glue", "--set", half)["numbers"]["blocks"] == {"low": 50.0, "high": 50.0, "unit": ""}
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))

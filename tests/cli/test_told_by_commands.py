@@ -23,7 +23,6 @@ from validation.theory.stepping import Stepping
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 SITE = load_scene("waves-site").with_values({"time.steps": 10})
-SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
 
 # ---- statuses -----------------------------------------------------------------------------------------------------

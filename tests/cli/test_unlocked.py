@@ -3,18 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from conftest import refused
 
 from validation import load_scene
 from validation.errors import InputError
 from validation.solvers.registry import get_solver, solver_names
-
-ONE = ("--set", "contact.stiffness=1e9")
-
-
-def test_what_is_written_for_linear_scenes_refuses_it() -> None:
-    for words in (["advise", "damping", "unlocked"], ["solve", "unlocked", "--solver", "dda-textbook"]):
-        assert "unilateral contact" in refused(*words, *ONE)
 
 
 def test_no_solver_prepares_a_scene_as_if_a_feature_were_absent() -> None:

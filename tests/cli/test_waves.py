@@ -1,6 +1,5 @@
 """The command `response`: its table, its figures, what it says and what it refuses."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -42,25 +41,6 @@ def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option:
     assert header == "frequency,displacement,displacement_phase,contact_pressure,contact_pressure_phase"
     table = np.loadtxt(path, delimiter=",", skiprows=1)
     assert np.array_equal(table, response(SCENE, np.linspace(2, 180, 7), "bar", exact).table())
-
-
-def test_the_highest_peaks_are_printed_under_their_quantity_and_the_alias_is_noted_beyond_half_the_sampling() -> None:
-    options = ["--from", "1", "--to", "200", "--points", "200"]
-    lines = said("advise", "response", *CASE, *options).splitlines()
-    for label, exact in (("as stepped", False), ("exact in time", True)):
-        found = response(SCENE, np.linspace(1, 200, 200), "dda", exact)
-        ((f, moved), *_), ((g, pressed), *_) = found.peaks("displacement"), found.peaks("contact_pressure")
-        first = next(line for line in lines if line.startswith(label))
-        numbers = [f"{value:.6g}" if math.isfinite(value) else "unbounded" for value in (f, moved, g, pressed)]
-        assert first.split()[-4:] == numbers
-    assert lines[1].split() == ["peak", "[Hz]", "displacement", "[m]", "peak", "[Hz]", "contact", "pressure", "[Pa]"]
-    assert not [line for line in lines if "alias" in line]
-    (note,) = [
-        line
-        for line in said("advise", "response", *CASE, "--to", "251", "--points", "2").splitlines()
-        if "alias" in line
-    ]
-    assert "above 250 Hz, 1 / (2 dt)" in note
 
 
 @pytest.mark.long

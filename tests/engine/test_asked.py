@@ -6,11 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from validation.engine import horizon
 from validation.engine.case import Case
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate, reads
-from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.gates.gate import Gate, Verdict
@@ -71,15 +69,3 @@ def test_what_a_gate_reads_is_enough_to_judge_it(scene: Scene, tmp_path: Path, n
     found = judged(study, gate, some, tmp_path / "some")
     assert found == judged(study, gate, whole, tmp_path / "whole") and isinstance(found.value, float)
     assert ("compared up to" in found.why) == (number == 5)  # the horizon is among what is read
-
-
-def test_only_what_is_asked_for_is_measured(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    def solved_again(*_: object) -> None:
-        raise AssertionError("nobody asks for the horizon")
-
-    monkeypatch.setattr(horizon, "shadow", solved_again)
-    case = Case(opening(scene), "dda", only=frozenset({"energy.rise", "pressure.final"}))
-    row, _ = execute(case, case.key(), "s")
-    assert set(row.metrics) == {"energy.rise", "pressure.final"} and not any("measured" in note for note in row.notes)
-    none, history = execute(replace(case, only=frozenset()), "k", "s")
-    assert not none.metrics and history is not None

@@ -51,14 +51,6 @@ def test_a_long_run_is_predicted_and_a_short_one_is_not(
     assert max(steps) <= LONG.time.steps / 4
 
 
-@pytest.mark.parametrize(("solver", "values"), [("dda", {}), ("fem", {"contact.law": "locked"})])
-def test_what_is_known_to_be_short_is_not_run_for_it(
-    monkeypatch: pytest.MonkeyPatch, solver: str, values: dict[str, str]
-) -> None:
-    monkeypatch.delattr(duration, "completed")
-    assert duration.predicted_duration(get_solver(solver), LONG.with_values(values)) is None
-
-
 @pytest.mark.parametrize(("seconds", "words"), [(36.4, "36 s"), (126.0, "2 m 6 s"), (59.7, "1 m 0 s")])
 def test_durations_are_in_minutes_and_seconds(seconds: float, words: str) -> None:
     assert in_minutes(seconds) == words

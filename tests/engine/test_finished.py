@@ -5,21 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 import pytest
-from oracles.made_cases import made_history, made_row
+from oracles.made_cases import made_row
 
-from validation.engine import horizon
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
-from validation.engine.measured import JudgedStudy, complaints
-from validation.gates.gate import Gate, Status, Verdict
+from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.row import Value
-from validation.runs.run import Outcome, Run
-from validation.scenes.scene import load_scene
-from validation.solvers.contract import Solver
-from validation.suite.folders import get_study
+from validation.runs.run import Outcome
 
 
 def test_a_derived_row_is_computed_once_for_all_gates(tmp_path: Path) -> None:
@@ -49,62 +43,7 @@ def test_what_is_derived_ends_as_the_run_that_it_needs(ended: Outcome | None, st
     assert verdict.status is status and "needs dda on scene" in verdict.why
 
 
-@pytest.mark.parametrize(
-    ("metric", "ended", "status"),
-    [
-        ("stability.growth", Outcome.OVERFLOW, Status.PASS),
-        ("stability.growth", Outcome.UNSTABLE, Status.PASS),
-        ("stability.growth", Outcome.MISPREDICTED, Status.FAIL),
-        ("displacement.static", Outcome.UNSTABLE, Status.FAIL),
-    ],
-)
-def test_of_a_run_that_grew_only_its_stability_is_judged(
-    metric: str, ended: Outcome, status: Status, tmp_path: Path
-) -> None:
-    row = made_row("dda", {metric: 1.5}, "scene", outcome=ended)
-    gate = Gate("scene", ("dda",), metric, 1.0, 2.0, "why")
-    assert evaluate(gate, Finished({("scene", "dda"): row}, Results(tmp_path))).status is status
-
-
 # ---- what a run complains of ----------------------------------------------------------------------------------------
 
 
-def judged(ends: list[Outcome], *words: Status) -> JudgedStudy:
-    gate = Gate("s", ("dda",), "displacement.static", 0.0, 1.0, "why")
-    cases = {("s", f"a:{i}"): ended for i, ended in enumerate(ends)}
-    return JudgedStudy(get_study("core"), [Verdict(gate, None, word) for word in words], cases)
-
-
-@pytest.mark.parametrize(
-    ("run", "said"),
-    [
-        (judged([Outcome.COMPLETED], Status.PASS, Status.NOT_RUN), []),
-        (judged([Outcome.COMPLETED], Status.NOT_RUN, Status.NOT_RUN),
-         ["core: none of its 2 gates was judged, all are NOT RUN"]),
-        (judged([Outcome.COMPLETED, Outcome.RAISED]), ["core: ended without a measurement: s a:1"]),
-        (judged([Outcome.COMPLETED, *[Outcome.TIMEOUT] * 3]), ["core: ended without a measurement: s a:1 and 2 more"]),
-        (judged([Outcome.NOT_RUN]), ["core: no case was measured"]),
-    ],
-)  # fmt: skip
-def test_complaints_count_what_they_do_not_name(run: JudgedStudy, said: list[str]) -> None:
-    assert list(complaints([run])) == said
-
-
 # ---- how far two runs agree -----------------------------------------------------------------------------------------
-
-
-class Ends(Solver):
-    """A solver whose runs all end in one way, with the history of what went before."""
-
-    name = "ends"
-
-    def __init__(self, outcome: Outcome) -> None:
-        self.outcome = outcome
-
-    def solve(self, scene: object, full: bool = False, fields: Path | None = None) -> Run:
-        return Run(self.outcome, made_history(0.1, np.zeros(3)))
-
-
-@pytest.mark.parametrize(("outcome", "kept"), [(Outcome.COMPLETED, True), (Outcome.OVERFLOW, False)])
-def test_a_second_run_that_did_not_complete_gives_no_horizon(outcome: Outcome, kept: bool) -> None:
-    assert (horizon.shadow(Ends(outcome), load_scene("figures-3-4").expand()[0], False) is not None) == kept

@@ -65,19 +65,6 @@ def test_two_files_that_swap_names_give_another_digest(tmp_path: Path, monkeypat
     assert len(digests) == 3
 
 
-def test_what_is_measured_enters_the_key(scene: Scene) -> None:
-    measures = [
-        (),
-        ("history",),
-        ("history", "modes"),
-        ("history", "modes", "stability"),
-        ("history", "modes", "limit"),
-    ]
-    named = [None, frozenset[str](), frozenset({"pressure.final"}), frozenset({"pressure.final", "pressure.peak"})]
-    cases = [Case(scene, "dda", measures=some) for some in measures] + [Case(scene, "dda", only=some) for some in named]
-    assert len({case.key() for case in cases}) == len(cases) - 1  # no names: all that the usual measures hold
-
-
 def keys_of(scene: Scene, solver: str, file: Path, texts: tuple[str, str]) -> set[str]:
     """Return the keys of a scene as a file that it names has one content and another."""
     keys = set()
@@ -118,17 +105,3 @@ def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pyte
         monkeypatch.setattr(case_module, "library_versions", lambda: sound | {library: "another"})  # noqa: B023
         assert Case(scene, "dda").key() != before["dda"], library
         monkeypatch.setattr(case_module, "library_versions", lambda: sound)  # noqa: B023
-
-
-def test_how_a_block_may_turn_enters_the_key_and_the_other_solvers_do_not(scene: Scene) -> None:
-    opened = scene.model_copy(update={"contact": scene.contact.model_copy(update={"law": "unilateral"})})
-    keys = {
-        Case(opened.model_copy(update={"run": opened.run.model_copy(update=values)}), "dda").key()
-        for values in (
-            {},
-            {"geometry": "updated"},
-            {"geometry": "updated", "rotation": "first-order"},
-            {"solvers": ("dda",)},
-        )
-    }
-    assert len(keys) == 3

@@ -23,9 +23,6 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 
-GATE = '[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [{}, 0.5]\nreason = "model form"\n'
-SWEEP = '[run]\nsolvers = ["dda", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
-
 
 def sweep(scene: Scene, name: str, count: int, solvers: tuple[str, ...] = ("dda",), timed: bool = False) -> Study:
     """Return a study of so many cases, which differ by their load."""

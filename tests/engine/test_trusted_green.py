@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import SCENE, refused, thinned, typed
+from conftest import refused, thinned, typed
 from faults import seams
 from oracles.made_cases import study
 
@@ -26,12 +26,8 @@ from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
-from validation.runs.run import Outcome, Run
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.contract import Solver
-
-GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
-WIDE = GATE + 'band = [0.0, 1.0]\nreason = "wide"\n'
 
 
 def ran(scene: Scene, results: Results) -> list[str]:
@@ -58,15 +54,6 @@ def test_the_manifest_says_which_versions_made_the_rows(
     assert found["commit"] == "then (1 row); now (1 row)"
     assert found["packages"] == {"numpy": "2.0.0 (1 row); 2.1.0 (1 row)"}
     assert found["python"] == "3.11"
-
-
-def test_every_row_says_what_made_it(scene: Scene, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    run_study(study(scene), results)
-    for row in results.rows().values():
-        assert {"commit", "python", "date", "packages"} <= row.provenance.keys()
-        assert row.provenance["packages"]["numpy"] == np.__version__
-        assert not {"matplotlib", "typst"} & row.provenance["packages"].keys(), "they make no row"
 
 
 def shorter(history: History) -> History:
@@ -142,13 +129,6 @@ def test_a_history_without_time_is_one_line(scene: Scene, tmp_path: Path) -> Non
         results.history(path.stem)
 
 
-def test_the_latest_row_of_a_key_counts(scene: Scene, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    for seconds in (1.0, 2.0, 3.0):
-        results.append(Row("k", "s", "x", "dda", Outcome.REFUSED, {}, seconds={"setup": seconds}), None)
-    assert results.rows()["k"].seconds == {"setup": 3.0}
-
-
 @pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])
 def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome: Outcome, scene: Scene, tmp_path: Path) -> None:
     results, case = Results(tmp_path), Case(scene, "dda")
@@ -209,65 +189,7 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path,
         assert "the row of small dda is missing; run test again" in said
 
 
-def test_verdicts_of_other_studies_stay(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE + WIDE)
-    other = scene_file.with_name("other.toml")
-    other.write_text(SCENE + WIDE)
-    for path in (scene_file, other, scene_file):
-        assert typed("run", path, "--results", tmp_path / "r").returncode == 0
-    assert [v["study"] for v in Results(tmp_path / "r").verdicts()] == ["other", "small"]
-
-
 # ---- cases that end badly -------------------------------------------------------------------------------------------
-
-
-def test_a_case_at_the_edge_of_numbers_does_not_end_the_others(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("pressure = 5.0e6", "pressure = 1e308"))
-    done = typed("run", scene_file, "--results", tmp_path / "r", "--jobs", "1")
-    assert done.returncode == 1 and "small: ended without a measurement: small" in done.stdout
-    assert len(Results(tmp_path / "r").manifest("small")["cases"]) == 3
-
-
-class Wrong(Solver):
-    """A solver whose error, static solution or history is at the edge."""
-
-    def __init__(self, way: str) -> None:
-        self.way = self.name = way
-
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
-        if self.way == "surrogate":
-            raise ValueError("a lone \udcff and \x1b[31m red")
-        if self.way == "memory":
-            raise MemoryError
-        time = scene.time.step * np.arange(1, scene.time.steps + 1)
-        extra = {"extra": np.full(3, np.nan)} if self.way == "extra" else {}
-        return Run(Outcome.COMPLETED, History(time, {"displacement": -0.01 * np.sin(time), **extra}))
-
-    def static(self, scene: Scene) -> dict[str, float]:
-        return {"displacement": 1e-320}
-
-
-@pytest.mark.parametrize(
-    ("way", "outcome", "note"),
-    [
-        ("surrogate", Outcome.RAISED, r"ValueError: a lone \udcff and \x1b[31m red"),
-        ("memory", Outcome.RAISED, "MemoryError"),
-        ("static", Outcome.COMPLETED, ""),
-        ("extra", Outcome.COMPLETED, ""),
-    ],
-)
-def test_odd_errors_and_values_are_named_outcomes(
-    way: str, outcome: Outcome, note: str, scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Case, "make_solver", lambda self: Wrong(way))
-    results = Results(tmp_path)
-    run_study(Study("test", "t", "p", [scene], ("dda",)), results)
-    (row,) = results.rows().values()
-    assert row.outcome is outcome and (row.notes[-1] if note else "") == note
-    assert outcome is not Outcome.COMPLETED or row.metrics["mode1.measured_damping"] == "undefined"
-    history = results.history(row.key)
-    assert (history is not None) == (outcome is Outcome.COMPLETED)
-    assert history is None or list(history.columns) == ["displacement"]
 
 
 def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(

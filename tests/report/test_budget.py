@@ -10,7 +10,7 @@ import pytest
 from conftest import beside
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import lines_of, names_at, rules_of
+from oracles.made_cases import lines_of, names_at
 
 from validation.advice.budget import budgets
 from validation.engine.run import run_study
@@ -19,7 +19,7 @@ from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import CONTACT_COLOR, MARGINS, budget_panel
 from validation.report.chapters.registry import chapter_of
 from validation.report.figures.charts import chart_figure
-from validation.report.figures.curves import GREY, style_of
+from validation.report.figures.curves import style_of
 from validation.report.front.groups import groups_of_studies
 from validation.scenes.scene import load_scene
 from validation.suite import Study
@@ -62,17 +62,6 @@ def test_the_damping_budget_names_a_part_where_it_ends() -> None:
     assert names_at(axes)["contact"][0] == pytest.approx(30)
 
 
-def test_the_damping_budget_marks_its_steps_and_limits_where_they_lie() -> None:
-    record = budget_of(total=0.05, algorithmic=0.05, kinetic=0.0)
-    (axes,) = chart_figure([budget_panel("", record)], 40.0, MARGINS).axes
-    assert set(names_at(axes)) == {"first axial", "contact"}  # all of it algorithmic: no parts
-    (steps,) = [x for colour, x, y in lines_of(axes) if colour == "#000000"]
-    assert list(steps) == [1e-3, 2e-3]
-    marks = {text.get_text(): text.xy[0] for text in axes.texts if hasattr(text, "xy")}
-    assert marks["a/c"] == 3e-4
-    assert rules_of(axes, to_hex(GREY)) == ([], [3e-4])
-
-
 @pytest.mark.long
 def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     tmp_path: Path, finished_cases: Path, drawn: dict[str, Figure]
@@ -89,20 +78,6 @@ def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     assert all(kind in alarms for kind in ("agreement by damping", "hidden tension", "contact ringing"))
 
 
-def test_a_budget_holds_curves_and_limits() -> None:
-    cases = load_scene("figures-3-4").expand()
-    (record,) = budgets(cases)
-    assert record["steps"] == [0.001, 0.002, 0.01]
-    assert record["limits"]["real roots"] * 344.5612 == pytest.approx(4.0, rel=2e-3)
-    assert record["real roots at"] == pytest.approx(4.0, rel=2e-3)
-    assert record["limits"]["wave transit"] == pytest.approx(3.29e-3, abs=5e-6)
-    assert record["floor"] == pytest.approx(1.0515, abs=5e-5)
-    dt, first = np.array(record["dt"]), record["modes"]["first axial"]
-    i = int(np.argmin(np.abs(dt - 0.002)))
-    assert first["total"][i] == pytest.approx(344.5612 * dt[i] / 4, rel=0.2)
-    assert first["total"][-1] is None and first["kinetic"][0] == 0
-
-
 @pytest.mark.long
 def test_a_budget_s_viscous_part_is_what_the_tables_add() -> None:
     scene = load_scene("figures-3-4").expand()[1].with_values({"damping.mass": 20.0})
@@ -111,15 +86,3 @@ def test_a_budget_s_viscous_part_is_what_the_tables_add() -> None:
     total, algorithmic, added = (first[part][0] for part in ("total", "algorithmic", "viscous"))
     assert added == pytest.approx(20.0 / (2 * 344.5612), rel=1e-3)  # a0 / (2 w) at small dt
     assert total == pytest.approx(algorithmic + added, rel=1e-3)
-
-
-def test_a_budget_splits_damping_and_keeps_a_rate() -> None:
-    light = load_scene("figure-9").expand()[1]
-    (record,) = budgets([light])
-    assert record["limits"]["overdamped below"] == pytest.approx(2.93e-5, rel=2e-3)
-    rate = light.with_values({"time.gg_rate": 20.0})
-    (with_rate,) = budgets([rate])
-    first = with_rate["modes"]["first axial"]
-    assert first["kinetic"][0] == pytest.approx(20.0 / (2 * 344.5612), rel=1e-3)  # c / (2 w) at small dt
-    assert "overdamped below" not in with_rate["limits"]
-    assert len(list(budgets(load_scene("figure-9").expand()))) == 4

@@ -2,76 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from oracles.made_cases import line_in, lines_of, made_history, names_at, rules_of
+from oracles.made_cases import names_at
 
 from validation.report.chapters import ledger
-from validation.report.figures import curves, motion
+from validation.report.figures import curves
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-
-GREY = "#bbbbbb"
-ENDS = {"dda": -0.004, "fem": -0.010, "bar": -0.016, "continuum": -0.001}  # m; in no order
-STARTS = {"dda": -0.015, "fem": -0.001, "bar": -0.006, "continuum": -0.011}
 
 
 def color(name: str) -> str:
     return to_hex(curves.style_of(name).color)
-
-
-def towards_ends(names: Any = ENDS, count: int = 50) -> dict[str, Any]:
-    """Histories that begin in one order, swing through -0.02 m and end in another order."""
-    share = np.linspace(0, 1, count)
-    swing = -0.02 * np.sin(np.pi * share) ** 2
-    return {n: made_history(0.001, STARTS[n] + share * (ENDS[n] - STARTS[n]) + 0.2 * swing) for n in names}
-
-
-def test_every_name_of_a_history_stands_beside_its_own_lines_last_value() -> None:
-    histories = towards_ends()
-    figure = motion.history_figure(
-        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
-    )
-    top, below = figure.axes
-    found = names_at(top)
-    assert set(found) == set(ENDS)
-    for name, last in ENDS.items():
-        assert found[name] == (pytest.approx(1e3 * last, abs=1e-9), color(name))  # mm; the ends are far apart
-        x, y = line_in(top, color(name))
-        assert x[-1] == pytest.approx(0.05) and y[-1] == pytest.approx(1e3 * last)
-        assert np.allclose(y, 1e3 * histories[name].displacement)
-    ticks = zip(below.get_xticks(), below.get_xticklabels(), strict=True)
-    assert all(float(label.get_text()) == pytest.approx(tick) for tick, label in ticks)
-    assert set(names_at(below)) == set(ENDS) - {"bar"}
-    for name, (value, drawn) in names_at(below).items():
-        tail = (histories[name].displacement - histories["bar"].displacement)[-1]
-        assert (value, drawn) == (pytest.approx(abs(tail) / 0.01, rel=0.1), color(name))  # one fortieth is two steps
-
-
-def test_the_difference_is_measured_from_the_reference_over_the_static_value() -> None:
-    histories = {"bar": made_history(0.1, np.full(40, -0.02)), "dda": made_history(0.1, np.full(40, -0.021))}
-    figure = motion.history_figure(
-        [curves.HistoryPanel("", histories, {"displacement": -0.01}, "bar")], "displacement", apart=True
-    )
-    _, y = line_in(figure.axes[1], color("dda"))
-    assert np.allclose(y, 0.1)
-    assert len(lines_of(figure.axes[1])) == 1 and figure.axes[1].get_ylabel() == "|Δ| / static"
-    panel = curves.HistoryPanel("", histories, {}, "bar")
-    assert motion.history_figure([panel], "displacement", apart=True).axes[1].get_ylabel() == "|Δ| / largest"
-    assert rules_of(figure.axes[0], GREY) == ([pytest.approx(-10)], [])  # mm: the hairline
-
-
-def test_names_of_a_chart_stand_at_last_values_with_their_notes() -> None:
-    n = np.array([4.0, 8.0, 16.0])
-    lines = [ChartLine("fem", n, np.array([3.0, 2.0, 1.0]), note=": falls"), ChartLine("bar", n, 1 + n / 8)]
-    (axes,) = chart_figure([ChartPanel("", "n", "v", lines, levels={"": 2.0})]).axes
-    assert names_at(axes) == {
-        "fem: falls": (pytest.approx(1.0), color("fem")),
-        "bar": (pytest.approx(3.0), color("bar")),
-    }
-    assert rules_of(axes, to_hex(curves.GREY)) == ([2.0], [])
 
 
 def test_the_ledger_figure_shows_displacement_filled_and_pressure_open_in_the_columns_of_their_parts() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import itertools
 
 import numpy as np
@@ -37,17 +36,6 @@ def texts(axes, renderer):
     return [t.get_window_extent(renderer) for t in axes.texts]
 
 
-def test_nudge_keeps_gap_order_and_limits():
-    random = np.random.default_rng(3)
-    for n in range(1, 9):
-        wanted = random.uniform(0, 1, n)
-        places = curves.nudge(wanted, 0.1, 0.0, 1.0)
-        order = np.argsort(wanted)
-        assert np.all(np.diff(places[order]) >= 0.1 - 1e-12)  # rounding
-        assert places.min() >= 0
-        assert places.max() <= 1 + 1e-12
-
-
 def test_thin_keeps_ends_and_every_spike():
     x = np.arange(20_000.0)
     y = np.sin(x / 50)
@@ -57,37 +45,6 @@ def test_thin_keeps_ends_and_every_spike():
     assert {3.0, 7777.0, 19_990.0, 0.0, 19_999.0} <= set(tx)
     assert np.all(np.diff(tx) > 0)
     assert np.array_equal(ty, y[tx.astype(int)])
-
-
-def test_envelope_is_the_largest_magnitude_of_each_part():
-    x = np.arange(8.0)
-    middles, largest = curves.envelope(x, np.array([1.0, -3.0, 0.0, 2.0, -5.0, 4.0, 0.5, 0.0]), bins=4)
-    assert middles.tolist() == [0.5, 2.5, 4.5, 6.5]
-    assert largest.tolist() == [3.0, 2.0, 5.0, 0.5]
-
-
-def test_a_run_that_blew_up_neither_warns_nor_sets_the_scale():
-    some = [panel(blown="dda-textbook")]
-    low, high = curves.common_range(some, "displacement")
-    assert low == min(h.displacement.min() for h in histories().values())
-    assert high == pytest.approx(0.06)  # six static values cut the one that blew up
-    motion.history_figure(some, "displacement").savefig(io.BytesIO(), format="svg")
-
-
-@pytest.mark.parametrize(
-    ("largest", "unit", "expected"),
-    [
-        (0.02, "m", (1e3, "mm")),
-        (5e6, "Pa", (1e-6, "MPa")),
-        (999.0, "Pa", (1.0, "Pa")),
-        (3e-6, "m", (1e6, "µm")),
-        (0.0, "m", (1.0, "m")),
-        (5e6, "", (1.0, "")),
-    ],
-)
-def test_engineering_prefix(largest, unit, expected):
-    factor, name = curves.engineering(largest, unit)
-    assert (factor, name) == (pytest.approx(expected[0]), expected[1])
 
 
 def test_each_solver_has_one_style_and_no_two_share_it():

@@ -16,9 +16,7 @@ from validation.report.blocks import Callout, Table
 from validation.report.figures.curves import style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import closed, decisions, first, pages
-from validation.report.front.groups import paper_scene
-from validation.scenes.scene import Scene, load_scene, parse_scene
-from validation.theory import spectra, statics
+from validation.scenes.scene import load_scene
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
 OTHER = PAPER.with_values(
@@ -28,19 +26,6 @@ FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the pa
 
 
 # ---- closed forms -------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("values", [
-    {"time.step": 1e-3}, {"time.step": 2e-3, "time.gg": 0.95}, {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-    {"time.step": 1e-5, "time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-])  # fmt: skip
-@pytest.mark.parametrize("scene", [PAPER, OTHER])
-def test_a_damping_ratio_is_that_of_the_schemes_own_formulas(scene: Scene, values: dict[str, float]) -> None:
-    changed = scene.with_values(values)
-    frequency, t = spectra.dda_frequency(changed), changed.time
-    wanted = float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
-    assert closed.first_damping(changed) == pytest.approx(wanted, rel=1e-9)
-    assert math.isnan(closed.first_damping(scene.with_values({"time.step": 0.05})))  # real roots, one near -1
 
 
 def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
@@ -53,16 +38,6 @@ def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
         assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
     assert closed.step_for(PAPER, 0.5) is None  # 0.373 is the greatest
     assert closed.step_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), 0.05) is None
-
-
-def test_what_a_discount_does_is_what_the_scheme_does() -> None:
-    light = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98})
-    below = closed.overdamped_below(light)
-    assert below == pytest.approx(2.93e-5, rel=2e-3)
-    for factor, over in ((0.99, True), (1.01, False)):
-        omega = FREQUENCIES[1.0] * below * factor
-        assert (float(spectral.damping_ratio(omega, 0.25, 0.5, 0.98)) >= 1) is over
-    assert closed.overdamped_below(PAPER) is None
 
 
 # ---- five sentences -----------------------------------------------------------------------------------------------
@@ -169,13 +144,6 @@ def test_the_figure_of_the_first_page_holds_closed_form_and_runs() -> None:
     assert list(time.y) == pytest.approx([70, 50, 60])
 
 
-def test_results_without_a_finished_paper_scene_have_no_such_page() -> None:
-    assert paper_scene({"figures-3-4": made_group(made_case(PAPER, {"dda": {}}))}) is None
-    lateral = made_case(PAPER.with_values({"block.poisson": 0.3}), {"dda": {"mode1.damping": 0.1}})
-    assert paper_scene({"figures-3-4": made_group(lateral)}) is None  # the closed forms are for mu = 0
-    assert paper_scene(FOUND) is FOUND["figures-3-4"].cases[0].scene
-
-
 @pytest.mark.parametrize("beyond", [0, 1])
 def test_scenes_are_listed_as_long_as_a_page_has_lines_for_them(beyond: int, tmp_path: Path) -> None:
     group = made_group(made_case(OTHER, {"dda": {}}))
@@ -185,52 +153,6 @@ def test_scenes_are_listed_as_long_as_a_page_has_lines_for_them(beyond: int, tmp
 
 
 # ---- the conditions of rules --------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("width", "height"), [(2.0, 2.0), (3.0, 1.25), (0.5, 4.0)])
-def test_how_far_springs_give_way_depends_on_the_shape(width: float, height: float) -> None:
-    """Against statics: v = -(w q / 2p) - (h q / 2E), the first part over the second."""
-    data = PAPER.definition()
-    del data["block"]["side"]
-    scene = closed.stiffer(parse_scene(data | {"block": data["block"] | {"width": width, "height": height}}, "s"), 10)
-    q, p, E = 5e6, 1e10, 1e9
-    springs, block = width * q / (2 * p), height * q / (2 * E)
-    assert statics.static_displacement(scene) == pytest.approx(-springs - block)
-    assert closed.spring_share(scene) == pytest.approx(springs / block) == pytest.approx(width / height / 10)
-
-
-@pytest.mark.parametrize("ratio", [10.0, 100.0])
-def test_the_contact_flips_each_step_beyond_four_over_its_frequency_and_not_before(ratio: float) -> None:
-    scene = closed.stiffer(PAPER, ratio)
-    w, limit = spectra.contact_frequency(scene), closed.sign_change_step(scene)
-    for step, flips in ((0.99 * limit, False), (1.01 * limit, True), (2e-3, True)):
-        root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
-        nearest = root[np.argmin(np.real(root))]
-        assert bool(abs(np.imag(nearest)) < 1e-9 and np.real(nearest) < 0) is flips
-    assert closed.contact_radius(closed.stiffer(PAPER, 10.0)) == pytest.approx(0.7533, abs=1e-4)  # at 2 ms
-
-
-def test_a_rate_damps_alike_while_the_step_is_short() -> None:
-    base = PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5})
-    rate = closed.rate_for(base, 0.05)
-    for step, wanted in ((1e-4, 0.0500), (2e-3, 0.0519), (2e-2, 0.1275)):
-        omega = FREQUENCIES[1.0] * step
-        xi = float(spectral.damping_ratio(omega, 0.25, 0.5, math.exp(-rate * step)))
-        assert xi == pytest.approx(wanted, abs=5e-5)
-        assert (abs(xi / 0.05 - 1) < 0.1) is (omega < 1)
-        held = closed.timed(base, gg_rate=rate, step=step)
-        assert closed.first_damping(held) == pytest.approx(xi, rel=1e-6)
-
-
-def test_the_rule_of_four_holds_up_to_ten_per_cent() -> None:
-    for xi, within in ((0.01, True), (0.1, True), (0.2, False)):
-        step = closed.step_for(PAPER, xi)
-        assert (abs(step * FREQUENCIES[1.0] / (4 * xi) - 1) < 0.03) is within
-    assert closed.most_damped(PAPER) == pytest.approx(3.27, abs=5e-3)
-    around = [float(spectral.damping_ratio(omega, 0.5, 1.0)) for omega in (3.17, 3.27, 3.37)]
-    assert max(around) == around[1] == pytest.approx(0.373, abs=5e-4)
-    before, beyond = (spectral.eigenvalues(omega, 0.5, 1.0, 1.0) for omega in (3.99, 4.01))
-    assert np.abs(np.imag(before)).max() > 0 and np.abs(np.imag(beyond)).max() == 0 and np.real(beyond).min() < 0
 
 
 # ---- what is drawn ------------------------------------------------------------------------------------------------

@@ -8,19 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import between, kept_study, line_in, made_case, made_group, made_history, names_at
+from oracles.made_cases import kept_study, made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
 from validation.report.appendix.gates import gate_table
-from validation.report.appendix.glossary import WORDS
 from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.chapters import gates
 from validation.report.chapters import judged as judged_chapter
-from validation.report.chapters.scene import conclusion, history_block, lead_figure
+from validation.report.chapters.scene import history_block
 from validation.report.figures import motion
-from validation.report.figures.curves import HistoryPanel, style_of
+from validation.report.figures.curves import HistoryPanel
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
@@ -47,11 +45,6 @@ def test_the_appendix_says_what_is_shared_once(kept: Any, tmp_path: Path) -> Non
         kept_study(results, [], study=name, provenance={"commit": commit, "system": "Linux"})
     kept("appendix", [*gate_table([*own, failed]), *parameter_table(found), *provenance(results, ["a", "b", "c"])])
     assert gate_table([failed]) == []
-
-
-def test_the_glossary_has_twelve_words() -> None:
-    assert len(WORDS) == 12 and len(dict(WORDS)) == 12
-    assert np.exp(-2 * np.pi * 0.05 / np.sqrt(1 - 0.05**2)) == pytest.approx(0.73, abs=5e-3)  # what it says of 5 %
 
 
 # ---- histories ----------------------------------------------------------------------------------------------------
@@ -110,32 +103,6 @@ def test_a_figure_ends_when_all_lines_have_long_settled(drawn: dict[str, Figure]
     assert "settled" in history_block(group, ["displacement"], tmp_path, without=["bar"]).caption
 
 
-def exact_history(step: float) -> Any:
-    """Return an exact vibration of 18 ms."""
-    return made_history(step, -0.01 * (1 - np.cos(345.0 * step * np.arange(1, round(0.2 / step) + 1))))
-
-
-def test_an_exact_solution_is_no_zigzag_where_few_steps_show_it(drawn: dict[str, Figure], tmp_path: Any) -> None:
-    """At 10 ms it is drawn from what is kept between the steps."""
-    exact = replace(exact_history(1e-2), between=exact_history(1e-3))
-    stepped = made_history(1e-2, np.linspace(-0.02, -0.01, 20))
-    history_block(made_group(made_case(PAPER, {}, {"dda": stepped, "continuum": exact})), ["displacement"], tmp_path)
-    color = to_hex(style_of("continuum").color)
-    assert line_in(drawn["scene-history.svg"].axes[0], color)[0].size == 200
-
-
-def test_differences_are_drawn_where_the_caption_says_so(drawn: dict[str, Figure], tmp_path: Any) -> None:
-    """The bar lies on fem and has no line of its own; what is apart from it is drawn all the same."""
-    bar = made_history(0.002, np.linspace(-0.02, -0.01, 100))
-    histories = {"dda": made_history(0.002, np.linspace(-0.025, -0.01, 100)), "fem": bar, "bar": bar}
-    group = made_group(made_case(PAPER, {}, histories))
-    (block,) = lead_figure(group, tmp_path)
-    caption = block.caption
-    top, below = drawn["scene-lead.svg"].axes
-    assert "|Δ|: from bar" in caption and below.get_ylabel() == "|Δ| / largest"
-    assert set(names_at(below)) == {"dda"} and set(names_at(top)) == {"dda", "fem, bar"}
-
-
 def test_a_count_that_is_none_is_no_small_number() -> None:
     scene = PAPER.name
     count = verdict(scene, 0.0, (0.0, 0.0), metric="displacement.fine_settling_step")
@@ -148,18 +115,3 @@ def test_a_count_that_is_none_is_no_small_number() -> None:
 
 
 # ---- chapters -----------------------------------------------------------------------------------------------------
-
-
-def test_where_dda_has_no_reference_the_pair_of_the_ledger_is_told() -> None:
-    case = made_case(load_scene("unlocked").expand()[0], {})
-    pair = between(case.name, "block-events", "bar-events", **{"displacement.l2": 0.02, "pressure.l2": 0.5})
-    group = replace(made_group(case), comparisons=(pair,))
-    assert conclusion(group).startswith("Against bar-events, block-events differs by 2\u00a0% in displacement and 50")
-
-
-def test_cases_over_different_times_are_told_with_both_ends() -> None:
-    cases = [made_case(PAPER.with_values({"time.step": step}, label=True), {}) for step in (0.01, 0.001)]
-    pairs = [between(case.name, "dda", "bar", displacement_l2=0.02) | {"window": t} for case, t in
-             zip(cases, (2.0, 0.2), strict=True)]  # fmt: skip
-    said = conclusion(made_group(*cases, comparisons=tuple(pairs)))
-    assert said.startswith("Against bar, dda differs by 2\u00a0% in displacement (relative L2, 0.2 to 2\u00a0s);")

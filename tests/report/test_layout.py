@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,8 +10,7 @@ from pypdf import PdfReader
 
 from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
 from validation.report.figures.histories import save
-from validation.report.render.pdf import kept_with_next, typeset
-from validation.suite.folders import study_folders, study_names
+from validation.report.render.pdf import typeset
 
 LINES = 46  # of text that fill a page
 CASES = range(2, LINES, 3)  # lines above a chapter, so that it begins at each height of a page
@@ -50,30 +48,9 @@ def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages: li
         assert not missing, (name, missing)
 
 
-def test_no_title_is_the_last_line_of_a_page(pages: list[str]) -> None:
-    ends = [text.strip().splitlines()[-2] for text in pages]  # above the number of the page
-    assert len(ends) > len(CASES)
-    assert not [line for line in ends if line.startswith(("Chapter", "Lead", "Sources", "Rule", "Figure"))]
-
-
 @pytest.mark.parametrize("cited", [False, True])
 def test_sources_have_a_title_only_where_some_are_cited(tmp_path: Path, cited: bool) -> None:
     text = "A scheme @newmark1959." if cited else "A scheme."
     (tmp_path / "made.pdf").write_bytes(typeset(tmp_path, [Paragraph(text), References()]))
     (page,) = PdfReader(tmp_path / "made.pdf").pages
     assert ("References" in page.extract_text()) is cited
-
-
-def test_what_leads_to_a_figure_or_opens_a_chapter_is_kept_with_it(tmp_path: Path) -> None:
-    first, second = chapter(1), chapter(2)
-    assert kept_with_next(first) == [False, True, True, True, True, False]  # of headings the template knows
-    loose = [Heading("Part", 2), Paragraph("a"), Callout("Alarm.", "warn"), first[4], Paragraph("b"), PageBreak()]
-    assert kept_with_next([*loose, *second[:1], PageBreak()]) == [False] * 8
-    assert kept_with_next([Paragraph("a"), Paragraph("b"), first[5]]) == [True, True, False]
-
-
-def test_every_heat_map_has_a_heading() -> None:
-    for name in study_names():
-        path = study_folders()[name].path / "chapter.toml"
-        parts = tomllib.loads(path.read_text("utf-8")).get("parts", []) if path.exists() else []
-        assert not [part for part in parts if "maps" in part and not {"heading", "heading_of"} & set(part)], name

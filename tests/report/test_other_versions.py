@@ -14,7 +14,6 @@ from conftest import SCENE, typed
 
 from validation.report.book import ordered_studies, unread_studies
 from validation.results import Results
-from validation.runs.row import Row
 
 Change = Callable[[dict[str, Any]], object]
 GATE = """
@@ -93,13 +92,3 @@ def changed(name: str, two: Path, tmp_path: Path) -> Results:
 def test_a_study_of_another_version_is_named(name: str, two: Path, tmp_path: Path) -> None:
     kept = changed(name, two, tmp_path)
     assert list(unread_studies(kept, ordered_studies(kept))) == ["theirs"]
-
-
-def test_a_key_that_a_later_version_adds_to_a_row_is_passed_over(two: Path, tmp_path: Path) -> None:
-    results = tmp_path / "r"
-    shutil.copytree(two, results)
-    change_rows(results, lambda row: row.update(future=1))
-    kept = Results(results)
-    assert unread_studies(kept, ordered_studies(kept)) == {}
-    assert kept.rows() == Results(two).rows()
-    assert all(isinstance(row, Row) for row in kept.rows().values())

@@ -167,23 +167,3 @@ def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_p
 
 
 # ---- figure 1 -------------------------------------------------------------------------------------------------------
-
-
-def test_figure_1_draws_radii_solid_what_is_printed_dashed_and_the_modes_as_circles(
-    drawn: dict[str, Figure], tmp_path: Path
-) -> None:
-    metrics = {"mode1.spectral_radius": 0.8, "contact.spectral_radius": 0.5}
-    derived = [{"scene": "damping-map", "name": "w dt", "metrics": {"mode1": 0.6, "contact": 1.8}}]
-    page(tmp_path, (named("damping-map", **{"time.step": 0.002}), {"dda": metrics}, {}), derived=derived)
-    (axes,) = drawn["figure-1.svg"].axes
-    ends = names_at(axes)
-    constant, printed = "constant acceleration (1/2, 1)", "constant acceleration: √(1+h), as printed"
-    assert len(ends) == 5 and ends[constant][1] == ends[printed][1]
-    assert ends[printed][0] < 0.05 and ends[constant][0] == pytest.approx(1.0, abs=0.01)
-    curves = [line for line in axes.lines if to_hex(line.get_color()) == ends[constant][1]
-              and line.get_transform() == axes.transData]  # fmt: skip
-    solid, dashed = sorted(curves, key=lambda line: line.get_linestyle(), reverse=False)
-    assert len(solid.get_xdata()) == 241 and min(dashed.get_xdata()) > 4
-    points = [line for line in axes.lines if line.get_marker() == "o"]
-    assert [(*line.get_xdata(), *line.get_ydata()) for line in points] == [(0.6, 0.8), (1.8, 0.5)]
-    assert {to_hex(line.get_markeredgecolor()) for line in points} == {color("dda")}

@@ -11,7 +11,7 @@ from pypdf import PdfReader
 from validation.report import front
 from validation.report.blocks import Block, Paragraph, References
 from validation.report.names import quoted
-from validation.report.references import PAPER, identity, references
+from validation.report.references import PAPER, references
 from validation.report.render.html import page
 from validation.report.render.pdf import typeset
 from validation.suite.folders import sources_of, study_names
@@ -52,10 +52,3 @@ def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: P
 def test_the_site_links_keys_and_nothing_else() -> None:
     text = page("t", [Paragraph("<b> @kane1999 @me2020 " + quoted("@kane1999"))])
     assert '&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020 @kane1999</p>' in text
-
-
-def test_the_first_page_names_what_the_runs_know() -> None:
-    run = {"packages": {"dda-validation": "1.2"}, "date": "2024-01-02", "commit": "abc"}
-    assert identity([run, run | {"commit": "def"}]).endswith("), version 1.2, run on 2024-01-02, commit abc, def")
-    assert identity([{}, {"packages": "none"}]).startswith("dda-validation (")
-    assert "," not in identity([])

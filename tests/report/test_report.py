@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-import sys
-
 import numpy as np
 import pytest
 from oracles.made_cases import kept_study, made_row
@@ -20,7 +17,7 @@ from validation.report.blocks import (
     Table,
     TableColumn,
 )
-from validation.report.book import build, ordered_studies, write_figures
+from validation.report.book import build, write_figures
 from validation.report.chapters import data as chapters_data
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import scene as chapters
@@ -31,8 +28,6 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene, parse_scene
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
 
 CORE = ("figures-3-4", "figure-8")
 MANY = load_scene("figures-3-4").with_values({"block.young": 2e9})
@@ -98,28 +93,6 @@ def small(tmp_path):
 
 def group_of(results, name):
     return next(g for g in chapters_data.case_groups(results, results.manifest("core")) if g.name == name)
-
-
-@pytest.fixture
-def no_solver(monkeypatch):
-    """Let every import of a package of solvers fail, where a module asks for it when it is called."""
-    by_role(Role.JUDGED)  # adapters, which say what each solver is, are there; whoever calls them imports no more
-    packages = ("dda", "fem_reference", "skfem", "dolfinx")
-    for name in {*packages, *(name for name in sys.modules if name.partition(".")[0] in packages)}:
-        monkeypatch.setitem(sys.modules, name, None)
-
-
-@pytest.mark.parametrize("which", ["small", pytest.param("results", marks=pytest.mark.long)])
-def test_build_writes_one_pdf_and_nothing_else(which, request, tmp_path, no_solver):
-    """Of the small one the title is text and never evaluated; no solver is imported."""
-    results = request.getfixturevalue(which)
-    (tmp_path / "out").mkdir()
-    before = sorted(p.name for p in results.directory.rglob("*"))
-    out = build(results, tmp_path / "out/report.pdf")
-    assert out.read_bytes().startswith(b"%PDF-")
-    assert out.stat().st_size > 10_000  # pages with figures, not empty ones
-    assert [p.name for p in out.parent.iterdir()] == ["report.pdf"]
-    assert sorted(p.name for p in results.directory.rglob("*")) == before
 
 
 def test_gates_that_passed_are_listed_where_they_are_asked_for(results):
@@ -188,26 +161,6 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         build(small, tmp_path / "absent" / "r.pdf")
     with pytest.raises(ValueError, match="rows: must have 2 cells each, or one, got 3"):
         Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
-
-
-def test_studies_stand_in_the_order_of_their_chapters(tmp_path):
-    directory = Results(tmp_path)
-    for study in ("zeta", "alpha", "toppling", "rocking", "opening", "core"):
-        directory.write_json(f"studies/{study}.json", {"study": study})
-    assert ordered_studies(directory) == ["core", "opening", "rocking", "toppling", "alpha", "zeta"]
-
-
-def test_the_longest_window_of_a_pair_counts_in_either_order(results):
-    group = group_of(results, "figure-8")
-    case = group.cases[0]
-    said = [
-        {"scene": case.name, "solver": "a", "reference": "b", "window": 0.1, "metrics": {"displacement.l2": 0.3}},
-        {"scene": case.name, "solver": "b", "reference": "a", "window": 0.2, "metrics": {"displacement.l2": 0.4}},
-        {"scene": "other", "solver": "a", "reference": "b", "window": 9.0, "metrics": {"displacement.l2": 0.5}},
-    ]
-    compared = dataclasses.replace(group, comparisons=tuple(said)).compared
-    assert compared(case, "a", "b") == compared(case, "b", "a") == {"displacement.l2": 0.4}
-    assert compared(case, "a", "c") is None
 
 
 def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_path, kept):

@@ -12,24 +12,19 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import (
     between,
-    kept_study,
     line_in,
     made_case,
     made_group,
     made_history,
-    made_row,
     names_at,
     rules_of,
 )
 
-from validation.report.appendix import provenance as appendix_provenance
 from validation.report.blocks import Paragraph
-from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import ledger as chapters_ledger
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
 from validation.report.figures.curves import style_of
-from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
@@ -40,38 +35,6 @@ def stepped(step: float) -> Any:
 
 
 # ---- the table of damping, settling and peaks ---------------------------------------------------------------------
-
-MEASURED = {
-    "mode1.frequency": 344.56,
-    "mode1.numerical_frequency": 321.09,
-    "mode1.measured_frequency": 321.42,
-    "mode1.damping": 0.12345,
-    "mode1.measured_damping": 0.23456,
-    "mode1.spectral_radius": 0.87654,
-    "displacement.settling_step": 44.0,
-    "pressure.settling_step": 45.0,
-    "displacement.peak": -0.012347,  # m
-    "pressure.peak": 6.789e6,  # Pa
-    "pressure.minimum": -0.4321e6,  # Pa
-}
-
-
-def test_the_damping_table_shows_every_metric_in_its_column_and_unit(kept: Any) -> None:
-    """A least pressure within 1e-9 of the load, which is 5e-3 Pa, is nothing; solvers that read alike share a line."""
-    undefined = MEASURED | {"pressure.settling_step": "undefined", "mode1.damping": "not reported"}
-    cases = (
-        made_case(BASE, {"dda": MEASURED, "dda-textbook": MEASURED, "fem": undefined}, label="dt = 1 s"),
-        made_case(BASE, {"dda": {"pressure.minimum": -4e-3}, "fem": {"pressure.minimum": -6e-3}}),
-    )
-    kept("damping", [chapters.damping_table(made_group(*cases))])
-
-
-def test_the_reason_of_a_gate_carries_its_reference_and_its_uncertainty() -> None:
-    verdict = {"reason": "so", "reference_kind": "other code", "reference_uncertainty": 2.5e-4, "why": "it broke"}
-    assert chapters_gates.reason(verdict) == "so [other code ± 2.5×10⁻⁴] It broke."
-    assert (
-        chapters_gates.reason({"reason": "so", "reference_kind": "exact", "reference_uncertainty": 0.0}) == "so [exact]"
-    )
 
 
 # ---- the conclusion -----------------------------------------------------------------------------------------------
@@ -129,12 +92,6 @@ def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn: dict[str, F
     assert chapters.history_block(made_group(*cases), ["displacement"], tmp_path).caption.startswith("1 of 2 cases.")
 
 
-def test_pictures_take_differences_under_the_same_scheme_where_they_can() -> None:
-    history, names = made_history(0.1, [1.0]), ("dda", "continuum", "fem", "bar")
-    found = [made_case(BASE, {}, dict.fromkeys(names[:count], history)).reference for count in (4, 3, 2, 1)]
-    assert found == ["bar", "fem", "continuum", None]
-
-
 # ---- the ledger and the front page --------------------------------------------------------------------------------
 
 PAIRS = {  # part of the ledger -> solver, reference, displacement, pressure
@@ -151,12 +108,6 @@ def ledger_group() -> Any:
     pairs = [between(BASE.name, a, b, displacement_l2=v, pressure_l2=p) for a, b, v, p in every]
     solvers = ("dda", "dda-textbook", "fem", "bar", "continuum")
     return made_group(made_case(BASE, {solver: {} for solver in solvers}, label="one"), comparisons=tuple(pairs))
-
-
-@pytest.mark.parametrize("part", PAIRS)
-def test_each_part_of_the_ledger_is_its_own_pair(part: str) -> None:
-    group = ledger_group()
-    assert chapters_ledger.entry(group, group.cases[0], part) == PAIRS[part][2:]
 
 
 OPENING_PAIRS = {  # contact that opens: part of the ledger -> solver, reference, displacement, pressure
@@ -207,16 +158,6 @@ def test_code_and_mesh_are_told_by_the_worst_of_the_cases() -> None:
     group = made_group(*(made_case(scene, {}) for scene in scenes), comparisons=tuple(pairs))
     assert "the finite-element mesh is at most 4\u00a0%, so that" in chapters_ledger._shares([group], 0.05)
     assert "so that" not in chapters_ledger._shares([group], 0.02)
-
-
-def test_the_cost_of_a_solver_is_summed_over_its_own_runs(kept: Any, tmp_path: Path) -> None:
-    first = {"unknowns": 6, "factorisations": 1, "solves": 40, "steps": 41}
-    second = {"unknowns": 9, "factorisations": 2, "solves": 100, "steps": 102}
-    costs = [("a", first, {"setup": 0.25, "stepping": 0.5}), ("b", second, {"setup": 1.0, "stepping": 2.0})]
-    results = Results(tmp_path)
-    cases = [(BASE, made_row("dda", {}, name, work=work, seconds=spent), None) for name, work, spent in reversed(costs)]
-    manifest = kept_study(results, [*cases, (BASE, made_row("fem", {}, "c", seconds={"setup": 9.0}), None)])
-    kept("cost", [appendix_provenance.cost_table(results, [manifest, manifest | {"study": "other"}])])
 
 
 # ---- data of a scene ----------------------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 import re
@@ -26,7 +25,6 @@ from validation.metrics.catalogue import CATALOGUE, words_of
 from validation.report import blocks as kinds
 from validation.report.blocks import Block, Callout, Heading, Link, Links, Listing, Paragraph, Points, table
 from validation.report.book import build
-from validation.report.chapters.gates import measured
 from validation.report.render import pdf, terminal
 from validation.report.render.html import page, readable
 from validation.report.site import pages
@@ -120,14 +118,6 @@ def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(s
     for name in ("index.html", "study-passing.html", "scene-passing.html"):
         text = (site / name).read_text(encoding="utf-8")
         assert "<b>50" not in text and "&lt;b&gt;50" in text and "@feng2017" in text, name
-
-
-def test_each_gate_is_in_the_table_of_its_study_and_scene(site: Path, results: Results) -> None:
-    for study, file in (("passing", "passing"), (FAILING, "fail---ing")):
-        (verdict,) = results.verdicts(study)
-        for name in (f"study-{file}.html", f"scene-{file}.html"):
-            text = html.unescape((site / name).read_text(encoding="utf-8"))
-            assert f'<td class="verdict {verdict["verdict"].lower()}">' in text and measured(verdict) in text
 
 
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
@@ -275,7 +265,7 @@ def answer(command: str) -> Any:
 
 
 SETTINGS = [
-    {"solve_for": "dt"},
+    pytest.param({"solve_for": "dt"}, marks=pytest.mark.long),
     {"solve_for": "gg", "step": 3e-4, "alpha": 0.25, "delta": 0.5, "stiffness_ratio": 10, "target": 0.08},
     {"solve_for": "scheme", "step": 1e-3, "gg": 0.99, "young": 4e9, "side": 3, "target": 0.3},
     {"solve_for": "dt", "alpha": 0.3025, "delta": 0.6, "gg": 0.98, "density": 2000, "target": 0.02},
@@ -292,20 +282,3 @@ def test_the_calculators_answer_as_the_command_line(site: Path, settings: dict[s
         for name in ("frequency", "damping", "algorithmic", "kinetic", "spectral_radius"):
             assert own[name] == pytest.approx(mode[name], rel=1e-11, abs=1e-12), name
     assert shown.values["values"] == pytest.approx([one["value"] for one in advice["solutions"]], rel=1e-10)
-
-
-@browser
-def test_a_setting_beyond_its_limits_is_named_and_no_page_is_wider_than_its_window(site: Path, tmp_path: Path) -> None:
-    frames = "".join(
-        f'<iframe src="{path.as_uri()}#step=-1" width="400" height="900"></iframe>' for path in site.glob("*.html")
-    )
-    script = """onload = () => { document.body.dataset.answer = JSON.stringify([...document.querySelectorAll("iframe")]
-        .map((one) => [one.contentDocument.documentElement.scrollWidth,
-            one.contentDocument.querySelector(".wrong")?.textContent])); };"""
-    (tmp_path / "frames.html").write_text(f"<!DOCTYPE html><body>{frames}<script>{script}</script></body>")
-    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--dump-dom")
-    address = (tmp_path / "frames.html").as_uri()
-    done = subprocess.run([str(CHROMIUM), *flags, address], capture_output=True, text=True, timeout=60)
-    measured = json.loads(html.unescape(re.search(r'data-answer="([^"]*)"', done.stdout)[1]))  # type: ignore[index]
-    assert len(measured) == 7 and max(width for width, _ in measured) <= 400
-    assert [text for _, text in measured if text] == ["Time step dt [s]: must be from 1e-06 to 1"]

@@ -28,20 +28,6 @@ def case(scene: Scene = PAPER, label: str = "as stated", **metrics: dict[str, An
     )
 
 
-def test_the_best_reference_is_exact_in_time_if_it_was_run_and_compared() -> None:
-    pairs = {"continuum": 0.3, "bar": 0.2, "fem": 0.1, "block-events": 0.4}
-    own = case(**{name: {} for name in ("dda", *pairs)})
-    found = []
-    for left in range(4):
-        compared = [between(PAPER.name, "dda", other, displacement_l2=pairs[other]) for other in list(pairs)[left:]]
-        found.append(summary.reference_of(made_group(own, comparisons=tuple(compared)), own))
-    assert found == ["continuum", "bar", "fem", "block-events"]
-    assert summary.reference_of(made_group(own), own) is None  # nothing was compared
-    alone = case(dda={})
-    group = made_group(alone, comparisons=(between(PAPER.name, "dda", "bar", displacement_l2=0.2),))
-    assert summary.reference_of(group, alone) is None  # it has no row
-
-
 def test_damping_is_told_by_scheme_discount_and_tables() -> None:
     scene = PAPER.with_values({"time.gg": 0.98})
     parts = summary.mode_damping(case(scene, dda={}), 344.561)

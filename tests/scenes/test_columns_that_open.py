@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.scenes import features
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
 
@@ -26,46 +24,6 @@ def scene_with(column: dict[str, Any], **tables: Any) -> Scene:
     return parse_scene(
         data | {"time": {"step": 1e-3, "steps": 10}, "run": {"solvers": ["dda"]}} | tables, "column.toml"
     )
-
-
-def test_every_face_is_a_contact_unless_it_has_a_joint_of_its_own() -> None:
-    joint = {"height": 3.0, "stiffness": "inf", "gap": 0.1}
-    column = scene_with({"gap": 0.2, "joint": [joint]}).column
-    assert column is not None
-    assert column.faces == (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
-    numbers = [(one.height, one.stiffness, one.gap, one.strength) for one in column.contacts]
-    others = [(height, 1e9, 0.2, math.inf) for height in (0.0, 1.0, 2.0, 4.0)]
-    assert numbers == sorted([*others, (3.0, math.inf, 0.1, math.inf)])
-
-
-@pytest.mark.parametrize("base", ["transmitting", "free"])
-def test_what_stands_on_a_half_space_or_on_nothing_has_no_contact_at_its_base(base: str) -> None:
-    half_space = {"base_density": 2000.0, "base_speed": 700.0} if base == "transmitting" else {}
-    column = scene_with({"base": base} | half_space).column
-    assert column is not None and [one.height for one in column.contacts] == [1.0, 2.0, 3.0, 4.0]
-
-
-def test_only_joints_are_contacts_where_faces_move_alike() -> None:
-    column = scene_with({"stiffness": None, "joint": [{"height": 2.0, "stiffness": 1e8}]}).column
-    assert column is not None and [one.height for one in column.contacts] == [2.0]
-
-
-def test_the_strength_of_friction_is_that_of_the_weight_above() -> None:
-    layers = [LAYERS[0], LAYERS[1] | {"velocity": 0.0}]
-    joints = [{"height": 1.0, "stiffness": 1e8, "strength": 5.0}, {"height": 4.0, "stiffness": 1e8}]
-    sheared = {"motion": "shear", "law": "frictional", "gravity": 10.0, "friction": 45.0, "layer": layers}
-    column = scene_with(sheared | {"joint": joints}, input={"shape": "sine", "velocity": 1.0, "frequency": 2.0}).column
-    assert column is not None
-    strengths = {one.height: one.strength for one in column.contacts}
-    assert strengths == pytest.approx({0.0: 70e3, 1.0: 5.0, 2.0: 30e3, 3.0: 20e3, 4.0: math.inf})
-
-
-def test_features_and_solvers_follow_from_the_law() -> None:
-    scene = scene_with({"joint": [{"height": 1.0, "stiffness": "inf"}]}, run={})
-    moving = (features.UNILATERAL_COLUMN, features.RIGID_BLOCKS, features.RIGID_JOINTS)
-    assert features.of(scene) == (features.COLUMN, *moving) and not features.linear(scene)
-    assert scene.run.solvers == ("dda", "column-events")
-    assert parse_scene(scene.definition(), "again").column == scene.column
 
 
 REFUSED = [
@@ -93,12 +51,6 @@ def test_what_does_not_go_together_is_refused(column: dict[str, Any], rule: str)
     assert rule in str(error.value).replace("column: ", "")
 
 
-def test_a_layer_of_a_bonded_column_has_no_velocity() -> None:
-    layer = {"thickness": 1.0, "density": 1.0, "young": 1.0, "velocity": 1.0}
-    with pytest.raises(InputError, match=r"layer\.velocity goes with column\.law"):
-        scene_with({"law": "bonded", "stiffness": None, "layer": [layer]})
-
-
 @pytest.mark.parametrize(
     "drive",
     [
@@ -120,8 +72,3 @@ def test_displacement_and_acceleration_belong_to_the_velocity_of_a_drive(drive: 
         assert displacement == pytest.approx(integral, abs=1e-10)
         around = motion_at(scene, np.array([time - 1e-6, time + 1e-6])).velocity
         assert acceleration == pytest.approx(np.diff(around)[0] / 2e-6, abs=1e-6)
-
-
-def test_weight_alone_drives_nothing_at_base_or_top() -> None:
-    motion = motion_at(scene_with({"gravity": 9.81}), np.array([0.0, 1.0]))
-    assert not any(np.any(part) for part in vars(motion).values())

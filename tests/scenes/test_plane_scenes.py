@@ -78,9 +78,3 @@ def test_the_modes_share_the_rest(solver):
     modes = get_solver(solver).modes(scene())
     assert modes[0].share == max(mode.share for mode in modes)
     assert 0.9 < sum(mode.share for mode in modes) <= 1 + 1e-9  # of four modes that are reported
-
-
-def test_triangles_are_two_a_cell_and_tile_the_rectangle():
-    polygons = scene({"plane.pattern": "triangles"}).plane.polygons
-    areas = [((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2 for a, b, c in polygons]
-    assert areas == pytest.approx([0.125] * 16)

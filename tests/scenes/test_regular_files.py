@@ -198,12 +198,3 @@ def test_a_pipe_in_a_results_directory_is_not_waited_for(name: str, tmp_path: Pa
 def test_an_assignment_is_read_whole_or_refused(assignment: str, words: str, scene_file: Path) -> None:
     with pytest.raises(InputError, match=words):
         load_scene(scene_file).with_values(dict([parse_assignment(assignment)]))
-
-
-def test_blocks_are_counted_before_lists_are_made(tmp_path: Path) -> None:
-    path = tmp_path / "column.toml"
-    layer = "thickness = 1.0\ndensity = 2500.0\nyoung = 1e9\nblocks = 1000000000\n"
-    path.write_text(f'[column]\nmotion = "shear"\n[[column.layer]]\n{layer}[time]\nstep = 1e-3\nsteps = 9\n')
-    with pytest.raises(InputError) as error:
-        load_scene(path)
-    assert error.value.field == "column.layer.0.blocks"

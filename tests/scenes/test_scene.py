@@ -1,7 +1,6 @@
 """Scenes: what is accepted, what is refused, and in which words."""
 
 import copy
-import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,6 @@ from typing import Any
 import pytest
 from conftest import SCENE
 
-from validation.engine.case import Case
 from validation.errors import InputError
 from validation.scenes.scene import Scene, load_scene, parse_assignment, parse_scene, scene_names
 
@@ -29,9 +27,6 @@ def parse(**changes: object) -> Scene:
     return parse_scene(changed(**changes), "x.toml")
 
 
-UNLOCKED = {"contact__law": "unilateral"}
-RIGID = UNLOCKED | {"contact__stiffness": math.inf, "contact__shear_stiffness": 0.0}
-IMPACT = {"contact__rule": "impact", "contact__restitution": 0.5}
 REFUSED = [
     (row["keys"], row["says"])
     for row in tomllib.loads(Path(__file__).with_name("refused.toml").read_text(encoding="utf-8"))["refused"]
@@ -45,31 +40,6 @@ def test_a_scheme_refuses_the_numbers_of_newmarks() -> None:
             getattr(time, weight)
         assert caught.value.field == f"time.{weight}"
     assert (parse().time.alpha, parse().time.delta) == (0.5, 1.0)
-
-
-def test_a_scheme_that_is_set_takes_out_the_numbers_of_the_one_before() -> None:
-    scene = parse(time__alpha=0.25, time__delta=0.5)
-    hht = scene.with_values({"time.scheme": "hht", "time.rho_inf": 0.75})
-    assert (hht.time.scheme, hht.time.rho_inf) == ("hht", 0.75)
-    composite = hht.with_values({"time.scheme": "composite", "time.split": 0.5})
-    assert (composite.time.rho_inf, composite.time.split) == (0.75, 0.5)
-    assert composite.with_values({"time.scheme": "wbz"}).time.split is None
-    leapfrog = composite.with_values({"time.scheme": "leapfrog", "time.start": "consistent"})
-    assert (leapfrog.time.rho_inf, leapfrog.time.split) == (None, None)
-    newmark = composite.with_values({"time.scheme": "newmark", "time.alpha": 0.3})
-    assert (newmark.time.alpha, newmark.time.rho_inf) == (0.3, None)
-
-
-def test_dashpots_by_restitution_and_by_damping_ratio_replace_each_other() -> None:
-    scene = parse(**UNLOCKED, contact__restitution=0.5).with_values({"contact.damping_ratio": 0.2})
-    assert (scene.contact.restitution, scene.contact.damping_ratio) == (None, 0.2)
-    assert scene.with_values({"contact.restitution": 0.3}).contact.damping_ratio == 0
-
-
-@pytest.mark.parametrize("theta", [0.5, 0.6, 1.0])
-def test_the_impact_law_takes_moreaus_theta(theta: float) -> None:
-    weights = {"time__alpha": theta**2, "time__delta": 2 * theta - 0.5}
-    assert parse(**RIGID, **IMPACT, **weights).contact.restitution == 0.5
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
@@ -105,14 +75,6 @@ def test_layers_and_joints_of_a_column_are_swept_as_a_whole() -> None:
     assert [case.column.layer[0].blocks for case in cases if case.column is not None] == [12, 6]
     with pytest.raises(InputError, match="sweep: must name a key of a table"):
         parse_scene(column | {"sweep": {"column.layer.blocks": [6, 12]}}, "x")
-
-
-def test_sweep_is_a_product_or_a_zip() -> None:
-    sweep = {"time.step": [0.1, 0.2], "contact.stiffness": [1e9, 1e10, 1e11]}
-    assert len(parse(sweep=sweep).expand()) == 6
-    pairs = parse(sweep={"time.step": [0.1, 0.2], "time.steps": [4, 2], "mode": "zip"}).expand()
-    assert [(case.time.step, case.time.steps) for case in pairs] == [(0.1, 4), (0.2, 2)]
-    assert [case.name for case in pairs] == ["scene[time.step=0.1,time.steps=4]", "scene[time.step=0.2,time.steps=2]"]
 
 
 def test_a_swept_value_is_checked_like_any_other() -> None:
@@ -157,24 +119,12 @@ def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path:
     assert [case.fem.mesh for case in scene.expand()] == [str(tmp_path / "a.msh"), str(tmp_path / "b.msh")]
 
 
-def test_set_replaces_a_value_and_ends_its_sweep() -> None:
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.005})
-    assert scene.time.step == 0.005
-    assert not scene.sweep
-    assert parse(time__gg=0.9).with_values({"time.gg_rate": 2.0}).time.gg is None
-
-
 def test_assignments_are_toml_or_words() -> None:
     assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
     assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
     with pytest.raises(InputError, match="must be key=value"):
         parse_assignment("time.step")
-
-
-def test_discount_as_a_rate() -> None:
-    assert parse(time__gg_rate=3.0).time.discount == pytest.approx(math.exp(-0.006), rel=1e-15)
-    assert parse().time.discount == 1.0
 
 
 @pytest.mark.parametrize("name", scene_names())
@@ -195,15 +145,3 @@ def test_the_papers_figures_are_there() -> None:
     assert values("figure-8", "time.alpha") == [0.25, 0.5]
     assert values("figure-9", "time.gg") == [1.0, 0.98, 0.95, 0.90]
     assert set(values("poisson", "block.poisson")) == {0.25}
-
-
-def test_swept_counts_of_sub_blocks_are_named_as_products() -> None:
-    cases = parse(sweep={"block.subdivide": [[1, 2], [4, 4]]}).expand()
-    assert [case.name for case in cases] == ["scene[block.subdivide=1x2]", "scene[block.subdivide=4x4]"]
-    assert cases[1].block.subdivide == (4, 4)
-
-
-def test_a_solver_that_does_not_see_sub_blocks_keeps_one_result_for_all_of_them() -> None:
-    whole, cut = parse(), parse(block__subdivide=[2, 2])
-    keys = {name: {Case(scene, name).key() for scene in (whole, cut)} for name in ("dda", "fem", "bar")}
-    assert {name: len(found) for name, found in keys.items()} == {"dda": 2, "fem": 1, "bar": 1}

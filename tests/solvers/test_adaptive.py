@@ -8,7 +8,6 @@ from oracles.stepped_vibration import Rule
 
 import dda
 import fem_reference
-from dda.scheme.adaptive import adapted_modes
 from validation import advise, damping, load_scene, response, solve
 from validation.advice.wave_advice import advise_wave
 from validation.diagnosis.judgement import compare
@@ -32,7 +31,6 @@ CASES = [
     ("fem", {"damping.floor": 0.9} | AVERAGE),
     ("fem", {"block.poisson": 0.3, "load.traction": 1e6, "fem.elements": 2} | AVERAGE),
 ]
-SOLVERS = ["dda", pytest.param("fem", marks=pytest.mark.long)]
 
 
 def columns(scene: Scene, solver: str) -> dict[str, np.ndarray]:
@@ -70,29 +68,6 @@ def test_histories_are_those_of_the_printed_scheme_with_the_rule(solver: str, va
         assert np.max(np.abs(found[column] - own)) <= 1e-8 * np.max(np.abs(own)), column
     if consistent:  # average acceleration has no loss of its own
         assert np.max(np.abs(found[COLUMNS[3]] + expected[4])) <= 1e-8 * found[COLUMNS[3]][-1]
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_rest_is_the_static_solution(solver: str) -> None:
-    scene = BLOCK.with_values({"block.poisson": 0.2, "time.steps": 600} | AVERAGE)
-    static = get_solver(solver).prepare(scene.with_values({"damping.kinetic": "constant"})).static()
-    found, undamped = columns(scene, solver), columns(scene.with_values({"damping.floor": 1.0}), solver)
-    for column in COLUMNS[:2]:
-        last = slice(-50, None)
-        assert np.max(np.abs(found[column][last] - static[column])) < 1e-3 * abs(static[column])
-        assert np.max(np.abs(undamped[column][last] - static[column])) > 0.5 * abs(static[column])
-
-
-@pytest.mark.parametrize(
-    ("omega", "factor", "left"), [(0.001, 2.46, 0.15), (0.01, 2.37, 0.32), (0.05, 2.17, 0.51), (0.2, 1.71, 0.70)]
-)
-def test_the_steps_of_a_fall_follow_the_power_law_at_small_steps_only(omega: float, factor: float, left: float) -> None:
-    scheme = dda.Scheme(0.25, 0.5, 1.0, omega, "consistent")
-    found = adapted_modes(scheme, np.ones(1), np.ones(1), int(3 / omega), 0.0)
-    falling = np.flatnonzero(found.discount < 1)
-    first = falling[: np.flatnonzero(np.append(np.diff(falling) > 1, True))[0] + 1]
-    assert len(first) == pytest.approx(factor * omega ** (-2 / 3), abs=1.5)
-    assert abs(found.modes[0, first[-1]] - 1) == pytest.approx(left, abs=0.03)
 
 
 def test_who_needs_a_linear_motion_refuses_it() -> None:

@@ -109,11 +109,6 @@ def test_what_has_no_exact_waves_is_refused_by_name(change: dict[str, Any], reas
         solve(scene, "bars-events")
 
 
-def test_bonded_columns_are_left_to_the_layers() -> None:
-    refusal = get_solver("bars-events").refusal(load_scene("waves-base").expand()[0])
-    assert refusal is not None and "layers" in refusal
-
-
 @pytest.mark.long
 def test_switches_carry_the_height_of_their_contact() -> None:
     scene = load_scene("columns-cradle").expand()[0]

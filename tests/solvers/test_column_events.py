@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
@@ -125,25 +124,6 @@ def test_notes_name_switches_and_the_proven_radius() -> None:
     touching = OPENS | {"gap": 0.0, "joint": [{"height": 0.0, "stiffness": 1e9, "gap": 0.01}]}
     run = solve(scene_of(touching, ["displacement"]), "column-events")
     assert any(note.startswith("at zero gap") and "1, 2 m" in note for note in run.notes)
-
-
-BONDED = {"motion": "pressure", "layer": [LAYERS[0] | {"velocity": 0.0}], "heights": []}
-RICKER = {"input": {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 50.0}}
-
-
-@pytest.mark.parametrize(
-    ("column", "tables", "word"),
-    [
-        (OPENS | {"stiffness": math.inf}, {}, "rigid joints"),
-        (OPENS, {"time": {"gg": 0.99}}, "kinetic damping"),
-        (BONDED, RICKER, "unilateral"),
-    ],
-)
-def test_what_it_cannot_do_is_refused_by_name(column: dict[str, Any], tables: dict[str, Any], word: str) -> None:
-    scene = scene_of(column, ["displacement"], **tables)
-    assert word in str(get_solver("column-events").refusal(scene))
-    with pytest.raises(InputError, match=word):
-        solve(scene, "column-events")
 
 
 def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,9 +10,8 @@ import pytest
 from conftest import thinned
 
 from validation.engine.case import Case
-from validation.engine.measure import attempt, execute
+from validation.engine.measure import execute
 from validation.errors import InputError
-from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.registry import get_solver
@@ -35,19 +34,6 @@ def dropped(**column: Any) -> Scene:
     names += ["force_6", "gap_6", "gap_7", "contact_pressure", "stress_1"]
     whole = {"gap": 0.0005, "joint": [joint], "gravity": 9.81, "heights": heights} | column
     return scene_of(whole, names, step=1.5e-5, steps=4000)
-
-
-def test_energies_are_kept_where_they_will_be_read_and_made_again_where_they_were_not() -> None:
-    scene = dropped().with_values({"time.steps": 40})
-    (plain, run), (asked, other) = (attempt(get_solver("dda"), scene, False, None, kept) for kept in (False, True))
-    assert plain.result.record is None  # type: ignore[union-attr]
-    assert asked.result.record is not None  # type: ignore[union-attr]
-    assert run.history is not None
-    assert other.history is not None
-    assert all(np.array_equal(values, other.history.columns[name]) for name, values in run.history.columns.items())
-    one, again = (prepared.contact_record() for prepared in (asked, plain))  # type: ignore[union-attr]
-    assert set(one.energies) == set(again.energies)
-    assert all(np.array_equal(values, again.energies[name]) for name, values in one.energies.items())
 
 
 @pytest.mark.parametrize(("only", "kept"), [(None, True), (frozenset({"displacement_1.peak"}), False)])
@@ -129,15 +115,6 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int,
     switches = prepared.switches()
     assert {switch.opens for switch in switches} == {None}
     assert {switch.slips for switch in switches} == {True, False}
-
-
-def test_six_solves_are_too_few_for_ten_touching_blocks() -> None:
-    scene = load_scene("columns-domino").expand()[0].with_values({"column.solve_limit": 6})
-    run = attempt(get_solver("dda"), scene, full=False)[1]
-    assert run.outcome is Outcome.SOLVE_LIMIT
-    assert "at step 1" in run.notes[-1]
-    enough = attempt(get_solver("dda"), scene.with_values({"column.solve_limit": 11}), full=False)[1]
-    assert enough.outcome is Outcome.COMPLETED
 
 
 @pytest.mark.parametrize(

@@ -98,31 +98,3 @@ def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
     assert role("fem:full") == "repeat" and role("jointed") == "other"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.rank("jointed") < registry.rank("dda")
-
-
-@pytest.mark.parametrize("name", registry.BUILT_IN)
-def test_what_a_solver_takes_apart_only_are_features_of_scenes(name: str) -> None:
-    names = {feature.name for feature in features.FEATURES}
-    for feature, others in get_solver(name).apart:
-        assert feature not in others
-        assert {feature, *others} <= names
-
-
-TABLES = {features.DAMPING: {"damping"}, features.ADAPTIVE: {"damping"}, features.COLUMN: {"column", "input"}}
-
-
-@pytest.mark.parametrize("name", registry.BUILT_IN)
-def test_the_key_of_a_solver_holds_the_tables_of_the_features_that_it_handles(name: str) -> None:
-    solver = get_solver(name)
-    for feature in solver.handles & set(TABLES):
-        assert TABLES[feature] <= set(solver.sections), feature
-
-
-def test_a_model_is_assembled_once_for_history_statics_and_modes(scene_file: Path, monkeypatch) -> None:
-    import fem_reference.mesh.model as model
-
-    built, sound = [], model.build
-    monkeypatch.setattr(model, "build", lambda *a, **k: built.append(1) or sound(*a, **k))
-    prepared = get_solver("fem").prepare(load_scene(scene_file))
-    prepared.run(), prepared.static(), prepared.modes(), prepared.diagnostics()
-    assert len(built) == 1

@@ -172,8 +172,3 @@ def test_what_does_not_go_together_is_refused_by_both_names(
     if features.linear(scene):
         with pytest.raises(InputError, match=rf"{first}.* together with {second}"):
             response(scene, 1.0, solver)
-
-
-def test_a_solver_of_columns_takes_no_block() -> None:
-    with pytest.raises(InputError, match="takes columns only"):
-        solve(LOCKED, "layers")

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from validation import solve
@@ -20,21 +19,6 @@ def scene() -> Scene:
     """A block on an incline with two corners, its load off its middle."""
     values = {"contact": CONTACT, "load": LOAD, "time.step": 1e-3, "time.steps": 150, "run.columns": COLUMNS}
     return load_scene("unlocked").expand()[1].with_values(values | {"fem": {"elements": 2, "foundation": "corner"}})
-
-
-def test_a_block_at_rest_on_its_incline_bears_its_weight_in_two_parts(scene: Scene) -> None:
-    """Statics of both models: N = W cos b and T = -W sin b, whatever has slid before."""
-    at_rest = {"load": {"gravity": 9.81, "slope": 20.0}, "contact.friction": 30.0, "time.step": 0.02, "time.gg": 0.5}
-    weight, angle = 10800 * 9.81, np.radians(20.0)
-    case = scene.with_values({**at_rest, "run.columns": [*COLUMNS[1:2], "base_shear"], "fem.foundation": "distributed"})
-    found = solve(case, "fem").history
-    assert 2.0 * found.columns["contact_pressure"][-1] == pytest.approx(weight * np.cos(angle), rel=1e-6)
-    assert 2.0 * found.columns["base_shear"][-1] == pytest.approx(-weight * np.sin(angle), rel=1e-6)
-    case = scene.with_values({**at_rest, "run.columns": ["contact_pressure", "shear_force_m", "shear_force_n"]})
-    block = solve(case, "dda").history
-    assert 2.0 * block.columns["contact_pressure"][-1] == pytest.approx(weight * np.cos(angle), rel=1e-6)
-    shear = block.columns["shear_force_m"][-1] + block.columns["shear_force_n"][-1]
-    assert shear == pytest.approx(-weight * np.sin(angle), rel=1e-6)
 
 
 def test_a_column_that_elements_do_not_have_is_refused(scene: Scene) -> None:

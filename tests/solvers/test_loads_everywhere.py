@@ -16,67 +16,12 @@ from oracles.elements import make
 
 import dda
 import fem_reference
-from dda.model.load import pressed_part
 from dda.system.joints import gap_groups
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.model import assemble
-from validation.runs.history import Array
-from validation.scenes.scene import Scene, load_scene
-from validation.solvers.registry import get_solver
 
 A, P, Q = 2.0, 1e9, 5e6
 SQUARE = ((0.0, 0.0), (A, 0.0), (A, A), (0.0, A))
-COLUMNS = ["displacement", "contact_pressure", "horizontal_displacement"]
-GLUED = {"block.subdivide": [1, 4], "block.glue_ratio": 1e6}
-MODELS = {
-    "dda": ("dda", {}),
-    "sub-blocks": ("dda", GLUED),
-    "fem": ("fem", {"fem.elements": 2}),
-    "fenicsx": ("fenicsx", {"fem.elements": 2}),
-}
-EVERY = [
-    pytest.param(*model, id=name, marks=[pytest.mark.fenicsx] * (name == "fenicsx")) for name, model in MODELS.items()
-]
-
-
-def in_turn(*others: object) -> list[object]:
-    """Return every model with every value of another axis; short are each model with one of them, all in turn."""
-    found = []
-    for m, model in enumerate(EVERY):
-        for o, other in enumerate(others):
-            marks = [*model.marks, *[pytest.mark.long] * (o != m % len(others))]
-            found.append(pytest.param(*model.values, other, id=f"{other}-{model.id}", marks=marks))
-    return found
-
-
-@pytest.fixture
-def scene(scene_file) -> Scene:  # type: ignore[no-untyped-def]
-    return load_scene(scene_file).with_values({"run.columns": COLUMNS, "time.steps": 20})
-
-
-def columns_of(solver: str, scene: Scene) -> dict[str, Array]:
-    history = get_solver(solver).solve(scene).history
-    return dict(history.columns)
-
-
-@pytest.mark.parametrize(("solver", "values", "turn"), in_turn(1, 2, 3))
-def test_it_does_not_matter_where_the_outline_begins(
-    scene: Scene, solver: str, values: dict[str, object], turn: int
-) -> None:
-    """An eccentric pressure and a traction on a quadrilateral whose vertices are listed from another one on."""
-    corners = [[0.3, 0.1], [2.3, 0.4], [1.9, 1.6], [0.5, 1.4]]
-    loads = {"load": {"pressure": Q, "traction": 2e5}, "block.poisson": 0.2, "time.steps": 5, **values}
-    listed = {
-        "block.vertices": np.roll(corners, turn, axis=0).tolist(),
-        "block.base": turn,
-        "block.top": (2 + turn) % 4,
-    }
-    first, other = (
-        columns_of(solver, scene.with_values(loads | outline))
-        for outline in ({"block.vertices": corners, "block.base": 0, "block.top": 2}, listed)
-    )
-    for name in COLUMNS:
-        np.testing.assert_allclose(other[name], first[name], rtol=0, atol=1e-11 * np.abs(first[name]).max())
 
 
 @pytest.mark.parametrize(
@@ -103,31 +48,6 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
     assert static["rotation"] == pytest.approx(rotation, rel=2e-6)  # E / p = 1e7 of rigidity
     assert static["displacement"] == pytest.approx(-Q * (A - 2 * abs(e)) / (2 * P), rel=2e-6)
     assert static["horizontal_displacement"] == pytest.approx(tau * A / (2 * P) - A / 2 * rotation, rel=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("edge", "e", "pressed"),
-    [
-        ([[0, 0], [2, 0]], 0.3, [[0.6, 0], [2, 0]]),
-        ([[2, 0], [0, 0]], 0.3, [[2, 0], [0.6, 0]]),
-        ([[1, 0], [1, 2]], -0.3, [[1, 0], [1, 1.4]]),
-        ([[1, 2], [1, 0]], 0.3, [[1, 2], [1, 0.6]]),
-    ],
-)
-def test_the_pressed_part_is_shifted_towards_plus_x_or_on_an_upright_edge_plus_y(
-    edge: list[list[float]], e: float, pressed: list[list[float]]
-) -> None:
-    np.testing.assert_allclose(pressed_part(*np.array(edge, float), e), pressed, rtol=1e-13)
-
-
-@pytest.mark.parametrize("side", thinned([1, 3], 5))
-@pytest.mark.parametrize("e", [0.3, -0.3])
-@pytest.mark.parametrize("degree", [1, 2])
-def test_elements_press_the_same_part_of_an_upright_edge(side: int, e: float, degree: int) -> None:
-    """Work of the load on v = y: -q times the pressed length times the height of its middle."""
-    assembled = assemble(replace(make(elements=3, degree=degree, top=side), eccentricity=e))
-    y = assembled.basis.doflocs[1] * elasticity.components(assembled.basis)
-    assert assembled.F @ y == pytest.approx(-Q * (A - 2 * abs(e)) * (A / 2 + e), rel=1e-12)
 
 
 @pytest.mark.parametrize("e", [1.0, -1.0, 1.6, -1.6])
@@ -187,24 +107,6 @@ def test_a_corner_that_is_off_by_rounding_leaves_a_rectangle(right: float, recta
     assert right != 0.3
     found = make(((0.0, 0.0), (0.3, 0.0), (right, 1.0), (0.0, 1.0))).rectangle
     assert found == (0.3, 1.0) if rectangle else found is None
-
-
-@pytest.mark.parametrize("elements", [2, 3, 4, 5])
-def test_the_middle_of_triangles_is_read_in_its_own_triangle(elements: int) -> None:
-    """Any nodal values, linear in each triangle: the middle's own triangle is found by its barycentric coordinates."""
-    vertices = ((0.0, 0.0), (3.0, 0.0), (2.0, 1.6), (0.4, 1.0))
-    problem = make(vertices, elements=elements, degree=1, cells="triangles")  # type: ignore[arg-type]
-    assembled = assemble(problem)
-    mesh, values = assembled.basis.mesh, np.random.default_rng(elements).standard_normal(assembled.basis.N)
-    for name, dofs in (
-        ("horizontal_displacement", assembled.basis.nodal_dofs[0]),
-        ("displacement", assembled.basis.nodal_dofs[1]),
-    ):
-        found = []
-        for cell in mesh.t.T:
-            weights = np.linalg.solve(np.vstack([mesh.p[:, cell], np.ones(3)]), [*problem.centroid, 1.0])
-            found += [weights @ values[dofs[cell]]] * bool(np.all(weights >= -1e-12))
-        assert assembled.observers[name] @ values == pytest.approx(found[0], rel=1e-11)
 
 
 def test_a_load_on_a_block_that_is_not_there_is_refused() -> None:

@@ -8,12 +8,9 @@ from pathlib import Path
 import pytest
 from conftest import SCENE, typed
 
-from validation.advice.spectra import damping
 from validation.engine.run import run_study
-from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.suite.folders import scene_study
 
@@ -63,14 +60,6 @@ def test_what_control_groups_leave(groups: str, files: dict[str, str], expected:
     assert left(machine(tmp_path, groups, files)) == expected
 
 
-def test_the_least_of_all_limits_is_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    there = memory.available()
-    monkeypatch.setattr(memory, "of_groups", lambda root: iter([there / 2, there / 4]))
-    assert memory.available() <= there / 4
-    monkeypatch.setattr(memory, "of_groups", lambda root: iter([-1.0]))
-    assert memory.available() == 0.0
-
-
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
@@ -90,10 +79,3 @@ def test_models_of_the_advice_must_fit_as_well(scene_file: Path) -> None:
     assert "Traceback" not in done.stderr
     assert "fem.elements: must fit into memory, fem needs about" in done.stderr
     assert done.returncode == 2
-
-
-def test_damping_takes_no_steps_and_needs_no_memory_for_them(scene_file: Path) -> None:
-    many = load_scene(scene_file).with_values({"time.steps": 10**14})
-    assert damping(many, references=True).modes
-    with pytest.raises(InputError, match=r"block.subdivide: must fit into memory"):
-        damping(load_scene(scene_file).with_values({"block.subdivide": [10**4, 10**4]}))

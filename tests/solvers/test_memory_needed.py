@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import numpy as np
 import pytest
 from conftest import scene_of
 
@@ -14,15 +11,6 @@ from validation.solvers.registry import get_solver
 
 def bytes_of(solver: str = "fem", **changes: object) -> float:
     return memory.needed(scene_of(**changes), get_solver(solver))[0]
-
-
-def test_memory_of_a_history_grows_by_its_columns_and_steps() -> None:
-    """A number has 8 bytes and stands in at least one copy: columns count alike, and so do steps."""
-    names = ["displacement", "contact_pressure", "rotation", "horizontal_displacement"]
-    sizes = [bytes_of("dda", run__columns=names[:n], time__steps=10**6) for n in (1, 2, 3, 4)]
-    steps = np.diff(sizes)
-    assert steps.min() >= 8e6 and np.ptp(steps) == 0
-    assert bytes_of("dda", time__steps=2 * 10**6) == pytest.approx(2 * bytes_of("dda", time__steps=10**6), rel=1e-12)
 
 
 @pytest.mark.parametrize("solver", ["fem", "fenicsx", "fenicsx:2"])
@@ -57,18 +45,3 @@ def test_memory_of_one_column_is_asked_only_where_one_column_will_do(
 ) -> None:
     size = bytes_of(solver, **({"fem__elements": 300, "fem__degree": 1, "time__steps": 1} | changes))
     assert size < 1e7 if column else size > 2 * 301**2 * 1000
-
-
-def test_memory_of_sub_blocks() -> None:
-    """Six unknowns each, dense matrices; a square cut in two is twice as many."""
-    squares = bytes_of("dda", block__subdivide=[30, 20], time__steps=1)
-    triangles = bytes_of("dda", block__subdivide=[30, 20], block__pattern="triangles", time__steps=1)
-    assert squares >= 8 * 3600**2 and triangles == pytest.approx(4 * squares, rel=1e-3)
-
-
-def test_memory_that_is_there_is_what_the_system_says() -> None:
-    meminfo = Path("/proc/meminfo")
-    if not meminfo.exists():
-        pytest.skip("the system does not say")
-    lines = dict(line.split(":") for line in meminfo.read_text().splitlines())
-    assert memory.available() == pytest.approx(1024 * int(lines["MemAvailable"].split()[0]), rel=0.3)

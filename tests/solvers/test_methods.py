@@ -114,16 +114,6 @@ def test_solves_of_a_composite_scheme_are_two_a_step() -> None:
     assert 1.0 <= mean["hht"] < 1.1 and 2.0 <= mean["composite"] < 2.1
 
 
-def test_dashpots_are_those_of_the_rigid_block_on_both_corners() -> None:
-    mass = OPENING.block.mass
-    stiffness = OPENING.contact.stiffness
-    scene = OPENING.with_values({"contact.damping_ratio": 0.25})
-    assert 2 * opened.dashpot_of(scene) == pytest.approx(2 * 0.25 * math.sqrt(2 * stiffness * mass))
-    by_rebound = OPENING.with_values({"contact.restitution": 0.5717400276})
-    assert 2 * opened.dashpot_of(by_rebound) == pytest.approx(2 * 0.2 * math.sqrt(2 * stiffness * mass), rel=1e-9)
-    assert opened.dashpot_of(OPENING) == 0
-
-
 @pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT | {"contact.restitution": 0.0}])
 def test_a_contact_method_converges_to_its_exact_motion(values: dict[str, Any]) -> None:
     coarse = OPENING.with_values(values | {"time.steps": 100})
@@ -144,13 +134,6 @@ def test_the_balance_of_energy_holds_with_what_is_lost_in_the_contact(values: di
     name = "dashpot" if "contact.damping_ratio" in values else "impact"
     assert record.energies[name][-1] > 0
     assert imbalance(record) < 1e-9
-
-
-def test_the_exact_impacts_are_in_the_record_and_in_the_notes() -> None:
-    scene = OPENING.with_values(IMPACT | {"time.steps": 300})
-    record = record_of(scene, "block-events")
-    assert {round(rebound.restitution, 12) for rebound in record.rebounds} == {0.4}
-    assert "accumulate at" in " ".join(solve(scene, "block-events").notes)
 
 
 def test_an_augmented_lagrangian_leaves_the_penetration_that_is_asked_and_reports_its_passes() -> None:

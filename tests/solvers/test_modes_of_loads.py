@@ -17,11 +17,9 @@ import dda
 import fem_reference
 from fem_reference.mesh.model import build
 from fem_reference.scheme.diagnostics import diagnostics
-from fem_reference.scheme.modal import weighted_response
 from validation.runs.history import Array
 
 A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
-M = RHO * A * A
 SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
 RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3)), "xy": ((0.0, 2e-3), (0.0, 1e-3))}
 
@@ -38,14 +36,6 @@ def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
 def upright(n: int, p: float) -> tuple[Array, Array, Array]:
     """Return M, K and R of a bar of n linear elements."""
     return *plain_newmark.upright(n, p), np.ones(n + 1)
-
-
-def sideways(p: float) -> tuple[Array, Array, Array]:
-    """Return M, K and R of (u, r, gxy) of the DDA block on two corners: the springs' stretches as vectors."""
-    normal, tangential = np.array([0.0, A / 2, A / 4]), np.array([1.0, A / 2, -A / 4])
-    stiffness = 2 * p * (np.outer(normal, normal) + np.outer(tangential, tangential))
-    stiffness[2, 2] += E / 2 * A * A
-    return M * np.diag([1.0, A * A / 6, A * A / 24]), stiffness, np.array([1.0, 0.0, 0.0])
 
 
 def model(p: float, way: str) -> dda.TwoBlockModel:
@@ -127,18 +117,6 @@ def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense:
     assert fem_reference.highest_frequency(case, full) == pytest.approx(exact, rel=1e-9)
 
 
-def test_a_double_root_at_zero_stops_a_mode_in_its_second_step() -> None:
-    """At gg = 0, (1/4, 1/2) and w dt = 2 both roots vanish: x1 = 1 - 2/4, x2 = 0 and nothing after."""
-    found = weighted_response(
-        np.array([1.0, 2.0]), np.array([[0.0, 1.0]]), fem_reference.Scheme(0.25, 0.5, 0.0, 1.0), 5
-    )
-    np.testing.assert_allclose(found[0], [0.5, 1.0, 1.0, 1.0, 1.0], rtol=0, atol=1e-15)
-
-
-def frequencies(mass: Array, stiffness: Array) -> Array:
-    return np.sqrt(eigh(stiffness, mass, eigvals_only=True))
-
-
 @pytest.mark.long
 def test_diagnostics_of_a_large_mesh_know_its_highest_frequency() -> None:
     case = make(poisson=0.3, elements=14, degree=1)
@@ -146,41 +124,3 @@ def test_diagnostics_of_a_large_mesh_know_its_highest_frequency() -> None:
     assert np.isnan(found.condition_number)
     assert found.largest_omega == pytest.approx(1e-3 * fem_reference.highest_frequency(case, full=True), rel=1e-9)
     assert found.predicted_radius == pytest.approx(found.spectral_radius, rel=1e-9)
-
-
-def test_the_condition_number_of_the_block_is_that_of_its_six_unknowns() -> None:
-    """S = M + alpha dt^2 K of (u, v, r, ex, ey, gxy): mu = 0 makes it (v, ey), (u, r, gxy) and ex."""
-    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
-    found = dda.diagnostics(dda.TwoBlockModel(block, dda.Contact(P), 5e6), dda.Scheme(0.5, 1.0, 1.0, 2e-3))
-    inertia, J = np.diag([M, M * A * A / 12]), M * A * A / 12
-    upward = np.array([[2 * P, -P * A], [-P * A, E * A * A + P * A * A / 2]])
-    S = np.zeros((6, 6))
-    S[:3, :3] = sideways(P)[0] + 0.5 * 2e-3**2 * sideways(P)[1]
-    S[3:5, 3:5] = inertia + 0.5 * 2e-3**2 * upward
-    S[5, 5] = J + 0.5 * 2e-3**2 * (E * A * A + P * A * A / 2)
-    assert found.condition_number == pytest.approx(np.linalg.cond(S), rel=1e-9)
-
-
-def test_residuals_are_those_of_the_solution(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A solution that is off by 1e-6 leaves a scaled residual of that order, a sound one leaves rounding."""
-    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
-    case = dda.TwoBlockModel(block, dda.Contact(P), 5e6)
-    assert dda.diagnostics(case, SCHEME).scaled_residual <= 1e-15
-    found = diagnostics(make(elements=4), SAME)
-    assert found.scaled_residual <= 1e-15 and found.spectral_radius == pytest.approx(found.predicted_radius, rel=1e-9)
-    solve = np.linalg.solve
-    with monkeypatch.context() as patch:
-        patch.setattr(np.linalg, "solve", lambda a, b: solve(a, b) * (1 + 1e-6))
-        # S x - b is 1e-6 b; the scale is |S| |x| + |b|, some ten times |b|
-        assert 1e-8 < dda.diagnostics(case, SCHEME).scaled_residual <= 5e-7
-
-    def slack(factor):  # type: ignore[no-untyped-def]
-        def factored(work, matrix):  # type: ignore[no-untyped-def]
-            sound = factor(work, matrix)
-            return lambda right: sound(right) * (1 + 1e-6)
-
-        return factored
-
-    with monkeypatch.context() as patch:
-        seams.FEM_FACTOR.wrap(patch, slack)
-        assert 1e-9 < diagnostics(make(elements=4), SAME).scaled_residual <= 5e-7

@@ -4,14 +4,13 @@ import math
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from conftest import refused, thinned, typed
+from conftest import refused, typed
 
 import dda
 from validation.errors import InputError
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.registry import BUILT_IN, get_solver, solve
+from validation.solvers.registry import BUILT_IN, get_solver
 
 RAMP = 0.0137  # s, between two steps
 
@@ -22,66 +21,6 @@ def locked(**values: Any) -> Scene:
     return scene.with_values({"load.ramp": RAMP} | {key.replace("__", "."): value for key, value in values.items()})
 
 
-def opening(**values: Any) -> Scene:
-    return locked(contact__law="unilateral", **values)
-
-
-@pytest.mark.parametrize(
-    "values",
-    thinned(
-        [
-            {},
-            {"time.start": "consistent"},
-            {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98},
-            {"load.ramp": 1e-3},  # less than a step
-            {"load.ramp": 10.0},  # never at its end
-        ],
-        4,
-    ),
-)
-def test_a_ramp_is_a_sum_of_loads_that_come_on_step_by_step(values: dict[str, Any]) -> None:
-    """The scheme is linear and the same at every step, so the increments of the load superpose."""
-    scene = locked().with_values(values)
-    at_once = scene.with_values({"load.ramp": 0.0, "time.start": "zero"})
-    steps = scene.time.steps
-    shares = np.minimum(np.arange(steps + 1) * scene.time.step / scene.load.ramp, 1.0)
-    for solver in ("dda", "fem", "bar"):
-        history = solve(scene, solver).displacement
-        sum_of_steps = np.convolve(solve(at_once, solver).displacement, np.diff(shares))[:steps]
-        assert history == pytest.approx(sum_of_steps, rel=1e-9, abs=1e-12 * np.max(np.abs(history))), solver
-
-
-def test_viscous_damping_goes_with_a_ramp() -> None:
-    scene = locked(damping__mass=2.0, damping__stiffness=1e-4)
-    reference = solve(scene, "bar").displacement
-    assert solve(scene, "fem").displacement == pytest.approx(reference, abs=1e-8 * np.max(np.abs(reference)))
-
-
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-def test_a_contact_that_stays_closed_is_the_locked_one_under_a_ramp(start: str) -> None:
-    values: dict[str, Any] = {"time__gg": 0.99, "time__start": start, "time__alpha": 0.25, "time__delta": 0.5}
-    values |= {"load__gravity": 9.81, "load__pressure": 0.0, "time__step": 1e-3}  # a pressure would lift it at first
-    history = solve(opening(**values), "dda").displacement
-    reference = solve(locked(**values), "dda").displacement
-    assert history == pytest.approx(reference, abs=1e-9 * np.max(np.abs(reference)))
-
-
-@pytest.mark.parametrize("rule", ["newmark", "implicit"])
-def test_energies_balance_while_the_load_rises_and_the_block_leaves_its_base(rule: str) -> None:
-    scene = opening(
-        load__gravity=9.81, load__pressure=-4e5, load__ramp=0.05, contact__rule=rule, time__alpha=0.25, time__delta=0.5,
-        time__step=1e-3, time__steps=200, contact__friction=30.0,
-    )  # fmt: skip
-    prepared = get_solver("dda").prepare(scene)
-    prepared.run()
-    record = prepared.contact_record()
-    energies = record.energies
-    total = sum(energies[name] for name in energies)
-    scale = max(np.max(np.abs(values)) for values in energies.values())
-    assert np.max(record.open_share) > 0  # the suction lifts it
-    assert np.max(np.abs(total - record.start_energy)) < 1e-9 * scale
-
-
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_who_does_not_take_a_ramp_refuses_it_by_name(name: str) -> None:
     solver = get_solver(name)
@@ -89,21 +28,6 @@ def test_who_does_not_take_a_ramp_refuses_it_by_name(name: str) -> None:
     if "ramped load" not in solver.handles:
         with pytest.raises(InputError, match=r"does not handle .*ramped load"):
             solver.prepare(locked())
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("dda", {"block__subdivide": [2, 2]}),
-        ("dda", {"damping__kinetic": "adaptive"}),
-        ("dda", {"contact__law": "unilateral", "run__geometry": "updated"}),
-        ("fem", {"contact__law": "unilateral"}),
-        ("bar", {"contact__law": "unilateral"}),
-    ],
-)
-def test_what_does_not_go_with_a_ramp_is_refused_by_name(name: str, values: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="does not handle"):
-        get_solver(name).prepare(locked(**values))
 
 
 def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:

@@ -13,12 +13,11 @@ from oracles.stepped_vibration import fit
 
 import dda.scheme.harmonic
 import fem_reference.history.response
-from validation import Solver, load_scene, response, solve
+from validation import load_scene, response, solve
 from validation.advice.response import Response
 from validation.errors import InputError
 from validation.runs.history import Array, Complex
 from validation.scenes.scene import Scene
-from validation.solvers.registry import get_solver
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002, "run.columns": ["displacement", "contact_pressure"]})
 COLUMNS = ("displacement", "contact_pressure")
@@ -111,18 +110,6 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
         assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 30), solver).table()))
 
 
-def test_small_steps_answer_as_the_limit_with_the_rate_of_the_discount() -> None:
-    f, damped = [20.0, 52.0, 80.0], {"time.gg_rate": 30.0, "time.alpha": 0.4, "time.delta": 0.6}
-    for solver in ("dda", "fem", "bar"):
-        errors = []
-        for step in (4e-5, 2e-5):
-            scene = BLOCK.with_values(damped | {"time.step": step})
-            limit = response(scene, f, solver, exact=True).displacement
-            errors.append(np.max(np.abs(response(scene, f, solver).displacement / limit - 1)))
-        assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.05)  # delta is not 1/2
-        assert errors[1] < 2e-2
-
-
 def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
     for solver in ("dda", "fem", "bar"):
         found = response(BLOCK, [0.0, 250.0], solver)
@@ -170,20 +157,6 @@ def test_peaks_are_those_of_the_model_between_the_listed_frequencies(
     assert np.allclose(np.array(peaks).reshape(-1, 2), np.array(expected).reshape(-1, 2), rtol=1e-6)
 
 
-@pytest.mark.parametrize("points", [8, 500, 2000])
-@pytest.mark.parametrize(("weights", "exact"), [({}, True), ({"time.alpha": 0.25, "time.delta": 0.5}, False)])
-def test_what_nothing_damps_is_unbounded_at_its_natural_frequency(
-    points: int, weights: dict[str, float], exact: bool
-) -> None:
-    scene = BLOCK.with_values({"time.step": 0.002} | weights)
-    first = get_solver("dda").modes(scene)[0].frequency
-    if not exact:
-        first = 2 / 0.002 * math.atan(first * 0.002 / 2)  # of the trapezoidal rule
-    for column in ("displacement", "contact_pressure"):
-        peak = response(scene, np.linspace(0.1, 100.0, points), "dda", exact).peaks(column)[0]
-        assert peak == (pytest.approx(first / (2 * math.pi), rel=1e-8), math.inf)
-
-
 def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:
     table = response(BLOCK, np.linspace(1.0, 200.0, 50), "continuum").table()
     assert set(np.unique(table[:, [2, 4]])) == {0.0, np.pi}
@@ -204,19 +177,3 @@ def test_refusals_name_solver_scene_and_rule() -> None:
     with pytest.raises(InputError, match="does not apply"):
         response(load_scene("rocking").expand()[0], 1.0, "bar")
     assert np.all(np.isfinite(response(BLOCK.with_values({"time.gg": 0.0}), [1.0, 100.0], "dda").table()))
-
-
-class Spring(Solver):
-    """A user's solver with a response of its own."""
-
-    name = "spring"
-
-    def response(self, scene: Scene, frequencies: np.ndarray, exact: bool = False) -> dict[str, np.ndarray]:
-        return dict.fromkeys(COLUMNS, 0j + frequencies)
-
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> NoReturn:
-        raise NotImplementedError
-
-
-def test_a_users_solver_brings_its_own_response() -> None:
-    assert response(BLOCK, 3.0, Spring()).displacement[0] == 3.0

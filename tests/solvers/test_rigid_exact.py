@@ -14,7 +14,6 @@ from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.registry import get_solver
 
 BOX = {"width": 0.8, "height": 0.5, "density": 700.0}
-OVERTURNING = 6  # cases of the grid of toppling, beyond the end of the motion about a corner
 CASES = [(name, case) for name, problem in box_problems().items() for case in problem.cases]
 
 
@@ -52,10 +51,6 @@ def test_the_exact_motion_passes_its_problem(name: str, case: BoxCase) -> None:
     for one in measured(quantities, motion(scene)):
         assert one.word == "PASS", one
         assert one.beside is not None and one.beside < 0.05
-
-
-def test_how_many_cases_of_the_grid_are_beyond_the_exact_motion() -> None:
-    assert sum(case.quantities is not None for _, case in CASES) == OVERTURNING
 
 
 def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> None:

@@ -1,14 +1,11 @@
 """The sixty-digit block against another route to the same numbers."""
 
-import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb
 from mpmath import mp, mpf
 from oracles import mp_reference
 
-from validation import solve
-from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver
 from validation.solvers.sixty_digits import block as precise_block
 
@@ -40,20 +37,3 @@ def test_the_block_by_trace_and_determinant_is_the_block_by_steps(scene, outline
         with mp.workdps(80):
             peak = max(abs(x) for x in exact)
             assert max(abs(a - b) for a, b in zip(exactly(found[name]), exact, strict=True)) < mpf(10) ** -60 * peak
-
-
-def test_dda_60_is_an_ordinary_solver(scene):
-    fast, exact = solve(scene, "dda"), solve(scene, "dda-60")
-    assert exact.outcome is Outcome.COMPLETED
-    assert exact.history.time == pytest.approx(fast.history.time, rel=1e-15)
-    for name in COLUMNS:
-        assert fast.history.columns[name] == pytest.approx(exact.history.columns[name], rel=1e-11, abs=1e-20)
-
-
-def test_what_a_double_cannot_hold_is_infinite_from_there_on(scene):
-    grown = scene.with_values(
-        {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 1.0, "time.allow_unstable": True, "time.steps": 80}
-    )
-    values = solve(grown, "dda-60").displacement
-    first = int(np.argmax(np.isinf(values)))
-    assert first > 0 and np.all(np.isfinite(values[:first])) and np.all(np.isinf(values[first:]))

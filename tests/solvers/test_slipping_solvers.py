@@ -44,35 +44,6 @@ def scene(tmp_path: Path, text: str = INCLINE) -> Scene:
     return load_scene(path)
 
 
-def test_a_block_on_an_incline(tmp_path: Path) -> None:
-    prepared = get_solver("block-events").prepare(scene(tmp_path))
-    run = prepared.run()
-    columns = run.history.columns
-    assert set(np.unique(columns["state_m"])) <= {0.0, 1.0, 2.0, -2.0}
-    assert columns["state_m"][[0, 12]].tolist() == [1.0, 2.0]  # it slips from 11.7 ms on
-    switches = prepared.switches()
-    kinds = [(one.corner, one.opens, one.slips) for one in switches[:5]]
-    assert kinds[:3] == [("M", None, True), ("N", None, True), ("M", True, None)]
-    assert kinds[4] == ("M", False, None)
-    record = prepared.contact_record()
-    assert record.slip[-1] == pytest.approx(max(columns["slide_m"][-1], columns["slide_n"][-1]), rel=0.5)
-    assert np.diff(record.energies["friction"]).min() >= 0
-    scale = np.abs(record.energies["load"]).max()
-    assert sum(record.energies.values()) == pytest.approx(np.zeros(len(record.time)), abs=1e-12 * scale)
-    impulse = record.impulse[-1] - record.impulse[0]
-    assert impulse == pytest.approx(np.trapezoid(record.force, record.time), rel=1e-3)  # a sum between samples
-
-
-def test_every_load_acts_as_on_the_block_of_steps(tmp_path: Path) -> None:
-    loads = {"load.pressure": 2e5, "load.eccentricity": 0.4, "load.traction": -2e5, "contact.cohesion": 2e4}
-    time = {"time.step": 1e-4, "time.steps": 200, "time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-    columns = {"run.columns": ["displacement", "horizontal_displacement", "rotation"]}
-    given = scene(tmp_path).with_values(loads | time | columns)
-    exact, stepped = (get_solver(name).solve(given).history.columns for name in ("block-events", "dda"))
-    for name, values in exact.items():
-        assert np.abs(stepped[name] - values).max() < 0.02 * np.abs(values).max(), name
-
-
 def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stuck(*_args: object) -> None:
         raise NoContactStateError("no state of the corners agrees with the motion at 0.5 s")

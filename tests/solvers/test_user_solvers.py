@@ -43,10 +43,6 @@ ANSWERS = [  # of a process that stays
     ("late", Outcome.WRONG_SHAPE, "time begins [0.004 0.006], not [0.002 0.004] s"),
     ("pressure_only", Outcome.WRONG_SHAPE, "no column displacement, got contact_pressure"),
 ]
-ENDS = [
-    ("crashes", Outcome.RAISED, "crashed: the process ended with status 139: segmentation fault"),
-    ("absent", Outcome.RAISED, "AttributeError: module 'my_solver' has no attribute 'absent'"),
-]
 
 
 @pytest.mark.long
@@ -103,11 +99,6 @@ def test_a_module_that_is_not_found_is_bad_input(scene: Scene, name: str) -> Non
     assert os.getcwd() in str(told.value.advice)
 
 
-@pytest.mark.parametrize("command", [("judge", "locked"), ("solve", SCENE)])
-def test_a_command_ends_on_a_module_that_is_not_found(command: tuple[object, ...]) -> None:
-    assert cli(*command, "--solver", "nowhere:solve").returncode == 2
-
-
 def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
     from validation.engine.run import run_study
 
@@ -160,11 +151,3 @@ def test_a_broken_solver_fails_by_name() -> None:
     shown = through_the_gates("hangs", "--dda-timeout", "3")  # within which it is loaded, on a busy machine too
     assert "passed," not in shown and "timeout: no history within 4 s, the time limit for 200 steps" in shown
     assert "gates: not tried, since 2 scenes reached their time limit" in shown
-
-
-def test_a_user_is_asked_for_the_two_block_model_alone() -> None:
-    from validation.suite.own_solver.gates import applying
-
-    asked = list(applying())
-    assert any(name.startswith("figures-3-4") for name in asked)
-    assert not [name for name in asked if name.startswith(("subblocks", "extremes"))]

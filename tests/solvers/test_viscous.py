@@ -2,15 +2,10 @@
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.plain_newmark import stepped
 
 import dda
-import fem_reference
-from dda.scheme import roots
-from fem_reference.scheme import modal
-from fem_reference.scheme.eigen import eigenvalues
 from validation import advise, damping, load_scene, solve
 from validation.advice.rayleigh import Rayleigh
 from validation.advice.wave_advice import advise_wave
@@ -48,58 +43,6 @@ def test_histories_are_those_of_the_printed_scheme_with_c(solver: str, values: d
         assert np.max(np.abs(history.columns[column] - values_)) <= 1e-10 * np.max(np.abs(values_))
 
 
-@pytest.mark.parametrize("values", thinned([{}, AVERAGE, {"time.gg": 0.98, "time.alpha": 0.6}], 3))
-def test_fine_elements_move_as_the_bar(values: dict[str, object]) -> None:
-    scene = BLOCK.with_values(values)
-    bar, errors = solve(scene, "bar").history, []
-    for elements in (8, 16):
-        found = solve(scene.with_values({"fem.elements": elements}), "fem").history
-        errors.append([np.max(np.abs(found.columns[c] - bar.columns[c])) for c in COLUMNS])
-    assert np.all(np.log2(np.divide(*errors)) > 3.8)
-
-
-@pytest.mark.parametrize(
-    "values", thinned([{}, {"time.gg_rate": 30.0}, {"damping.mass": 0.0, "damping.stiffness": 2e-3}], 3)
-)
-def test_small_steps_move_as_the_continuum(values: dict[str, object]) -> None:
-    errors = []
-    for step in (4e-4, 1e-4):
-        scene = BLOCK.with_values(AVERAGE | {"time.step": step, "time.steps": round(0.03 / step)} | values)
-        bar, exact = (solve(scene, solver).history for solver in ("bar", "continuum"))
-        errors.append([np.max(np.abs(bar.columns[c] - exact.columns[c])) for c in COLUMNS])
-    assert np.all(np.log2(np.divide(*errors)) > 2.8)  # of two halvings, each of order two or nearly so
-
-
-def test_mass_damping_of_the_continuum_is_a_rate_of_the_discount() -> None:
-    long = {"time.step": 4e-3, "time.steps": 15, "damping.stiffness": 0.0}
-    viscous_ = solve(BLOCK.with_values(long | {"damping.mass": 25.0}), "continuum").history
-    kinetic = solve(BLOCK.with_values(long | {"damping.mass": 0.0, "time.gg_rate": 25.0}), "continuum").history
-    for column in COLUMNS:
-        assert np.allclose(viscous_.columns[column], kinetic.columns[column], rtol=1e-11, atol=1e-9)
-
-
-def test_what_has_not_arrived_is_nothing() -> None:
-    run = solve(BLOCK.with_values({"time.step": 1e-4, "time.steps": 40, "damping.stiffness": 0.0}), "bar")
-    assert not any("tension" in note for note in run.notes)
-
-
-@pytest.mark.parametrize("frequency", [3.0, 300.0, 2000.0, 2e5])
-@pytest.mark.parametrize("gg", [1.0, 0.97, 0.0])
-def test_eigenvalues_are_those_of_the_steps_own_operator(frequency: float, gg: float) -> None:
-    own = dda.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
-    theirs = fem_reference.Scheme(0.4, 0.7, gg, 2e-3, "zero", 5.0, 3e-4)
-    three = eigenvalues(frequency, theirs)  # the least is zero
-    pairs = (
-        dda.one_block.modes.scalar_eigenvalues(own, frequency),
-        roots.eigenvalues(own, frequency * 2e-3),
-        modal.roots(frequency * 2e-3, theirs)[:2],
-        three[:2],
-    )
-    sums, products = [sum(pair) for pair in pairs], [pair[0] * pair[1] for pair in pairs]
-    assert np.allclose(sums, sums[1], rtol=1e-7, atol=1e-9)
-    assert np.allclose(products, products[1], rtol=1e-7, atol=1e-9)
-
-
 def test_the_operator_of_the_assembled_step_has_the_modes_eigenvalues() -> None:
     prepared = get_solver("dda").prepare(BLOCK)
     operator = np.linalg.eigvals(dda.one_step_operator(prepared.model, prepared.scheme))  # type: ignore[attr-defined]
@@ -129,9 +72,3 @@ def test_who_knows_the_schemes_own_damping_only_refuses_it() -> None:
     for act in (lambda: advise(BLOCK, 0.05), lambda: advise_wave(BLOCK, 5.0, 0.1), lambda: compare(BLOCK, None)):  # type: ignore[arg-type]
         with pytest.raises(InputError, match="damping tables"):
             act()
-
-
-def test_numbers_out_of_range_are_refused() -> None:
-    for key in TABLES:
-        with pytest.raises(InputError, match=key):
-            BLOCK.with_values({key: -1.0})

@@ -188,3 +188,13 @@ def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:
     soft = landing.springs_for(UNLOADED, 1.0, 1.0) / (UNLOADED.block.mass / 2)
     stiff = landing.springs_for(UNLOADED, 1.0, 1e-5) / (UNLOADED.block.mass / 8e-10)
     assert soft == pytest.approx(1.0, rel=1e-2) and stiff == pytest.approx(1.4755**2, rel=1e-2)
+
+
+def test_a_flight_of_many_periods_ends_at_the_springs_as_fast_as_it_began() -> None:
+    """At rest in itself, a block meets the springs with its own speed; one that flies off does not come back."""
+    position, velocity = np.array([1.0, 0.0]), np.array([-0.01, 0.0])
+    landed = landing._after_flight(position, velocity)
+    assert landed is not None
+    assert landed[0] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert landed[1] == pytest.approx([-0.01, 0.0], abs=1e-12)
+    assert landing._after_flight(position, -velocity) is None

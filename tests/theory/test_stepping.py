@@ -220,3 +220,19 @@ def test_spectra_of_a_scene_follow_its_scheme() -> None:
     assert spectra.critical_omega(explicit) == 2
     limit = spectra.critical_omega(explicit) / spectra.contact_frequency(explicit)
     assert limit == pytest.approx(1.51920e-3, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "weight"),
+    [
+        ("(9/16, 1)", 9 / 16),
+        ("CH 0.8", 1 / (1.8**2 * 1.2)),  # 1/((1 + r)^2 (2 - r))
+        ("HHT -0.3", 1.3**2 / 4 * 0.7),  # (1 + e)^2 (1 - e)/4
+        ("WBZ 0.5", 1 / (2 * 1.5)),  # 1/(2 (1 + r))
+        ("Bathe 1/2", 1 / 16),  # of the first half, h^2/4; the second has 1/9
+        ("TR-BDF2", (1 - math.sqrt(0.5)) ** 2),  # of both stages
+        ("leapfrog", 0.0),
+    ],
+)
+def test_the_weight_of_springs_beside_the_mass_is_that_of_the_matrix_of_a_step(scheme: str, weight: float) -> None:
+    assert SCHEMES[scheme].spring_weight == pytest.approx(weight, rel=1e-14)
