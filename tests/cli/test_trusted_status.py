@@ -119,7 +119,7 @@ def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp
         assert bool(run.failed) is failed
     found = [row.outcome for row in Results(tmp_path).rows().values()]
     assert found == [Outcome.OVERFLOW]
-    assert [name for name in study_names() if get_study(name).expects] == ["stability-small", "stability", "field"]
+    assert [name for name in study_names() if get_study(name).expects] == ["stability-small", "stability"]
 
 
 # ---- required solvers -----------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The engine of docs/field.md: its code runs as the page has it, and the page's table of problems is the code's."""
+"""The engine of docs/judge.md: it runs as it stands, and the page's table of problems is the code's."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from validation.problems.boxes import BoxQuantity, box_problems
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.user import UserSolver
 
-PAGE = (Path(__file__).parents[2] / "docs" / "field.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "judge.md").read_text(encoding="utf-8")
 GRAVITY = 9.81
 
 
 @pytest.fixture
 def engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Scene], dict[str, np.ndarray]]:
-    """Return the solve of the page's second adapter, that of rigid boxes."""
-    code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
+    """Return the solve of the example of rigid boxes."""
+    code = (DOCS / "examples/judge/impulses.py").read_text(encoding="utf-8")
     names: dict[str, Any] = {}
-    exec(compile(code, "docs/field.md", "exec"), names)
+    exec(compile(code, "impulses.py", "exec"), names)
     solve: Callable[[Scene], dict[str, np.ndarray]] = names["Impulses"]().solve
     return solve
 
@@ -74,10 +75,8 @@ def test_it_refuses_what_it_cannot_express(engine: Callable[..., Any]) -> None:
             engine(other)
 
 
-def test_the_suite_takes_it_for_a_solver_of_rigid_boxes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
-    (tmp_path / "impulses.py").write_text(code)
-    monkeypatch.syspath_prepend(str(tmp_path))
+def test_the_suite_takes_it_for_a_solver_of_rigid_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(DOCS / "examples/judge"))
     solver = UserSolver("impulses", "impulses:Impulses")
     assert solver.about()["program"] == "impulses"
 

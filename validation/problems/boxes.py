@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
+from validation.gates.gate import Status
 from validation.metrics import boxes as measures
 from validation.runs.history import Array, History
 from validation.scenes.rigid import FORCE, RigidSection
@@ -75,14 +76,6 @@ class BoxQuantity:
         margin = ROUNDING * max(abs(self.low), abs(self.high))
         return self.low - margin <= value <= self.high + margin
 
-    def beside_band(self, value: float) -> float:
-        """Return the error over the part of the band on its side: 1 is just allowed."""
-        room = self.high - self.exact if value > self.exact else self.exact - self.low
-        error = abs(value - self.exact)
-        if error == 0:
-            return 0.0
-        return error / room if room > 0 else math.inf
-
 
 @dataclass(frozen=True)
 class MeasuredQuantity:
@@ -93,18 +86,13 @@ class MeasuredQuantity:
     is_reported: bool = True  # whether the columns are there that it is measured on
 
     @property
-    def optional_and_absent(self) -> bool:
-        """Whether an answer does without a number that it may do without."""
-        return self.quantity.optional and self.value is None
-
-    @property
-    def word(self) -> str:
-        """PASS, FAIL or "not reported"."""
-        if self.optional_and_absent or not self.is_reported:
-            return "not reported"
+    def status(self) -> Status:
+        """Whether it is in its band, or not reported; a number that the positions hold and do not give fails."""
+        if not self.is_reported or (self.quantity.optional and self.value is None):
+            return Status.NOT_REPORTED
         if self.value is None:
-            return "FAIL"
-        return "PASS" if self.quantity.passes(self.value) else "FAIL"
+            return Status.FAIL
+        return Status.PASS if self.quantity.passes(self.value) else Status.FAIL
 
     @property
     def shares(self) -> tuple[float | None, float]:
@@ -114,15 +102,6 @@ class MeasuredQuantity:
         room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
         error = None if self.value is None else abs(self.value - quantity.exact) / quantity.scale
         return error, room / quantity.scale
-
-    @property
-    def beside(self) -> float | None:
-        """Error over band; infinite where a number that the positions hold cannot be measured."""
-        if self.optional_and_absent or not self.is_reported:
-            return None
-        if self.value is None:
-            return math.inf
-        return self.quantity.beside_band(self.value)
 
 
 @dataclass(frozen=True)
