@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-
 ABOUT = {
     "program": "impulses",
     "version": "1.0",
