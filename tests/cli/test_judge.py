@@ -87,6 +87,7 @@ def test_what_is_not_explained_says_what_is_right_and_what_would_tell(
     for text in (done.stdout, page):
         assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s." in text
         assert (said in text) if said else "would tell" not in text
+        assert ("time.step=0.001 --set time.steps=100" in text) == (said is not None and "half the step" in said)
     (found,) = json.loads(typed("judge", place, "locked", "--json").stdout)["answers"]
     assert ("would_tell" in found["cause"]) == bool(said)
     first = found["criteria"][0]
@@ -124,6 +125,16 @@ def test_a_scene_of_ones_own_is_answered(tmp_path: Path, scene_file: Path, undra
     (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
     done = typed("judge", tmp_path / "mine.csv", scene_file)
     assert done.returncode == 0, done.stderr
+
+
+def test_columns_of_other_names_and_signs_are_mapped(tmp_path: Path, exact: History) -> None:
+    rows = np.column_stack([exact.time, -1e3 * exact.displacement, exact.columns["contact_pressure"]])
+    np.savetxt(tmp_path / "mine.csv", rows, "%.17g", "\t", header="t\tuy\tp", comments="")
+    options = ("--columns", "time=t,displacement=uy,contact_pressure=p", "--scale", "displacement=-1e-3")
+    assert typed("judge", tmp_path / "mine.csv", "locked", *options).returncode == 0
+    assert "--scale: must be OURS=FACTOR with ours among time, displacement" in refused(
+        "judge", tmp_path / "mine.csv", "locked", "--scale", "displacement=0"
+    )
 
 
 # ---- solvers --------------------------------------------------------------------------------------------------------

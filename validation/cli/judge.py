@@ -80,6 +80,14 @@ def judge(
         list[str] | None,
         typer.Option("--require", help="Fail with status 3 if this solver gives no answer at all.", metavar="NAME"),
     ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="What a table calls its columns.", metavar="time=T,displacement=UY"),
+    ] = None,
+    scale: Annotated[
+        str | None,
+        typer.Option(help="Factors that convert its values to SI, upwards positive.", metavar="displacement=-1e-3"),
+    ] = None,
     assignments: SetOption = None,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="List all failing gates.")] = False,
     as_json: JsonOption = False,
@@ -111,7 +119,7 @@ def judge(
         problems = [_asked(name, assignments) for name in asked or ()]
         sets: list[AnswerSet] = []
         for one in _sources([source, *(beside or ())]):
-            sets += _answers(one, problems, layout, progress)
+            sets += _answers(one, problems, layout, (columns, scale), progress)
         if len(sets) == 1 and len(sets[0].answers) == 1:
             _refuse_inapplicable(sets[0])
         judged, written = _judged_and_written(sets, out, keep, progress)
@@ -148,10 +156,14 @@ def _asked(name: str, assignments: list[str] | None) -> Problem:
     return problem_of(scene)
 
 
-def _answers(source: str, problems: Sequence[Problem], layout: bool, progress: Any) -> list[AnswerSet]:
-    """Return what one source answers."""
+def _answers(
+    source: str, problems: Sequence[Problem], layout: bool, header: tuple[str | None, str | None], progress: Any
+) -> list[AnswerSet]:
+    """Return what one source answers; `header` is what tables call columns, and factors of them."""
     from validation.problems import answers
     from validation.problems.problem import names, problem
+    from validation.runs.units import factors_of, theirs_of
+    from validation.solvers.history_table import HeaderNames
     from validation.solvers.registry import is_program, is_solver, solver_names
     from validation.suite.judging import answers_of
 
@@ -162,7 +174,10 @@ def _answers(source: str, problems: Sequence[Problem], layout: bool, progress: A
     if place.is_dir() and (layout or any(place.rglob(answers.FILE))):
         return answers.read_sets(place, layout, progress, {posed.name: posed for posed in problems} or None)
     if place.is_dir() or place.is_file():
-        return [answers.read_tables(place, asked)]
+        ours = list(dict.fromkeys(["time", *(column for posed in asked for column in posed.columns)]))
+        theirs, factors = header
+        names_of_tables = HeaderNames(theirs_of(theirs, ours), factors_of(factors, ours))
+        return [answers.read_tables(place, asked, names_of_tables)]
     rule = "must be a solver, module:attribute, ./program, a file of a history or a directory of answers"
     raise InputError(rule, field="source", value=repr(source), advice=answers.EXPORT)
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from validation.metrics.values import largest
 from validation.runs.columns import unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.tables import Row, number, read_text, rows_of
-from validation.runs.units import recognised
+from validation.runs.units import factors_of, recognised, theirs_of
 
 SIDEWAYS = "horizontal_displacement"  # m, towards +x
 OURS = ("time", DISPLACEMENT, PRESSURE, SIDEWAYS)
@@ -54,48 +53,14 @@ class Foreign:
     scale: Mapping[str, float] = field(default_factory=dict)
 
 
-def _pairs(text: str | None, option: str, theirs: str, parsed: Callable[[str], Any]) -> dict[str, Any]:
-    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``, as a function parses it."""
-    pairs = {}
-    try:
-        for part in filter(str.strip, (text or "").split(",")):
-            name, _, value = map(str.strip, part.partition("="))
-            if not value or name not in OURS:
-                raise ValueError
-            pairs[name] = parsed(value)
-    except ValueError:
-        rule = f"must be OURS={theirs} with ours among {', '.join(OURS)}"
-        raise InputError(rule, field=option, value=repr(text)) from None
-    return pairs
-
-
 def parse_columns(text: str | None) -> dict[str, str]:
-    """Return the mapping of ``time=t,displacement=uy``: our column to theirs.
-
-    Raises
-    ------
-    InputError
-        A part is not ours=theirs, or names no column of ours.
-    """
-    return _pairs(text, "--columns", "THEIRS", str)
+    """Return the mapping of ``time=t,displacement=uy``: our column to theirs."""
+    return theirs_of(text, OURS)
 
 
 def parse_scale(text: str | None) -> dict[str, float]:
-    """Return the factors of ``displacement=-1e-3``: what their numbers are multiplied by.
-
-    Raises
-    ------
-    InputError
-        A part is not ours=factor, or a factor is no finite number other than zero.
-    """
-
-    def factor(number: str) -> float:
-        value = float(number)
-        if not math.isfinite(value) or value == 0:
-            raise ValueError
-        return value
-
-    return _pairs(text, "--scale", "FACTOR", factor)
+    """Return the factors of ``displacement=-1e-3``: what their numbers are multiplied by."""
+    return factors_of(text, OURS)
 
 
 def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[str, float] | None = None) -> Foreign:

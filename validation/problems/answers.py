@@ -29,7 +29,7 @@ from validation.runs.history import PRESSURE, History
 from validation.runs.units import ratios
 from validation.scenes.unknown import did_you_mean
 from validation.solvers.foreign import factor, force
-from validation.solvers.history_table import read_table
+from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
 
 FILE = "submission.json"
 EXPORT = "dda-validate export-pack DIR writes the problems, and files to fill in"
@@ -293,8 +293,10 @@ def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
         known.setdefault(answer_set.address, answer_set.place)
 
 
-def read_tables(place: Path, problems: Sequence[Problem]) -> AnswerSet:
+def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
     """Return the answers of a table, or of a directory with a table ``PROBLEM.csv`` each, of which nothing is stated.
+
+    `header` says what the tables call their columns.
 
     Raises
     ------
@@ -309,7 +311,7 @@ def read_tables(place: Path, problems: Sequence[Problem]) -> AnswerSet:
     for posed in problems:
         path = place / f"{posed.name}{TABLE}" if place.is_dir() else place
         if path.exists() or not place.is_dir():
-            history = read_answer(path, posed, defects)
+            history = read_answer(path, posed, defects, header=header)
             if history is not None:
                 answers.append(Answer(posed.name, posed, history))
     if not answers and not len(defects):
@@ -329,7 +331,13 @@ def stated_by(program: str, **fields: Any) -> AnswersData:
 # ---- one table ------------------------------------------------------------------------------------------------------
 
 
-def read_answer(path: Path, posed: Problem, defects: Defects, columns: Sequence[str] | None = None) -> History | None:
+def read_answer(
+    path: Path,
+    posed: Problem,
+    defects: Defects,
+    columns: Sequence[str] | None = None,
+    header: HeaderNames = AS_NAMED,
+) -> History | None:
     """Return the answer that a table holds; None where it has defects, or where it is blank.
 
     Parameters
@@ -342,10 +350,12 @@ def read_answer(path: Path, posed: Problem, defects: Defects, columns: Sequence[
         Which takes what is wrong.
     columns
         Those that the table has to hold; all of the problem by default.
+    header
+        What the table calls its columns.
     """
     required = posed.columns if columns is None else columns
     units = {column: posed.unit(column) for column in (*required, *posed.further_columns)}
-    table = read_table(path, posed.instants, units, required, defects, ABSENT)
+    table = read_table(path, posed.instants, units, required, defects, ABSENT, header=header)
     if table is None:
         return None
     before = len(defects)

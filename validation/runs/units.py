@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from typing import TypeVar
+
+from validation.errors import InputError
 
 # SI unit to others, and one of each in SI
 OTHERS: Mapping[str, Mapping[str, float]] = {
@@ -16,6 +19,7 @@ OTHERS: Mapping[str, Mapping[str, float]] = {
     "N": {"kN": 1e3, "MN": 1e6},
 }
 WORDS = {"ms": "milliseconds", "us": "microseconds", "um": "micrometres", "deg": "degrees"}
+Value = TypeVar("Value")
 _BRACKETED = re.compile(r"(.*\S)\s*[\[(]\s*(\S+)\s*[\])]")
 
 
@@ -56,3 +60,49 @@ def recognised(text: str, units: Mapping[str, str]) -> tuple[str, float] | None:
 def ratios(unit: str) -> dict[float, str]:
     """Return the other units in words, by what a value in each is over the value in SI."""
     return {1 / factor: WORDS.get(symbol, symbol) for symbol, factor in OTHERS.get(unit, {}).items()}
+
+
+def theirs_of(text: str | None, ours: Collection[str]) -> dict[str, str]:
+    """Return what a file calls columns, of ``time=t,displacement=uy``: our column to theirs.
+
+    Raises
+    ------
+    InputError
+        A part is not ours=theirs, or names no column of ours.
+    """
+    return _pairs(text, "--columns", "THEIRS", ours, str)
+
+
+def factors_of(text: str | None, ours: Collection[str]) -> dict[str, float]:
+    """Return the factors by which a file's numbers become SI, of ``displacement=-1e-3``.
+
+    Raises
+    ------
+    InputError
+        A part is not ours=factor, or a factor is no finite number other than zero.
+    """
+
+    def factor(number: str) -> float:
+        value = float(number)
+        if not math.isfinite(value) or value == 0:
+            raise ValueError
+        return value
+
+    return _pairs(text, "--scale", "FACTOR", ours, factor)
+
+
+def _pairs(
+    text: str | None, option: str, theirs: str, ours: Collection[str], parsed: Callable[[str], Value]
+) -> dict[str, Value]:
+    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``, as a function parses it."""
+    pairs = {}
+    try:
+        for part in filter(str.strip, (text or "").split(",")):
+            name, _, value = map(str.strip, part.partition("="))
+            if not value or name not in ours:
+                raise ValueError
+            pairs[name] = parsed(value)
+    except ValueError:
+        rule = f"must be OURS={theirs} with ours among {', '.join(ours)}"
+        raise InputError(rule, field=option, value=repr(text)) from None
+    return pairs

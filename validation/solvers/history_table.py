@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,24 @@ LARGEST_FILE = 100_000_000  # bytes
 LARGEST = 1e100  # of a value in SI units; the squares of larger ones overflow
 SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
 TIME = "time"
+
+
+@dataclass(frozen=True)
+class HeaderNames:
+    """What a table calls columns, and factors by which its numbers become SI where its names do not say so."""
+
+    theirs: Mapping[str, str] = field(default_factory=dict)
+    factors: Mapping[str, float] = field(default_factory=dict)
+
+    def recognised(self, text: str, known: Mapping[str, str]) -> tuple[str, float] | None:
+        """Return which of the known columns a header names, and the factor to SI; None where it names none."""
+        found = next(((column, 1.0) for column, theirs in self.theirs.items() if theirs == text), None)
+        if found is None:
+            found = recognised(text, {column: unit for column, unit in known.items() if column not in self.theirs})
+        return None if found is None else (found[0], found[1] * self.factors.get(found[0], 1.0))
+
+
+AS_NAMED = HeaderNames()
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +55,7 @@ def read_table(
     defects: Defects,
     absent: str | None = None,
     text: str | None = None,
+    header: HeaderNames = AS_NAMED,
 ) -> HistoryTable | None:
     """Return the history of a table; None where it has defects, or where it is blank.
 
@@ -58,18 +77,20 @@ def read_table(
         What one does about a column that the program cannot report.
     text
         The table where it is no file's: what a program has printed, of which the path is the name.
+    header
+        What the table calls its columns, and what else its numbers are to be multiplied by.
     """
     before = len(defects)
     rows = _rows(path, text, len(instants), defects)
     if not rows:
         return None
-    header = rows[0]
+    cells = rows[0]
     known = {TIME: "s"} | dict(units)
-    found = [recognised(cell.text, known) for cell in header]
+    found = [header.recognised(cell.text, known) for cell in cells]
     timed = any(one is not None and one[0] == TIME for one in found)
-    if timed and len(header) > 1 and len(rows) > 1 and not any(cell.text for row in rows[1:] for cell in row[1:]):
+    if timed and len(cells) > 1 and len(rows) > 1 and not any(cell.text for row in rows[1:] for cell in row[1:]):
         return None
-    places = _places(path, header, found, known, (TIME, *required), absent, defects)
+    places = _places(path, cells, found, known, (TIME, *required), absent, defects)
     if len(defects) > before:
         return None
     values = _numbers(path, rows, [column for column in known if column in places], places, defects)
@@ -82,10 +103,10 @@ def read_table(
         columns = {column: numbers[1:] for column, numbers in columns.items()}
         body = body[1:]
     times = columns.pop(TIME)
-    _check_times(path, header, [row[places[TIME]] for row in body], times, instants, defects)
+    _check_times(path, cells, [row[places[TIME]] for row in body], times, instants, defects)
     if len(defects) > before:
         return None
-    return HistoryTable(History(instants, columns), {column: header[places[column]] for column in columns})
+    return HistoryTable(History(instants, columns), {column: cells[places[column]] for column in columns})
 
 
 def _rows(path: Path, text: str | None, count: int, defects: Defects) -> list[Row]:

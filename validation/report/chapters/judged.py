@@ -17,6 +17,7 @@ from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
 from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
 from validation.scenes.rigid import POSE
+from validation.scenes.tables import TimeSection
 from validation.suite.judging import JudgedAnswer
 
 ANSWER = "answer"
@@ -128,15 +129,24 @@ def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
         missing = ", ".join(map(answer.problem.named, judgement.withheld))
         blocks.append(Paragraph(f"No full PASS: the problem asks for {missing} too; report it to be judged."))
     if answer.cause is not None:
-        passing_step = answer.cause.passing_step
-        passes = "" if passing_step is None else f" This scheme passes at a step of {short(passing_step)} s."
-        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}.{passes} {reached(answer)}"))
+        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
+        time = answer.problem.scene.time
+        if answer.cause.passing_step is not None:
+            every = round(time.step / answer.cause.passing_step)
+            blocks.append(Paragraph(f"This scheme passes at a step of {_step(time, every)}."))
         if answer.cause.would_tell:
-            blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
+            half = "" if answer.cause.alike else f"; half the step is {_step(time, 2)}"
+            blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}{half}."))
     blocks += [Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."), _criteria(answer)]
     if judgement.quantities:
         blocks.append(numbers_table(judgement.quantities))
     return blocks
+
+
+def _step(time: TimeSection, parts: int) -> str:
+    """Return a part of the step of a scene, and what to type for it."""
+    step = time.step / parts
+    return f"{short(step, 4)} s: --set time.step={step:.12g} --set time.steps={time.steps * parts}"
 
 
 def page(answer: JudgedAnswer, directory: Path) -> Blocks:
