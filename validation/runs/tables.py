@@ -7,6 +7,7 @@ or D; quotes; comments after # or %, and lines that begin with // or !; a byte-o
 from __future__ import annotations
 
 import io
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,7 +43,7 @@ class Cell:
 Row = Sequence[Cell]
 
 
-def read_text(path: Path, largest: int) -> str:
+def read_text(path: Path, largest: float = math.inf) -> str:
     """Return the text of a file of at most so many bytes.
 
     Raises
