@@ -143,7 +143,7 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
 
 
 def test_an_error_is_beside_the_part_of_the_band_on_its_side() -> None:
-    one = BoxQuantity("n", "1", 2.0, 1.0, 5.0, 1.0, "", "why", lambda history: None)
+    one = BoxQuantity("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
     assert [MeasuredQuantity(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
     assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
 
