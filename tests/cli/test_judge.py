@@ -236,6 +236,19 @@ def test_the_table_is_a_page_to_print(tmp_path: Path) -> None:
     assert (tmp_path / "t.pdf").read_bytes().startswith(b"%PDF")
 
 
+def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program is named without its folder; tables that are not asked are left alone."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").write_text("#!/bin/sh\necho a wall >&2\nexit 77\n")
+    (tmp_path / "mine").chmod(0o755)
+    done = typed("judge", "mine", "locked", "standing", "impact")
+    assert done.returncode == 1 and "0 of 3 PASS, 3 not applicable" in done.stdout
+    assert done.stdout.count("a wall") == 1 and "\n  locked, standing, impact\n" in done.stdout
+    answered(tmp_path / "answers", 1.001)
+    (answer,) = json.loads(typed("judge", "answers", "locked", "--json").stdout)["answers"]
+    assert (answer["problem"], answer["verdict"]) == ("locked", "PASS")
+
+
 def test_rigid_boxes_are_judged_by_numbers(undrawn: None) -> None:
     done = typed("judge", "dda", "impact")
     assert done.returncode == 1, done.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -169,6 +170,8 @@ def _answers(
 
     asked = problems or [problem(name) for name in names()]
     place = Path(source)
+    if os.sep not in source and source not in solver_names() and is_program(os.path.join(".", source)):
+        source = os.path.join(".", source)
     if source in solver_names() or is_program(source) or (is_solver(source) and ":" in source):
         return [answers_of(source, asked, progress)]
     if place.is_dir() and (layout or any(place.rglob(answers.FILE))):
@@ -238,17 +241,25 @@ def _print(judged: Sequence[JudgedSet], as_json: bool) -> None:
 
 def _print_set(judged: JudgedSet) -> None:
     """Print the verdict on each answer of a program, then how many passed."""
+    from validation.gates.gate import Status
     from validation.report.blocks import TableColumn, table
     from validation.report.chapters.answers import answered, cells, headline
 
     echo(f"{judged.answers.title}: {headline(judged)}\n")
     rows = []
+    unanswered: dict[str, list[str]] = {}
     for cell in answered(judged):
+        if cell.status in (Status.NOT_APPLICABLE, Status.NOT_RUN):
+            unanswered.setdefault(f"{cell.status}: {cell.reason}", []).append(cell.problem)
+            continue
         explanation = "; ".join(text for text in (cell.column, cell.reason) if text)
         rows.append((cell.problem, str(cell.status), cell.error, cell.allowed, explanation))
     error, allowed = (TableColumn(title, "decimal") for title in ("error", "allowed"))
-    print_blocks([table(("problem", "verdict", error, allowed, "what decides, and the cause"), rows)])
-    missing = len(cells(judged)) - len(rows)
+    if rows:
+        print_blocks([table(("problem", "verdict", error, allowed, "what decides, and the cause"), rows)])
+    for reason, problems in unanswered.items():
+        echo(f"\n{reason}\n  {', '.join(problems)}")
+    missing = len(cells(judged)) - len(answered(judged))
     echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
 

@@ -216,6 +216,8 @@ def _answers(
     tables = _tables(folder)
     for path in tables:
         name = path.name.removesuffix(TABLE)
+        if own is not None and name not in own and name in packs()[PACK]:
+            continue  # it answers a problem that is not asked
         is_later = name not in digests and name in this_pack
         if name not in digests and not is_later:
             advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
