@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import typer
 from conftest import SCENE, beside, typed
+from oracles.answers import answered
 from oracles.pages import write_my_solver
-from oracles.submissions import right_answer
 
 from validation import load_scene, solve
 from validation.cli import app as command_line
@@ -22,7 +22,7 @@ GROUP = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 PARTS = {f"advise {name}": part for name, part in GROUP["advise"].commands.items()}
 COMMANDS = GROUP | {name: part for name, part in PARTS.items() if name != "advise everything"}
 COMMANDS["advise"] = PARTS["advise everything"]  # which is what no part by name is
-FAIL = [["judge", "locked", "--solver", "my_solver:solve"]]  # by the damping of the scheme that the scene names
+FAIL = [["judge", "my_solver:solve", "locked"]]  # by the damping of the scheme that the scene names
 # A study is timed for minutes and a committed file rewritten; whole studies, packs and sites have tests of their own.
 UNTRIED = {"record", "claims", "export-pack"}
 
@@ -60,7 +60,7 @@ def test_examples_run_as_they_stand(
     (tmp_path / "my-scene.toml").write_text(SCENE)
     write_my_solver(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
-    right_answer(tmp_path / "my-answer")
+    answered(tmp_path / "answers", 1.001)
     run = solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
     table = np.column_stack([run.time, -1000 * run.displacement])  # millimetres, downwards
     np.savetxt(tmp_path / "theirs.csv", table, delimiter=",", header="t,uy", comments="", fmt="%.17g")

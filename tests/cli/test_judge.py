@@ -1,4 +1,4 @@
-"""``judge``: a stranger's two files, or a solver on any scene, become a verdict, a page and a badge."""
+"""``judge``: a solver, a table or folders of answers become verdicts, pages and badges; defects leave nothing."""
 
 from __future__ import annotations
 
@@ -6,22 +6,26 @@ import json
 import re
 from html import unescape
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from conftest import refused, typed
+from oracles.answers import answered
 from oracles.processes import answer_here
-from oracles.submissions import submitted
 
-from validation.problems import cause
+from validation.problems import bands, boxes, packs
 from validation.problems.bands import standard
+from validation.problems.cause import Cause
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
-from validation.problems.problem import problem, problem_of
+from validation.problems.problem import ASKS, names, problem, problem_of
 from validation.report.chapters import judged
 from validation.runs.history import History
 from validation.scenes.scene import load_scene
+from validation.solvers import registry
+from validation.suite import judging
 
 
 @pytest.fixture(scope="module")
@@ -31,150 +35,120 @@ def exact() -> History:
 
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the figures, which take most of a page's time."""
+    """Leave out the figures and the search for causes, which take most of the time."""
     monkeypatch.setattr(judged, "figures", lambda *given: ())
-
-
-def answered(place: Path, history: History, **fields: object) -> Path:
-    columns = [name for name in history.columns if f"{name}_m" not in fields.get("not_reported", ())]
-    return submitted(place, table_of(history, columns), **fields)
+    monkeypatch.setattr(judging, "cause", lambda *given: Cause("a <cause> & more", ("factor",)))
 
 
 def scaled(history: History, factor: float) -> History:
     return History(history.time, {name: factor * values for name, values in history.columns.items()})
 
 
-def test_a_right_answer_passes_with_page_and_badge(tmp_path: Path, exact: History) -> None:
-    place = answered(tmp_path / "mine", exact)
-    done = typed("judge", place)
-    assert done.returncode == 0, done.stderr
-    assert "Bob's <code> & co 1.0 on locked: PASS: it is at most below 1e-9 % off" in done.stdout
-    assert "Cause:" not in done.stdout
-    assert re.search(r"displacement_m +PASS +below 1e-9 % +5.7 % +the density +0.1", done.stdout)
-    assert sorted(path.name for path in place.iterdir()) == [
-        "answer.csv",
-        "badge.svg",
-        "judged.html",
-        "submission.json",
-    ]
-    badge = ElementTree.parse(place / "badge.svg").getroot()
-    assert badge.attrib["aria-label"] == "DDA field: locked: PASS below 1e-9 %"
-    page = (place / "judged.html").read_text(encoding="utf-8")
-    assert "Bob&#39;s &lt;code&gt; &amp; co 1.0 on the problem locked" in page
-    assert page.count('src="data:image/svg+xml,') == 2 and "average acceleration, 0.1 ms" in page and "PASS" in page
-    assert not re.search(r'(src|href)="(?!data:|#)', page)  # it needs no other file
-    assert not re.search(r"×10⁻¹[3-9]", page)
+def table(place: Path, history: History) -> Path:
+    """Write the answer to `locked` as a table alone."""
+    place.write_text(table_of(problem("locked"), history, [*history.columns]))
+    return place
 
 
-@pytest.mark.parametrize(
-    ("factor", "said", "badge"),
-    [
-        (0.0, "FAIL: it is 100 % off in displacement_m, where 5.7 % is allowed", "FAIL 100 %"),
-        pytest.param(
-            1.12,
-            "FAIL: it is 12 % off in displacement_m, where 5.7 % is allowed",
-            "FAIL 12 %",
-            marks=pytest.mark.long,  # its cause is sought among all that are known
-        ),
-    ],
-)
-def test_a_wrong_answer_fails(
-    factor: float, said: str, badge: str, tmp_path: Path, exact: History, undrawn: None
-) -> None:
-    place = answered(tmp_path / "mine", scaled(exact, factor))
-    done = typed("judge", place, "--out", tmp_path / "pages")
-    assert done.returncode == 1
-    assert said in done.stdout
-    assert "Cause: " in done.stdout
-    assert sorted(path.name for path in (tmp_path / "pages").iterdir()) == ["badge.svg", "judged.html"]
-    assert badge in (tmp_path / "pages/badge.svg").read_text()
-    assert said in (tmp_path / "pages/judged.html").read_text(encoding="utf-8")
-    assert not (place / "badge.svg").exists()
+# ---- one answer -----------------------------------------------------------------------------------------------------
+
+
+def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path: Path, exact: History) -> None:
+    answered(tmp_path / "mine", 1.0, ("locked",))
+    for arguments, who in (
+        ((table(tmp_path / "my.csv", exact), "locked"), "my"),
+        ((tmp_path / "mine",), "Bob's <code>"),
+    ):
+        done = typed("judge", *arguments)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith(who) and " on locked: PASS: it is at most below 1e-9 % off" in done.stdout
+        assert "Cause:" not in done.stdout and "bit for bit the exact motion" in done.stdout
+        assert re.search(r"displacement_m +PASS +below 1e-9 % +5.7 % +the density +0.1", done.stdout)
+    found = json.loads(typed("judge", table(tmp_path / "my.csv", scaled(exact, 1.001)), "locked", "--json").stdout)
+    assert found["answers"][0]["warnings"] == []
 
 
 @pytest.mark.parametrize(
     ("why", "said"),
     [
-        (cause.Cause(), "hat would tell: the same run at half the step"),
-        (cause.Cause("not explained: the rows ...", alike=("a", "b")), "hat would tell: an answer to another problem"),
-        (cause.Cause("it is damped", ("mass-damping",)), None),
+        (Cause(), "What would tell: the same run at half the step"),
+        (Cause("not explained: the rows ...", alike=("a", "b")), "What would tell: an answer to another problem"),
+        (Cause("it is damped", ("mass-damping",)), None),
     ],
 )
 def test_what_is_not_explained_says_what_is_right_and_what_would_tell(
-    why: cause.Cause, said: str | None, tmp_path: Path, exact: History, undrawn: None, monkeypatch: pytest.MonkeyPatch
+    why: Cause, said: str | None, tmp_path: Path, exact: History, undrawn: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cause, "cause", lambda *given: why)
+    monkeypatch.setattr(judging, "cause", lambda *given: why)
     wrong = {name: x * np.where(exact.time > 0.0501, 3.0, 1.0) for name, x in exact.columns.items()}
-    place = answered(tmp_path / "mine", History(exact.time, wrong))
-    done = typed("judge", place)
-    page = (place / "judged.html").read_text(encoding="utf-8")
-    assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s.\n" in done.stdout
-    assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s." in page
-    assert (said in done.stdout and said in page) if said else "would tell" not in done.stdout + page
-    found = json.loads(typed("judge", place, "--json").stdout)
+    place = table(tmp_path / "mine.csv", History(exact.time, wrong))
+    done = typed("judge", place, "locked", "--out", tmp_path / "site")
+    page = unescape((tmp_path / "site/answers_mine.html").read_text(encoding="utf-8"))
+    for text in (done.stdout, page):
+        assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s." in text
+        assert (said in text) if said else "would tell" not in text
+        assert ("time.step=0.001 --set time.steps=100" in text) == (said is not None and "half the step" in said)
+    (found,) = json.loads(typed("judge", place, "locked", "--json").stdout)["answers"]
     assert ("would_tell" in found["cause"]) == bool(said)
-    first = found["columns"][0]
+    first = found["criteria"][0]
     assert (first["within_until_s"], first["until_s"]) == (pytest.approx(0.05), pytest.approx(0.1))
 
 
 def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
     tmp_path: Path, exact: History, undrawn: None
 ) -> None:
-    place = submitted(tmp_path / "mine", table_of(exact, ["displacement"]), not_reported=["contact_pressure_Pa"])
-    done = typed("judge", place)
+    place = answered(tmp_path / "mine", 1.0, ("locked",), not_reported={"locked": ["contact_pressure_Pa"]})
+    (place / "locked.csv").write_text(table_of(problem("locked"), exact, ["displacement"]))
+    done = typed("judge", place, "--out", tmp_path / "site")
     assert done.returncode == 1
     assert "PARTIAL: PASS on displacement; contact_pressure not reported" in done.stdout
     assert "No full PASS: the problem asks for contact_pressure_Pa too" in done.stdout
-    for file in ("badge.svg", "judged.html"):
-        text = (place / file).read_text(encoding="utf-8")
-        assert "PARTIAL" in text and "contact_pressure not reported" in text
-    found = json.loads(typed("judge", place, "--json").stdout)
+    badge = ElementTree.parse(tmp_path / "site/badge_bob-s-code-co_1.0_default.svg").getroot()
+    assert badge.attrib["aria-label"].endswith("default: 0 of 1 PASS, 1 PARTIAL")
+    (found,) = json.loads(typed("judge", place, "--json").stdout)["answers"]
     assert (found["verdict"], found["not_reported"]) == ("PARTIAL", ["contact_pressure_Pa"])
 
 
-def test_bad_input_is_one_line_and_writes_nothing(tmp_path: Path, exact: History) -> None:
-    place = answered(tmp_path / "mine", exact, pack="1.0")
-    done = typed("judge", place)
-    assert done.returncode == 2 and f": pack: must be one of {PACK}, " in done.stderr
-    assert len(list(place.iterdir())) == 2
-    for arguments, said in (
-        (("judge", tmp_path / "none"), "must be a directory with submission.json"),
-        (("judge", "locked", "--solver", "nonsense"), "solver: must be one of"),
-        (("judge", "locked", "--solver", "bar-events"), "does not apply: it requires contact.law"),
-        (("judge", "nonsense", "--solver", "dda"), "nonsense: no such scene file"),
-        (("judge", place, "--set", "time.step=1"), "--set: goes with --scene or --solver"),
-        (("judge", place, "--scene", "figures-3-4"), "one value must be picked for time.step"),
-        (("judge", "figure-8", "--solver", "dda", "--scene", "figure-8"), "--scene: goes with a submission"),
-    ):
-        done = typed(*arguments)
-        assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
-
-
-def test_a_page_without_its_badge_is_not_left(tmp_path: Path, exact: History, undrawn: None) -> None:
-    place = answered(tmp_path / "mine", exact)
-    (place / "badge.svg").mkdir()
-    done = typed("judge", place)
-    assert done.returncode == 2 and "badge.svg: must be a file or nothing yet, got a directory" in done.stderr
-    assert sorted(path.name for path in place.iterdir()) == ["answer.csv", "badge.svg", "submission.json"]
-
-
-def test_control_characters_are_written_out(tmp_path: Path, exact: History, undrawn: None) -> None:
-    place = answered(tmp_path / "mine", exact, program="a\x1b[31m\u202e", settings="one\n  two")
-    done = typed("judge", place)
+def test_control_characters_are_written_out(tmp_path: Path, undrawn: None) -> None:
+    fields = {"program": "a\x1b[31m\u202e", "settings": "one\n  two"}
+    place = answered(tmp_path / "mine", 1.001, ("locked",), **fields)
+    done = typed("judge", place, "--out", tmp_path / "site")
     assert "a\\x1b[31m\\u202e 1.0 on locked: PASS" in done.stdout
-    page = (place / "judged.html").read_text(encoding="utf-8")
-    assert "\x1b" not in page and "\u202e" not in page and "one two" in page
+    pages = [path.read_text(encoding="utf-8") for path in (tmp_path / "site").glob("*.html")]
+    assert len(pages) == 3 and not any("\x1b" in page or "\u202e" in page for page in pages)
+    assert sum("one two" in page for page in pages) == 2
+
+
+def test_a_scene_of_ones_own_is_answered(tmp_path: Path, scene_file: Path, undrawn: None) -> None:
+    scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
+    own = problem_of(load_scene(scene_file))
+    (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
+    done = typed("judge", tmp_path / "mine.csv", scene_file)
+    assert done.returncode == 0, done.stderr
+
+
+def test_columns_of_other_names_and_signs_are_mapped(tmp_path: Path, exact: History) -> None:
+    rows = np.column_stack([exact.time, -1e3 * exact.displacement, exact.columns["contact_pressure"]])
+    np.savetxt(tmp_path / "mine.csv", rows, "%.17g", "\t", header="t\tuy\tp", comments="")
+    options = ("--columns", "time=t,displacement=uy,contact_pressure=p", "--scale", "displacement=-1e-3")
+    assert typed("judge", tmp_path / "mine.csv", "locked", *options).returncode == 0
+    assert "--scale: must be OURS=FACTOR with ours among time, displacement" in refused(
+        "judge", tmp_path / "mine.csv", "locked", "--scale", "displacement=0"
+    )
+
+
+# ---- solvers --------------------------------------------------------------------------------------------------------
 
 
 def test_a_solver_is_judged_on_any_scene(tmp_path: Path, undrawn: None) -> None:
-    """The step of 2 ms damps; one of 10 us and average acceleration does not."""
-    habit = typed("judge", "locked", "--solver", "dda")
+    """The step of 2 ms damps; one of 0.1 ms and average acceleration does not."""
+    habit = typed("judge", "dda", "locked")
     assert habit.returncode == 1 and "dda on locked: FAIL" in habit.stdout and "wrote" not in habit.stdout
     values = ("time.alpha=0.25", "time.delta=0.5", "time.step=1e-4", "time.steps=300", "time.start=consistent")
     sets = [word for value in (*values, "contact.stiffness=3e8") for word in ("--set", value)]
-    fine = typed("judge", "field-locked", "--solver", "dda", *sets, "--out", tmp_path / "page")
+    fine = typed("judge", "dda", "locked", *sets, "--out", tmp_path / "site")
     assert fine.returncode == 0, fine.stdout + fine.stderr
-    assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "page" / "judged.html").exists()
+    assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "site/answers_dda.html").exists()
 
 
 SAME_OR_NOT = """
@@ -191,10 +165,24 @@ def noisy(scene):
     columns = exact(scene).columns
     return {name: x * (1 + 0.02 * np.random.default_rng().standard_normal(x.shape)) for name, x in columns.items()}
 
+def broken(scene):
+    raise OSError("no disk")
+
+def away(scene):
+    raise NotImplementedError("Away is not installed: apt-get")
+
 def rounded(scene):
     columns = exact(scene).columns
     return {name: x * (1 + 1e-13 * np.random.default_rng().standard_normal(x.shape)) for name, x in columns.items()}
 """
+
+
+@pytest.fixture
+def same_or_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None) -> None:
+    """Write the solvers of a user, which answer in this process."""
+    (tmp_path / "same_or_not.py").write_text(SAME_OR_NOT)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    answer_here(monkeypatch)
 
 
 @pytest.mark.parametrize(
@@ -206,46 +194,255 @@ def rounded(scene):
         ("rounded", ""),
     ],
 )
+@pytest.mark.usefixtures("same_or_not")
 def test_an_answer_of_the_suite_and_one_that_does_not_repeat_are_told_on_the_page(
-    solver: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None
+    solver: str, said: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "same_or_not.py").write_text(SAME_OR_NOT)
-    monkeypatch.syspath_prepend(str(tmp_path))
-    answer_here(monkeypatch)
-    monkeypatch.setattr(cause, "cause", lambda *given: cause.Cause())
-    done = typed("judge", "locked", "--solver", f"same_or_not:{solver}", "--out", tmp_path / "page", "--json")
-    (*warnings,) = json.loads(done.stdout)["warnings"]
+    done = typed("judge", f"same_or_not:{solver}", "locked", "--out", tmp_path / "site", "--json")
+    (*warnings,) = json.loads(done.stdout)["answers"][0]["warnings"]
     assert [sentence[: len(said)] for sentence in warnings] == ([said] if said else [])
-    page = unescape((tmp_path / "page/judged.html").read_text(encoding="utf-8"))
-    assert all(sentence in page for sentence in warnings)
+    (page,) = (tmp_path / "site").glob("answers_*.html")
+    assert all(sentence in unescape(page.read_text(encoding="utf-8")) for sentence in warnings)
 
 
-def test_the_callers_own_scene(tmp_path: Path, scene_file: Path, undrawn: None) -> None:
-    scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
-    own = problem_of(load_scene(scene_file))
-    place = answered(tmp_path / "mine", standard(own).exact, problem=own.name)
-    done = typed("judge", place, "--scene", scene_file)
-    assert done.returncode == 0, done.stderr
+@pytest.mark.usefixtures("same_or_not")
+def test_programs_stand_beside_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not applicable, what raises and what is not there are no failures of the others, nor hidden by them."""
+    brought = {"mine": "same_or_not:rounded", "broken": "same_or_not:broken", "away": "same_or_not:away"}
+    monkeypatch.setattr(registry, "entry_points", lambda: brought)
+    asked = ("installed", "locked", "rocking", "--beside", "dda")
+    done = typed("judge", *asked)
+    assert done.returncode == 1, done.stderr
+    header, locked, rocking, times = done.stdout.splitlines()[1:5]
+    assert header.split() == ["Problem", "away", "broken", "mine", "dda"] or "mine" in header
+    assert "PASS" in locked and "NOT RUN" in locked and "FAIL 51 % of 5.7 %" in locked
+    assert rocking.count("not applicable") == 3 and times.startswith("time [s]")
+    assert "no disk" in done.stdout and "Away is not installed: apt-get" in done.stdout
+    found = json.loads(typed("judge", *asked, "--json").stdout)["answers"]
+    assert {row["program"]: row["verdict"] for row in found if row["problem"] == "locked"} == {
+        "mine": "PASS", "broken": "NOT RUN", "away": "NOT RUN", "dda": "FAIL",
+    }  # fmt: skip
+    required = typed("judge", *asked, "--require", "away", "--require", "mine")
+    assert required.returncode == 3 and "--require: away answered nothing: " in required.stderr
+    assert typed("judge", *asked, "--require", "mine").returncode == 1
+    site = typed("judge", *asked, "--out", tmp_path / "site")
+    assert site.returncode == 1 and (tmp_path / "site/index.html").exists()
+
+
+@pytest.mark.usefixtures("same_or_not")
+def test_the_table_is_a_page_to_print(tmp_path: Path) -> None:
+    done = typed("judge", "dda", "locked", "--beside", "same_or_not:rounded", "--out", tmp_path / "t.pdf")
+    assert done.returncode == 1, done.stderr
+    assert (tmp_path / "t.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program is named without its folder; tables that are not asked are left alone."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").write_text("#!/bin/sh\necho a wall >&2\nexit 77\n")
+    (tmp_path / "mine").chmod(0o755)
+    done = typed("judge", "mine", "locked", "standing", "impact")
+    assert done.returncode == 1 and "0 of 3 PASS, 3 not applicable" in done.stdout
+    assert done.stdout.count("a wall") == 1 and "\n  locked, standing, impact\n" in done.stdout
+    answered(tmp_path / "answers", 1.001)
+    (answer,) = json.loads(typed("judge", "answers", "locked", "--json").stdout)["answers"]
+    assert (answer["problem"], answer["verdict"]) == ("locked", "PASS")
 
 
 def test_rigid_boxes_are_judged_by_numbers(undrawn: None) -> None:
-    done = typed("judge", "impact", "--solver", "dda")
+    done = typed("judge", "dda", "impact")
     assert done.returncode == 1, done.stderr
     assert re.search(r"speed of the rebound +FAIL", done.stdout) and re.search(r"time of contact +PASS", done.stdout)
     assert "cause" not in done.stdout
-    done = typed("judge", "standing", "--solver", "rigid-exact", "--set", "rigid.friction=19")
+    done = typed("judge", "rigid-exact", "standing", "--set", "rigid.friction=19")
     assert done.returncode == 0, done.stderr
     assert re.search(r"distance slid +PASS", done.stdout)
-    assert "rigid.gravity: must be that of the problem" in refused(
-        "judge", "impact", "--solver", "dda", "--set", "rigid.gravity=3"
-    )
+    assert "rigid.gravity: must be that of the problem" in refused("judge", "dda", "impact", "--set", "rigid.gravity=3")
 
 
 @pytest.mark.long
-def test_a_column_on_contacts_is_judged(tmp_path: Path, undrawn: None) -> None:
-    """The step of the habit damps; the badge and the page carry names of columns with their units."""
-    done = typed("judge", "mass-ratio", "--solver", "dda", "--out", tmp_path)
+def test_a_column_on_contacts_is_judged(undrawn: None) -> None:
+    """The step of the habit damps; names of columns carry their units."""
+    done = typed("judge", "dda", "mass-ratio")
     assert done.returncode == 1, done.stderr
-    assert "Cause: DDA's usual scheme" in done.stdout
-    assert re.search(r"force_3_Pa +FAIL", done.stdout) and re.search(r"displacement_2_m +PASS", done.stdout)
-    assert "the contacts&#39; stiffness" in (tmp_path / "judged.html").read_text(encoding="utf-8")
+    assert re.search(r"force_3_Pa +FAIL .* the contacts' stiffness", done.stdout)
+    assert re.search(r"displacement_2_m +PASS", done.stdout)
+
+
+def test_the_help_names_every_problem() -> None:
+    words = re.findall(r"[\w-]+", typed("judge", "--help").stdout)
+    assert {*ASKS, *boxes.ASKS} <= set(words)
+
+
+# ---- folders --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def layout(tmp_path: Path) -> Path:
+    """Return a layout of two programs, one at two steps."""
+    place = tmp_path / "submissions"
+    for name, factor, step in (("default", 1.04, 2e-3), ("fine-step", 1.01, 1e-3)):
+        folder = place / "bob-s-code-co/1.0" / name
+        answered(folder, factor, settings_name=name, step_s=step)
+    answered(place / "other/2.0/default", 1.001, ("locked",), program="Other", version="2.0", step_s=None)
+    return place
+
+
+def test_a_folder_is_judged_and_each_problem_told(tmp_path: Path, undrawn: None) -> None:
+    answered(tmp_path / "mine", 1.01)
+    done = typed("judge", tmp_path / "mine")
+    assert done.returncode == 1, done.stderr
+    assert "Bob's <code> & co 1.0 default: 2 of 3 PASS, 1 FAIL\n" in done.stdout
+    assert re.search(r"locked +PASS +1 % +5.7 %  displacement_m\n", done.stdout)
+    assert re.search(r"column +FAIL +1 % +0.82 %  displacement_2_m; cause: a <cause> & more\n", done.stdout)
+    assert f"{len(names()) - 3} problems of the pack are not answered" in done.stdout
+    assert sorted(path.suffix for path in (tmp_path / "mine").iterdir()) == [".csv", ".csv", ".csv", ".json"]
+    answered(tmp_path / "right", 1.001, ("locked", "rocking"))
+    assert typed("judge", tmp_path / "right").returncode == 0
+
+
+def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_path: Path, undrawn: None) -> None:
+    done = typed("judge", layout, "--layout", "--out", tmp_path / "site")
+    assert done.returncode == 1, done.stderr
+    files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "site").iterdir()}
+    stems = ("bob-s-code-co_1.0_default", "bob-s-code-co_1.0_fine-step", "other_2.0_default")
+    pages = {"index.html", "program_bob-s-code-co.html", "program_other.html", *(f"answers_{s}.html" for s in stems)}
+    assert set(files) == pages | {f"badge_{stem}.svg" for stem in stems} | {"verdicts.json", "page.css", "filter.js"}
+    for name, text in files.items():
+        assert str(tmp_path) not in text
+        if name.endswith(".html"):
+            addresses = re.findall(r'(?:href|src)="([^"#]+)(?:#[^"]*)?"', text)
+            assert set(addresses) <= {*files, "data:,"}, name
+            assert "<code>" not in text and "<cause>" not in text
+        if name.endswith(".svg"):
+            ElementTree.fromstring(text)
+    index = unescape(re.sub(r"\s+", " ", files["index.html"]))
+    assert "Not answered by any of them: opening, rebound," in index
+    assert '<td class="outcome fail">FAIL 4 % of 1.5 %</td>' in index
+    assert '<td class="outcome pass">PASS 1 % of 5.7 %</td>' in index
+    assert "rotation_rad; cause: a <cause> & more" in index
+    program = unescape(re.sub(r"\s+", " ", files["program_bob-s-code-co.html"]))
+    assert "4 % of 1.5 %" in program and "fine-step" in program  # of both settings
+
+
+def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path: Path, undrawn: None) -> None:
+    typed("judge", layout, "--out", tmp_path / "site")
+    verdicts = json.loads((tmp_path / "site/verdicts.json").read_text(encoding="utf-8"))
+    assert (verdicts["format"], verdicts["pack"]) == ("dda-validation verdicts", PACK)
+    rows = {(row["program"], row["settings_name"], row["problem"]): row for row in verdicts["answers"]}
+    assert len(rows) == 7
+    row = rows["Bob's <code> & co", "default", "rocking"]
+    assert (row["verdict"], row["step_s"], row["cause"]["ids"]) == ("FAIL", 0.002, ["factor"])
+    assert (row["criteria"][0]["error"], row["criteria"][0]["allowed"]) == (0.04, pytest.approx(0.015, abs=6e-4))
+    assert json.loads(typed("judge", layout, "--json").stdout) == verdicts
+    rounding = answered(tmp_path / "rounding", 1 + 1e-13, ("locked",))
+    (row,) = json.loads(typed("judge", rounding, "--json").stdout)["answers"]
+    assert [column["error"] for column in row["criteria"]] == [1e-11, 1e-11]
+
+
+def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(
+    tmp_path: Path, undrawn: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = packs.packs()[PACK]
+    earlier = {"1.9": now | {"locked": "0" * 16}, PACK: now}
+    for module in ("packs", "answers"):
+        monkeypatch.setattr(f"validation.problems.{module}.packs", lambda: earlier)
+    answered(tmp_path / "mine", 1.001, ("locked", "rocking"), pack="1.9")
+    done = typed("judge", tmp_path / "mine", "--out", tmp_path / "site")
+    assert done.returncode == 1 and re.search(r"locked +stale .*it answers pack 1.9", done.stdout)
+    assert re.search(r"rocking +PASS", done.stdout)
+    for file in ("index.html", "answers_bob-s-code-co_1.0_default.html", "verdicts.json"):
+        assert "it answers pack 1.9" in (tmp_path / "site" / file).read_text(encoding="utf-8"), file
+
+
+def test_each_exact_motion_is_computed_once(layout: Path, undrawn: None, tmp_path: Path) -> None:
+    bands._standard.cache_clear()
+    typed("judge", layout, "--out", tmp_path / "site")
+    assert bands._standard.cache_info().misses == 3
+
+
+def test_all_defects_are_printed_and_nothing_is_written(layout: Path, tmp_path: Path, undrawn: None) -> None:
+    folder = layout / "other/2.0/default"
+    (folder / "locked.csv").write_text("time_s;displacement_m\n")
+    (folder / "rokcing.csv").write_text("")
+    site = tmp_path / "site"
+    for arguments in (("--layout", "--out", site), ("--keep", tmp_path / "kept", "--out", site)):
+        done = typed("judge", layout, *arguments)
+        assert done.returncode == 2 and done.stdout == ""
+        *lines, last = done.stderr.splitlines()
+        assert [line.partition(f"{folder}/")[2].split(" ")[0] for line in lines] == ["locked.csv:1:22:", "rokcing.csv:"]
+        assert last == "2 defects in 2 files; nothing is judged"
+        assert not (tmp_path / "site").exists() and not (tmp_path / "kept").exists()
+
+
+def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) -> None:
+    answered(tmp_path / "mine", 1.001, ("locked",))
+    done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
+    assert done.returncode == 0 and "kept in " in done.stdout
+    assert typed("judge", tmp_path / "submissions", "--layout", "--out", tmp_path / "site").returncode == 0
+    answered(tmp_path / "mine", 1.002, ("locked",))
+    done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
+    assert done.returncode == 2 and "holds another answer, which is not overwritten" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("none",), "source: must be a solver, module:attribute, ./program, a file of a history or a directory"),
+        (("empty",), "empty: must be a directory with PROBLEM.csv"),
+        (("dda", "locked", "--keep", "kept"), "must be a folder of answers, to be kept"),
+        (("bar-events", "locked"), "does not apply: it requires contact.law"),
+        (("dda", "nonsense"), "nonsense: no such scene file"),
+        (("mine", "--set", "time.step=1"), "--set: goes with a problem or a scene"),
+        (("dda", "figures-3-4"), "one value must be picked for time.step"),
+        (("mine/locked.csv",), "asked: must name the one problem or scene that a table answers"),
+        (("mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
+        (("nowhere:solve", "locked"), "solver: must be a module that Python finds"),
+        (("installed",), "no other package brings a solver"),
+        (("dda", "--study", "nonsense"), "--study: must be all or one of core, "),
+        (("dda", "--study", "core", "--out", "x"), "--out: excludes --study"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_line_and_writes_nothing(
+    arguments: tuple[str, ...], said: str, tmp_path: Path, undrawn: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "entry_points", dict)
+    answered(tmp_path / "mine", 1.001, ("locked",))
+    (tmp_path / "empty").mkdir()
+    done = typed("judge", *arguments)
+    assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["empty", "mine"]
+
+
+# ---- gates ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("solver", "status"), [("dda", 0), ("dda-textbook", 1)])
+def test_the_gates_of_a_study_are_put_to_a_solver(solver: str, status: int) -> None:
+    done = typed("judge", solver, "--study", "own-solver")
+    assert done.returncode == status, done.stdout
+    assert re.search(r"digits +\d+ +\d+ +0 +0 ", done.stdout) and "right:  " in done.stdout
+
+
+def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a folder of histories the scenes that it holds are judged, the others are not run."""
+    from validation.suite.own_solver.gates import START
+
+    monkeypatch.chdir(tmp_path)
+    scene = START.scenes[0]
+    history = registry.get_solver("dda").solve(scene).history
+    columns = ["displacement", "contact_pressure"]
+    rows = np.column_stack([history.time, *(history.columns[name] for name in columns)])
+    (tmp_path / "mine").mkdir()
+    header = ";".join(["time", *columns])
+    np.savetxt(f"mine/{scene.name}.csv", rows, "%.17g", ";", header=header, comments="")
+    done = typed("judge", "mine/", "--study", "own-solver", "--json")
+    assert done.returncode == 0, done.stderr
+    reports: list[dict[str, Any]] = json.loads(done.stdout)
+    assert {report["status"] for report in reports if report["scene"] == scene.name} <= {"PASS", "NOT RUN"}
+    assert {report["status"] for report in reports if report["scene"] != scene.name} == {"NOT RUN"}
+    np.savetxt(
+        f"mine/{scene.name}.csv", rows * [1, 1.01, 1.01], "%r", ";", header=f"time;{';'.join(columns)}", comments=""
+    )
+    assert typed("judge", "mine/", "--study", "own-solver").returncode == 1

@@ -15,10 +15,13 @@ from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
 from validation.cli.printing import tables
 from validation.gates.changes import changes
+from validation.gates.gate import Status
+from validation.problems.answers import Answer, AnswerSet, stated_by
 from validation.report.figures import response as figures
 from validation.report.render.terminal import STYLES, lines
 from validation.report.scene import numbers
 from validation.runs.run import Outcome, Run
+from validation.suite import judging
 from validation.theory.stepping import Stepping
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
@@ -32,10 +35,14 @@ SITE = load_scene("waves-site").with_values({"time.steps": 10})
 def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
     outcome: Outcome, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    status, reason = judging._ending(Run(outcome, notes=("so it was",)))
+    answers = AnswerSet(Path("mine"), stated_by("mine"), (Answer("locked", None, None, status, reason),))
     with pytest.raises(typer.Exit) as ended:
-        cli_judge._completed_history(Run(outcome, notes=("so it was",)), "locked", "mine")
+        cli_judge._refuse_inapplicable(answers)
     assert ended.value.exit_code == 3
-    assert capsys.readouterr().out == f"locked mine: {outcome}: {outcome.sentence} so it was\n"
+    said = capsys.readouterr().out
+    assert said.startswith(f"locked mine: {status}: ") and "so it was" in said
+    assert status is (Status.FAIL if outcome is Outcome.OVERFLOW else Status.NOT_RUN)
 
 
 # ---- counts and colours -------------------------------------------------------------------------------------------

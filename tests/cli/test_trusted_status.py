@@ -5,19 +5,22 @@ import os
 import resource
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
 from validation.engine.measured import JudgedStudy, covers, missing_gates
+from validation.engine.run import run_study
 from validation.gates.gate import Gate, Status, Verdict
 from validation.report import book
 from validation.report.blocks import Callout, FigureBlock, Heading
 from validation.runs.results import Results
+from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.suite.folders import get_study
+from validation.suite.folders import get_study, study_names
 
 RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
@@ -56,6 +59,32 @@ def test_a_case_that_ends_badly_is_no_green(way: str, scene_file: Path, tmp_path
     assert typed("run", scene_file, "--results", "r", "--baseline", "r", cwd=tmp_path).returncode == 1
 
 
+def test_a_scene_without_gates_that_ran_well_says_that_nothing_was_judged(scene_file: Path, tmp_path: Path) -> None:
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 0 and "small: has no gates: nothing was judged" in done.stdout
+
+
+def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(
+    scene_file: Path, tmp_path: Path
+) -> None:
+    text = (SCENE + RUN.format('["dda", "bar"]')).replace("step = 0.002", "step = 0.0001")  # which damps little
+    scene_file.write_text(text)
+    shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
+    left = shown.partition("nothing was judged\n")[2]
+    row = next(line.split() for line in left.splitlines() if line.startswith("small ") and "|" in line)
+    assert row[:4] == ["small", "dda", "|", "bar"] and all(0 < float(value) < 100 for value in row[4:])
+    gate = "\n".join(line.strip() for line in left.partition("next:")[2].splitlines() if line.startswith("  "))
+    assert f"# {float(row[4]) / 100:.3g} here" in gate
+    scene_file.write_text(text + gate.replace('"..."', '"a reason"'))
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 0 and "1 PASS, 0 FAIL" in done.stdout and "[[gate]]" not in done.stdout
+
+
+def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE + RUN.format('["dda"]'))
+    assert "name two solvers or more that apply" in typed("run", scene_file, "--results", tmp_path / "r").stdout
+
+
 def test_a_scene_of_which_one_solver_completed_says_that_the_other_did_not(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["dda", "bar"]'))
     shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
@@ -78,7 +107,31 @@ def test_where_no_solver_applies_nothing_is_green(scene_file: Path, tmp_path: Pa
     assert done.returncode == 1 and "small: no case was measured" in done.stdout
 
 
+def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(SCENE.replace("steps = 50", "steps = 3000\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
+    unstable = load_scene(scene_file).with_values({"time.step": 0.1})
+    changed = {"scenes": [unstable], "solvers": ("dda",), "extra": (), "gates": tuple, "derived": tuple}
+    study = replace(get_study("core"), name="x", **changed)
+    run_study(study, Results(tmp_path))
+    ends = {("small", "dda"): Outcome.OVERFLOW}
+    for expects, failed in (((), True), ((Outcome.OVERFLOW,), False), ((Outcome.MISPREDICTED,), True)):
+        run = JudgedStudy(replace(study, expects=expects), [], ends)
+        assert bool(run.failed) is failed
+    found = [row.outcome for row in Results(tmp_path).rows().values()]
+    assert found == [Outcome.OVERFLOW]
+    assert [name for name in study_names() if get_study(name).expects] == ["stability-small", "stability"]
+
+
 # ---- required solvers -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["BAR", "Dda", "sofa", "", "dda fem"])
+def test_an_unknown_required_solver_is_refused_before_anything_runs(
+    name: str, scene_file: Path, tmp_path: Path
+) -> None:
+    done = typed("run", scene_file, "--results", tmp_path / "r", "--require", name)
+    assert done.returncode == 2 and "--require: must be among dda, " in done.stderr
+    assert not (tmp_path / "r").exists()
 
 
 def test_a_required_solver_without_a_judged_gate_is_no_green(scene_file: Path, tmp_path: Path) -> None:
@@ -113,6 +166,11 @@ def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
     scene_file.write_text(gated("[-1.0, -0.5]", '["dda"]'))
     done = typed("run", scene_file, "--results", "r", "--baseline", where, cwd=tmp_path)
     assert done.returncode == 1 and "1 gate differs: 1 worse" in done.stdout
+
+
+def test_an_infinite_band_is_refused(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(gated("[-inf, inf]"))
+    assert "gate.0.band.0: must be a finite number" in refused("run", scene_file, "--results", tmp_path / "r")
 
 
 def edited(path: Path, change: object) -> None:
@@ -157,6 +215,26 @@ def test_two_files_of_one_stem_are_refused_by_name(tmp_path: Path) -> None:
     assert not (tmp_path / "reports").exists()
     done = typed("run", "b/same.toml", "b/same.toml", cwd=tmp_path)
     assert done.returncode == 0 and "1 PASS" in done.stdout, "one file named twice is one study"
+
+
+@pytest.mark.parametrize("name", ["core", "limits", "Core"])
+def test_a_file_with_a_studys_name_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / f"{name}.toml").write_text(WIDE)
+    assert f"{name}.toml: must not have the name of the study {name}" in refused("run", f"{name}.toml", cwd=tmp_path)
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_file_and_a_built_in_scene_of_one_name_do_not_run_together(tmp_path: Path) -> None:
+    (tmp_path / "figure-8.toml").write_text(WIDE)
+    done = typed("run", "figure-8", "figure-8.toml", cwd=tmp_path)
+    assert done.returncode == 2 and "figure-8.toml: must not have the name of figure-8" in done.stderr
+
+
+def test_two_gates_of_one_id_are_refused(scene_file: Path, tmp_path: Path) -> None:
+    scene_file.write_text(WIDE + GATE.format('["dda", "bar"]', "displacement.l2", "[0.0, 1e-3]"))
+    done = typed("run", scene_file, "--results", tmp_path / "r")
+    assert done.returncode == 2 and "gate.1: must not repeat pair and metric of another gate" in done.stderr
+    assert not (tmp_path / "r").exists()
 
 
 # ---- files and streams ----------------------------------------------------------------------------------------------

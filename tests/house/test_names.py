@@ -19,6 +19,8 @@ NAMED = {
     "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
     "scenes/kinds.py": {"dda", "fem", "layers", "column-events", "rigid-exact"},  # the same of other kinds
+    "scenes/plain.py": {"layers"},  # those of a column
+    "runs/units.py": {"bar"},  # the unit
     "advice/columns.py": {"dda"},  # whose run shows when a stack rests
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 from validation.metrics import boxes as measures
-from validation.problems.boxes import BoxQuantity, box_problems, boxes_of, measured
+from validation.problems.boxes import BoxQuantity, MeasuredQuantity, box_problems, boxes_of, measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
 
@@ -46,7 +45,7 @@ def numbers(name: str, history: History, **values: Any) -> dict[str, tuple[float
     """Return the numbers of an answer to a problem's scene, and their words, by name."""
     problem = box_problems()[name]
     scene = problem.scene().with_values(values)
-    return {one.quantity.name: (one.value, one.word) for one in measured(problem.quantities(scene), history)}
+    return {one.quantity.name: (one.value, one.status) for one in measured(problem.quantities(scene), history)}
 
 
 def scene_of(name: str, **values: Any) -> Scene:
@@ -143,15 +142,10 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
     assert found["peak force as reported"] == (None, "not reported")
 
 
-def quantity(exact: float, low: float, high: float) -> BoxQuantity:
-    return BoxQuantity("n", "1", exact, low, high, 1.0, "", "why", lambda history: None)
-
-
-def test_an_error_beside_its_band_is_one_at_the_edge_on_either_side() -> None:
-    one = quantity(2.0, 1.0, 5.0)
-    assert (one.beside_band(5.0), one.beside_band(1.0), one.beside_band(2.0)) == (1.0, 1.0, 0.0)
+def test_an_error_is_beside_the_part_of_the_band_on_its_side() -> None:
+    one = BoxQuantity("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
+    assert [MeasuredQuantity(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
     assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
-    assert math.isinf(quantity(1.0, 1.0, 1.0).beside_band(0.0))
 
 
 def test_the_peak_between_rows() -> None:

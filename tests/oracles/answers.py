@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+from validation.problems.answers import FILE
 from validation.problems.bands import standard
 from validation.problems.data import ANSWERS, PACK
 from validation.problems.pack import table_of
 from validation.problems.problem import problem
-from validation.problems.submission import FILE
 from validation.runs.history import History
 
 STATED = {
@@ -28,14 +28,20 @@ STATED = {
 QUICK = ("locked", "rocking", "column")  # problems whose exact motions take no time
 
 
-def answered(place: Path, factor: float = 1.01, names: tuple[str, ...] = QUICK, **fields: Any) -> Path:
-    """Write a folder of answers, the exact motions times a factor, and return it; a field that is ... is left out."""
+def stated(place: Path, **fields: Any) -> Path:
+    """Write the metadata of a folder of answers, and return it; a field that is ... is left out."""
     place.mkdir(parents=True, exist_ok=True)
-    stated = {key: value for key, value in (STATED | fields).items() if value is not ...}
-    (place / FILE).write_text(json.dumps(stated, indent=1))
+    content = {key: value for key, value in (STATED | fields).items() if value is not ...}
+    (place / FILE).write_text(json.dumps(content, indent=1))
+    return place
+
+
+def answered(place: Path, factor: float = 1.01, names: tuple[str, ...] = QUICK, **fields: Any) -> Path:
+    """Write a folder of answers, the exact motions times a factor, and return it."""
+    stated(place, **fields)
     for name in names:
         one = problem(name)
         exact = standard(one).exact
         scaled = History(exact.time, {column: factor * values for column, values in exact.columns.items()})
-        (place / f"{name}.csv").write_text(table_of(scaled, one.scene.run.columns))
+        (place / f"{name}.csv").write_text(table_of(one, scaled))
     return place

@@ -6,7 +6,7 @@ scheme or summed in closed form. Causes are single ones of the catalogue, pairs,
 digits, noise, steps, schemes and scenes are drawn at random.
 
 ``PYTHONPATH=.:tests python tests/oracles/calibration.py [COUNT [PROCESSES]]`` judges so many, a thousand by default,
-and writes the table to docs/compare.md.
+and writes the table to docs/judge.md.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
 BEGIN, END = "<!-- calibration: made by tests/oracles/calibration.py -->\n", "<!-- end of calibration -->\n"
 UNKNOWN, SAME = "unexplained", "same"
 SCHEMES = ((0.5, 1.0), (0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))

@@ -25,7 +25,7 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
 BEGIN, END = "<!-- schemes: made by tests/oracles/compared_schemes.py -->\n", "<!-- end of schemes -->\n"
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))
 SCENES: tuple[dict[str, Any], ...] = (

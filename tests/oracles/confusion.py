@@ -2,7 +2,7 @@
 
 The histories come from the program in `shi_dda`, which shares nothing with what judges them: seven digits each, some
 with noise, some on a base that yields. ``PYTHONPATH=.:tests python
-tests/oracles/confusion.py`` writes the matrix to docs/compare.md.
+tests/oracles/confusion.py`` writes the matrix to docs/judge.md.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
-PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
 BEGIN, END = "<!-- confusion matrix: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"
 SAME = "same"
 RIGID = {"base_young": 1e16, "fixed": 1e15}  # a base that moves by 1e-6 of the displacement

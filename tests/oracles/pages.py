@@ -11,7 +11,7 @@ FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of s
 
 def write_my_solver(directory: Path) -> None:
     """Write the solver that the documentation shows."""
-    page = (ROOT / "docs/judge-your-code.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
     files = {file: text for _, file, text in BLOCK.findall(page)}
     (directory / "my_solver.py").write_text(files["my_solver.py"])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -9,21 +10,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.answers import QUICK, STATED, answered
-from oracles.submissions import submitted
+from oracles.answers import QUICK, STATED, answered, stated
 
-from validation.cli.judging import judged_sets
 from validation.errors import InputError
 from validation.problems import packs
-from validation.problems.answers import AnswerSet, folder_name, keep, read_sets
+from validation.problems.answers import FILE, AnswerSet, folder_name, keep, read_sets, read_tables
+from validation.problems.bands import standard
 from validation.problems.data import PACK
-from validation.problems.defects import DefectsError
-from validation.problems.pack import blank_table, table_of
-from validation.problems.problem import problem
-from validation.problems.questions import question
-from validation.problems.submission import FILE, read_submission
+from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
+from validation.problems.problem import problem, problem_of
+from validation.runs.defects import DefectsError
 from validation.runs.history import History
 from validation.scenes.rigid import POSE
+from validation.scenes.scene import load_scene
+from validation.suite.judging import judged_sets
 
 
 def defects_of(root: Path, **options: Any) -> list[str]:
@@ -34,7 +34,7 @@ def defects_of(root: Path, **options: Any) -> list[str]:
 
 
 def names_of(sets: list[AnswerSet]) -> list[tuple[str, tuple[str, ...]]]:
-    return [(one.settings_name, tuple(answer.name for answer in one.answers)) for one in sets]
+    return [(one.data.settings_name, tuple(answer.name for answer in one.answers)) for one in sets]
 
 
 # ---- what is read ---------------------------------------------------------------------------------------------------
@@ -57,8 +57,7 @@ def test_problems_that_the_stated_pack_did_not_have_are_one_defect(
     now = packs.packs()[PACK]
     earlier = {name: digest for name, digest in now.items() if name not in ("column", "rocking")}
     monkeypatch.setattr(packs, "packs", lambda: {"1.9": earlier, PACK: now})
-    for module in ("answers", "submission"):
-        monkeypatch.setattr(f"validation.problems.{module}.packs", packs.packs)
+    monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
     answered(tmp_path, pack="1.9", names=("locked", "column", "rocking"))
     (tmp_path / "creep.csv").write_text(blank_table(problem("creep")))
     (line,) = defects_of(tmp_path)
@@ -73,7 +72,7 @@ def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path: Path) -> No
     assert line.startswith("locked.csv:1:22: header: contact_pressure_Pa is required")
     (tmp_path / FILE).write_text(json.dumps(STATED | {"not_reported": {"locked": ["contact_pressure_Pa"]}}))
     ((answer,),) = [one.answers for one in read_sets(tmp_path)]
-    assert answer.withheld == ("contact_pressure_Pa",) and list(answer.history.columns) == ["displacement"]
+    assert list(answer.history.columns) == ["displacement"]
 
 
 def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(
@@ -82,12 +81,11 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(
     now = packs.packs()[PACK]
     monkeypatch.setattr(packs, "packs", lambda: {"1.9": now | {"locked": "0" * 16}, PACK: now})
     monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
-    monkeypatch.setattr("validation.problems.submission.packs", packs.packs)
     answered(tmp_path, pack="1.9")
     (tmp_path / "locked.csv").write_text("what it asked then is not known")
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
-    assert stale.name == "locked" and stale.history is None and "it answers pack 1.9" in str(stale.stale)
-    assert [answer.stale for answer in others] == [None, None]
+    assert stale.name == "locked" and stale.history is None and "it answers pack 1.9" in stale.reason
+    assert [answer.status for answer in others] == [None, None]
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
@@ -158,7 +156,7 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     other = answered(tmp_path / "fine", settings_name="fine", who=...)
     answered(tmp_path / "again", settings_name="coarse", names=("locked",))
     spoilt(place, "locked.csv", MISTAKES["not a number"][1])
-    spoilt(place, "rocking.csv", lambda text: text.replace("rotation_rad", "rotation_deg"))
+    spoilt(place, "rocking.csv", lambda text: text.replace("rotation_rad", "rotation_turns"))
     (other / "Locked.csv").write_text("")
     (tmp_path / "forgotten").mkdir()
     (tmp_path / "forgotten" / "locked.csv").write_text("")
@@ -174,20 +172,6 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     answered(tmp_path / "coarse", settings_name="coarse", names=("locked",))
     (line,) = defects_of(tmp_path)
     assert line.startswith(f"coarse/{FILE}: must have another settings_name")
-
-
-@pytest.mark.parametrize("written", ["\ufeff{}", "\r\n", ",,\n", '"'])
-def test_what_spreadsheets_write_is_read(written: str, tmp_path: Path) -> None:
-    answered(tmp_path, names=("locked",))
-    text = (tmp_path / "locked.csv").read_text()
-    if written == "\ufeff{}":
-        text = written.format(text)
-    elif written == '"':
-        text = "\n".join(",".join(f'"{cell}"' for cell in line.split(",")) for line in text.splitlines())
-    else:
-        text = text.replace("\n", written)
-    (tmp_path / "locked.csv").write_text(text, encoding="utf-8", newline="")
-    assert names_of(read_sets(tmp_path)) == [("default", ("locked",))]
 
 
 def test_a_layout_is_where_its_metadata_say(tmp_path: Path) -> None:
@@ -225,16 +209,164 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path: Path) -> None:
     assert [path.name for path in place.parent.iterdir()] == ["default"]  # neither is half of them written
 
 
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+Rows = list[list[str]]
+
+
+def rows_of(name: str = "locked") -> Rows:
+    return list(csv.reader(table_of(problem(name), standard(problem(name)).exact).splitlines()))
+
+
+def text_of(rows: Rows, separator: str = ",") -> str:
+    return "\n".join(separator.join(row) for row in rows)
+
+
+def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
+    """Return a change that multiplies a column by a factor."""
+
+    def change(rows: Rows) -> Rows:
+        numbers = [[repr(float(x) * factor) if i == column else x for i, x in enumerate(row)] for row in rows[1:]]
+        return [rows[0], *numbers]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda r: [[*r[0][:2], "speed"], *r[1:]], "1:23: header: must be among time_s, displacement_m,"),
+        (lambda r: [["time_s", "displacement_mn", *r[0][2:]], *r[1:]], "did you mean displacement_m?"),
+        (lambda r: [row[:2] for row in r], "1:22: header: contact_pressure_Pa is required, got time_s, displ"),
+        (lambda r: [row[1:] for row in r], "1:35: header: time_s is required, got displacement_m, contact_pressure_Pa"),
+        (lambda r: [[*row, row[1]] for row in r], "1:43: header: displacement_m must appear once"),
+        (lambda r: r[1:], "1:1: header: must be the header time_s,displacement_m,contact_pressure_Pa, got numbers"),
+        (lambda r: [r[0], *([repr(float(row[0]) + 1e-3), *row[1:]] for row in r[1:])], "all are 0.001 s late"),
+        (lambda r: [r[0], ["0.002", "", "0"], *r[2:]], "2:7: displacement_m: must be a number, got nothing"),
+        (lambda r: [r[0], ["0.002", "np.float64(0.5)", "0"], *r[2:]], "numpy's repr; float(x) of it is a number"),
+        (lambda r: [r[0], ["0.002", "1_0", "0"], *r[2:]], "2:7: displacement_m: must be a number, got '1_0'"),
+        (lambda r: [r[0], ["0.002", "1e400", "0"], *r[2:]], "2:7: displacement_m: must be a finite number, got 1e400"),
+        (lambda r: [r[0], ["0.002", "1e308", "0"], *r[2:]], "must be at most 1e+100 in size, got 1e308"),
+        (lambda r: [*r, *r[1:]], "52:1: time: must have 50 rows, 0.002 s apart, got 52 or more"),
+        (lambda r: [r[0], *r[:0:-1]], "2:1: time: must be 0.002, got 0.1"),
+        (lambda r: r[:-1], "got 49; t = 0.1 s is the first that is missing"),
+        (lambda r: [r[0], *r[2:], r[-1]], "2:1: time: must be 0.002, got 0.004"),
+        (scaled(0, 1e3), "2:1: time: must be 0.002, got 2; milliseconds?"),
+        (lambda r: [*r[:3], r[3][:2], *r[4:]], "4:28: must have 3 cells, got 2"),
+        (lambda r: r[:1], "time: must have 50 rows"),
+        (lambda r: [], "must be a table of numbers under a header, got an empty file"),
+        (scaled(1, 1e3), "1:8: displacement_m: wrong units: it is 1000 times what is expected in SI, mm?"),
+        (scaled(2, 1e-6), "1:23: contact_pressure_Pa: wrong units: it is 1e-06 times what is expected in SI, MPa?"),
+        (scaled(1, -1.0), "1:8: displacement_m: wrong sign: it is the negative of what is expected"),
+    ],
+)  # fmt: skip
+def test_a_wrong_table_is_named(change: Callable[[Rows], Rows], said: str, tmp_path: Path) -> None:
+    (stated(tmp_path) / "locked.csv").write_text(text_of(change(rows_of())))
+    assert said in defects_of(tmp_path)[0]
+
+
+def in_other_units(rows: Rows) -> str:
+    """Return the table in milliseconds, millimetres and kilopascals, with an index and a column of another program."""
+    factors = (1e3, 1e3, 1e-3)
+    header = ["", "Time [ms]", "displacement_mm", "contact_pressure (kPa)", "energy"]
+    body = [[str(i), *(repr(factors[j] * float(row[j])) for j in range(3)), "0"] for i, row in enumerate(rows[1:])]
+    return text_of([header, *body])
+
+
+def of_a_spreadsheet(rows: Rows) -> str:
+    """Return a table as spreadsheets write it: a mark in front, CR LF, empty cells and rows at the ends."""
+    return "\ufeff" + "\r\n".join(",".join([*row, "", ""]) for row in [*rows, ["", "", ""]])
+
+
+def with_decimal_commas(rows: Rows) -> str:
+    return text_of([rows[0], *([cell.replace(".", ",") for cell in row] for row in rows[1:])], ";")
+
+
+def of_fortran(row: list[str]) -> list[str]:
+    return [f"{float(cell):.17E}".replace("E", "D") for cell in row]
+
+
+WRITTEN: dict[str, Callable[[Rows], str]] = {
+    "of a spreadsheet": of_a_spreadsheet,
+    "decimal commas": with_decimal_commas,
+    "tabs": lambda rows: text_of(rows, "\t"),
+    "blanks": lambda rows: text_of(rows, "  "),
+    "quotes": lambda rows: text_of([[f'"{cell}"' for cell in row] for row in rows]),
+    "comments": lambda rows: "# of my code\n" + text_of(rows) + "  % the end",
+    "exponents of Fortran": lambda rows: text_of([rows[0], *map(of_fortran, rows[1:])]),
+    "other names": lambda rows: text_of([["TIME", "Displacement", "contact_pressure"], *rows[1:]]),
+    "other order": lambda rows: text_of([[row[2], row[0], row[1]] for row in rows]),
+    "the state at t = 0": lambda rows: text_of([rows[0], ["0", "0", "0"], *rows[1:]]),
+    "single precision": lambda rows: text_of([rows[0], *([repr(float(np.float32(r[0]))), *r[1:]] for r in rows[1:])]),
+    "other units": in_other_units,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("written", WRITTEN)
+def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None:
+    exact = standard(problem("locked")).exact
+    (stated(tmp_path) / "locked.csv").write_text(WRITTEN[written](rows_of()), encoding="utf-8", newline="")
+    (tmp_path / "._locked.csv").write_bytes(b"\0")  # which a system lays beside a file
+    ((answer,),) = [one.answers for one in read_sets(tmp_path)]
+    np.testing.assert_array_equal(answer.history.time, exact.time)
+    for name, values in exact.columns.items():
+        np.testing.assert_allclose(answer.history.columns[name], values, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"pack": "99.0"}, f"pack: must be one of {PACK}, this pack and earlier ones"),
+        ({"pack": ...}, "pack: is required, got nothing"),
+        ({"format": "other"}, "format: must be 'dda-validation answers 1', got 'other'"),
+        ({"version": 3}, "version: must be a valid string, got 3"),
+        ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings: must be filled in, got"),
+        ({"wo": "x"}, "wo: unknown key, got 'x'"),
+        ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked: must be among displacement_m, contact_pr"),
+        ({"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}}, "must leave a column to judge"),
+    ],
+)  # fmt: skip
+def test_a_wrong_field_is_named(fields: dict[str, Any], said: str, tmp_path: Path) -> None:
+    (line,) = defects_of(answered(tmp_path, names=("locked",), **fields))
+    assert line.startswith(f"{FILE}:") and said in line
+
+
+def test_files_that_are_no_such_files(tmp_path: Path) -> None:
+    for content, said in (
+        ("[1]", "must be an object, got list"),
+        ("{", f"{FILE}:1:2: must be JSON: "),
+        (json.dumps(STATED).replace('{"format"', '{"pack": "1.0", "format"'), "pack: must appear once"),
+    ):
+        (answered(tmp_path, names=("locked",)) / FILE).write_text(content)
+        assert any(said in line for line in defects_of(tmp_path))
+
+
+def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path: Path) -> None:
+    scene = load_scene("field-locked").with_values({"contact.stiffness": 2e9}).model_copy(update={"name": "mine"})
+    own = problem_of(scene)
+    (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
+    (tmp_path / "locked.csv").write_text(text_of(rows_of()))
+    answers = read_tables(tmp_path, [problem("locked"), problem("opening"), own]).answers
+    assert [answer.name for answer in answers] == ["locked", "mine"]
+    assert read_tables(tmp_path / "mine.csv", [own]).answers[0].problem is own
+    stated(tmp_path)
+    ((answer, _),) = [one.answers for one in read_sets(tmp_path, own={"locked": problem("locked"), "mine": own})]
+    assert answer.problem is problem("locked")
+    with pytest.raises(InputError) as caught:
+        read_tables(tmp_path / "mine.csv", [own, problem("locked")])
+    assert caught.value.field == "asked"
+
+
 # ---- rigid boxes ----------------------------------------------------------------------------------------------------
 
 
 def boxes_answered(place: Path, name: str, **changed: float) -> None:
     """Answer a problem of rigid boxes with boxes that stay where they are, columns times factors."""
-    asked = question(name)
+    asked = problem(name)
     starts = asked.scene.rigid.starts
     poses = {f"{part}_{n}": x for n, start in enumerate(starts, start=1) for part, x in zip(POSE, start, strict=True)}
     columns = {c: np.full(len(asked.instants), changed.get(c, 1.0) * poses[c]) for c in asked.columns}
-    (place / f"{name}.csv").write_text(table_of(History(asked.instants, columns), asked.columns))
+    (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
 def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
@@ -242,28 +374,14 @@ def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
     for name in ("standing", "standing-friction-19-deg", "pile"):
         boxes_answered(place, name)
     (judged,) = judged_sets(read_sets(place), lambda *given: None)
-    words = {name: str(one.word) for name, one in judged.judged.items()}
+    words = {name: str(one.judgement.status) for name, one in judged.judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
     # Forces are not asked: what is measured on them alone is not among the numbers.
-    assert [number.quantity.name for number in judged.judged["pile"].numbers] == [
-        "drift of the top",
-        "sinking of the top",
-    ]
-    assert judged.judged["standing-friction-19-deg"].deciding.quantity.name == "distance slid"
+    assert [one.name for one in judged.judged["pile"].judgement.criteria] == ["drift of the top", "sinking of the top"]
+    assert judged.judged["standing-friction-19-deg"].judgement.deciding.name == "distance slid"
 
 
 def test_heights_in_millimetres_are_named(tmp_path: Path) -> None:
     boxes_answered(answered(tmp_path, names=()), "pile", y_3=1e3)
     (line,) = defects_of(tmp_path)
     assert "pile.csv:1:" in line and "y_3_m: wrong units: it begins with 1000 times what is expected in SI, mm?" in line
-
-
-def test_boxes_are_no_submission_of_one_problem(tmp_path: Path) -> None:
-    (line,) = [str(one) for one in DefectsError.of(_refused(submitted(tmp_path, "", problem="standing"))).defects]
-    assert "problem: is answered in a folder of answers" in line
-
-
-def _refused(place: Path) -> InputError:
-    with pytest.raises(InputError) as caught:
-        read_submission(place)
-    return caught.value

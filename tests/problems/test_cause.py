@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from validation.diagnosis.numbers import numbers
+from validation.gates.gate import Status
 from validation.problems import cause as module
 from validation.problems import models
 from validation.problems.bands import changes, standard
 from validation.problems.cause import NOT_EXPLAINED, cause
-from validation.problems.judge import Word, judge
+from validation.problems.judge import judge
 from validation.problems.problem import problem
 from validation.runs.history import History
 from validation.solvers.registry import get_solver
@@ -41,7 +42,7 @@ def fine(name: str, values: dict, times: int = 32) -> History:
 def named(name: str, found: History) -> module.Cause:
     asked = problem(name)
     held = standard(asked)
-    assert judge(asked, found, held).word is Word.FAIL
+    assert judge(asked, found, held).status is Status.FAIL
     return cause(asked, found, held)
 
 
@@ -60,7 +61,7 @@ def test_ddas_habit_and_another_integrator() -> None:
     finer = {"time.step": asked.scene.time.step / every, "time.steps": every * asked.scene.time.steps}
     passing = get_solver("dda").solve(asked.scene.with_values(finer)).history
     at_steps = History(passing.time[every - 1 :: every], {k: x[every - 1 :: every] for k, x in passing.columns.items()})
-    assert judge(asked, at_steps).word is Word.PASS
+    assert judge(asked, at_steps).status is Status.PASS
     interchanged = asked.scene.with_values({"time.alpha": 1.0, "time.delta": 0.5})
     slip = named("locked", get_solver("dda").solve(interchanged).history)
     assert slip.ids == ("scheme",) and models.INTERCHANGED in slip.sentence
@@ -124,7 +125,7 @@ def test_no_cause_of_a_random_history_is_wrong(name: str) -> None:
         for key, x in exact.columns.items():
             seen[key] = wobble * x + noise * np.abs(x).max() * rng.standard_normal(len(x))
         found = History(exact.time, seen)
-        if judge(problem(name), found).word is Word.FAIL:
+        if judge(problem(name), found).status is Status.FAIL:
             assert cause(problem(name), found, standard(problem(name))).sentence.startswith(NOT_EXPLAINED)
 
 
@@ -208,7 +209,7 @@ def of_layers(name: str, key: str, factor: float) -> dict:
 def test_schemes_of_columns_on_contacts_are_named(name: str, values: dict) -> None:
     posed = problem(name)
     run = get_solver("dda").solve(posed.scene.with_values(values)).history
-    if judge(posed, run).word is Word.FAIL:
+    if judge(posed, run).status is Status.FAIL:
         identified = cause(posed, run, standard(posed))
         assert identified.ids == ("scheme",)
         assert identified.values["alpha"] == values.get("time.alpha", 0.5)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
+from validation.gates.gate import Status
 from validation.problems import boxes
 from validation.problems.bands import LARGEST, band, changes, standard
-from validation.problems.judge import Word, judge
+from validation.problems.judge import judge
 from validation.problems.problem import Problem, problem, problem_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import load_scene
@@ -50,9 +51,9 @@ WRONG = {
 @pytest.mark.parametrize("wrong", WRONG)
 def test_a_wrong_history_fails(name: str, wrong: str) -> None:
     asked = short(name)
-    word = judge(asked, history(asked, WRONG[wrong])).word
+    word = judge(asked, history(asked, WRONG[wrong])).status
     within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are less than 1 % of a
-    assert word is (Word.PASS if within else Word.FAIL)
+    assert word is (Status.PASS if within else Status.FAIL)
 
 
 @pytest.mark.parametrize("name", ["locked", "rocking"])
@@ -65,9 +66,9 @@ def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_e
     found = judge(asked, History(time, {column: seen}))
     rows = int(np.flatnonzero(time == found.within)[0]) + 1
     assert time[-1] / 3 < found.within < held.bands[column].until
-    for more, word in ((0, Word.PASS), (1, Word.FAIL)):
+    for more, word in ((0, Status.PASS), (1, Status.FAIL)):
         mended = np.where(np.arange(len(time)) < rows + more, seen, wanted)
-        judged = {one.name: one.word for one in judge(asked, History(time, {column: mended})).columns}
+        judged = {one.name: one.status for one in judge(asked, History(time, {column: mended})).criteria}
         assert judged[column] is word
     assert judge(asked, held.exact).within == pytest.approx(min(b.until for b in held.bands.values()))
     assert judge(asked, History(time, {column: 9 + wanted})).within == 0.0
@@ -82,19 +83,19 @@ def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_change
     for datum, changed in held.changed.items():
         rows = min(len(changed.time), len(held.exact.time))
         if rows == len(held.exact.time):
-            assert judge(asked, changed).word is Word.PASS, datum
+            assert judge(asked, changed).status is Status.PASS, datum
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Word.PASS), (1 + 1e-6, Word.FAIL)])
-def test_both_sides_of_the_band(name: str, times: float, word: Word) -> None:
+@pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)])
+def test_both_sides_of_the_band(name: str, times: float, word: Status) -> None:
     asked = short(name)
     held = standard(asked)
     for column, edge in held.bands.items():
         columns = dict(held.exact.columns)
         columns[column] = columns[column] * (1 + times * edge.high)
         found = judge(asked, History(held.exact.time, columns))
-        assert found.word is word
+        assert found.status is word
         assert found.deciding.name == column
         assert edge.datum in found.deciding.reason
 
@@ -103,13 +104,13 @@ def test_a_column_that_is_absent_is_told() -> None:
     asked = short("locked")
     exact = standard(asked).exact
     found = judge(asked, History(exact.time, {DISPLACEMENT: exact.displacement}))
-    assert (found.word, found.withheld) == (Word.PARTIAL, (PRESSURE,))
+    assert (found.status, found.withheld) == (Status.PARTIAL, (PRESSURE,))
     assert found.verdict == "PARTIAL: PASS on displacement; contact_pressure not reported"
     whole = judge(asked, exact)
-    assert (whole.word, whole.withheld) == (Word.PASS, ())
+    assert (whole.status, whole.withheld) == (Status.PASS, ())
     failed = judge(asked, History(exact.time, {DISPLACEMENT: 2 * exact.displacement}))
     assert failed.verdict == "FAIL; contact_pressure not reported" and failed.withheld == (PRESSURE,)
-    assert judge(asked, History(exact.time, {})).word is Word.NOT_JUDGED
+    assert judge(asked, History(exact.time, {})).status is Status.NOT_JUDGED
 
 
 def test_a_history_at_other_instants_is_refused() -> None:
@@ -161,8 +162,8 @@ def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) 
     assert held.bands[name].high == 0.01
     assert "in proportion to what drives it" in held.bands[name].reason
     t, g = held.exact.time, -9.81 if name == DISPLACEMENT else -9.81 * math.sin(math.radians(30.0))
-    for late, word in ((1e-7, Word.PASS), (0.5 * t[0], Word.FAIL)):
-        assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).word is word
+    for late, word in ((1e-7, Status.PASS), (0.5 * t[0], Status.FAIL)):
+        assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).status is word
 
 
 def test_numbers_of_columns_on_contacts() -> None:
@@ -259,8 +260,8 @@ def test_rigid_boxes_are_judged_by_their_numbers(name: str) -> None:
     assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
     judgement = judge(one, reference.exact)
     assert judgement.verdict == "PASS"
-    assert judgement.columns and len(judgement.columns) == len(judgement.quantities)
-    assert all(column.band is not None and column.band <= 0.026 for column in judgement.columns)
+    assert judgement.criteria and len(judgement.criteria) == len(judgement.quantities)
+    assert all(one.allowed is not None and one.allowed <= 0.026 for one in judgement.criteria)
 
 
 def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
@@ -268,10 +269,10 @@ def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
     exact = standard(one).exact
     creeping = History(exact.time, dict(exact.columns) | {"x_1": exact.time * 0.03 / 60})
     judgement = judge(one, creeping)
-    assert judgement.word is Word.FAIL
+    assert judgement.status is Status.FAIL
     assert judgement.deciding is not None
     assert judgement.deciding.error == pytest.approx(0.03)
-    assert judgement.deciding.band == pytest.approx(0.01)
+    assert judgement.deciding.allowed == pytest.approx(0.01)
     assert judgement.quantities[0].value == pytest.approx(0.5)
 
 
@@ -280,7 +281,7 @@ def test_a_number_of_a_withheld_column_is_not_reported() -> None:
     exact = standard(one).exact
     fewer = History(exact.time, {name: exact.columns[name] for name in ("x_1", "y_1")})
     judgement = judge(one, fewer)
-    assert judgement.word is Word.PARTIAL
+    assert judgement.status is Status.PARTIAL
     assert "energy in the end over that at the start" in judgement.withheld
     assert "change of the speed along the ground" not in judgement.withheld
 
@@ -304,8 +305,8 @@ def test_boxes_whose_numbers_would_mean_something_else_are_refused(
 def test_the_question_of_boxes_may_be_asked_with_another_friction() -> None:
     steeper = problem_of(load_scene("rigid-standing").with_values({"rigid.friction": 19.0}))
     judgement = judge(steeper, standard(steeper).exact)
-    assert [column.name for column in judgement.columns] == ["distance slid"]
-    assert judgement.word is Word.PASS
+    assert [one.name for one in judgement.criteria] == ["distance slid"]
+    assert judgement.status is Status.PASS
 
 
 def test_boxes_that_are_no_problem_are_not_judged() -> None:

@@ -8,20 +8,21 @@ from pathlib import Path
 
 import pytest
 from conftest import refused, typed
+from pydantic import BaseModel, ValidationError
 
 from validation.errors import InputError
 from validation.problems import pack
 from validation.problems.answers import read_sets
-from validation.problems.data import PACK, AnswersData, ProblemData, SubmissionData, united
-from validation.problems.defects import DefectsError
+from validation.problems.data import ANSWERS, PACK, AnswersData, ProblemData
 from validation.problems.judge import judge
-from validation.problems.problem import PROBLEMS
-from validation.problems.questions import box_questions, names
-from validation.problems.submission import read_submission
+from validation.problems.problem import ASKS, names, problem
+from validation.runs.defects import DefectsError
 
 QUICK = ("locked", "rocking", "column", "stack", "joint")
 OF_COLUMNS = ("column", "stack", "joint")
-FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody"}
+BOXES = ("standing", "pile", "toppling-spin-0.95-of-critical")
+FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody", "scheme": "s",
+          "step_s": None, "contact_model": "c", "processor": "p", "licence": "CC0-1.0"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -29,24 +30,26 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the problems whose exact motions take no time."""
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pack, "PROBLEMS", QUICK)
-        assert pack.write_pack(directory) == len(QUICK) + len(box_questions())
+        patch.setattr(pack, "names", lambda: (*QUICK, *BOXES))
+        assert pack.write_pack(directory) == len(QUICK) + len(BOXES)
     return directory
 
 
-def answered(problems: Path, name: str, place: Path) -> str:
-    """Answer a problem of a pack with its own exact motion, and return the verdict."""
-    shutil.copytree(problems / "submissions" / name, place)
+def filled(problems: Path, place: Path, *names: str) -> Path:
+    """Fill in the folder of a pack, some problems with their own exact motions."""
+    shutil.copytree(problems / "answers", place)
     stated = place / "submission.json"
     stated.write_text(json.dumps(json.loads(stated.read_text()) | FILLED))
-    shutil.copy(problems / "exact" / f"{name}.csv", place / "answer.csv")
-    found = read_submission(place)
-    return judge(found.problem, found.history).verdict
+    for name in names:
+        shutil.copy(problems / "exact" / f"{name}.csv", place / f"{name}.csv")
+    return place
 
 
-@pytest.mark.parametrize("name", QUICK)
-def test_a_problem_is_answered_by_the_files_of_the_pack(name: str, written: Path, tmp_path: Path) -> None:
-    assert answered(written, name, tmp_path / "mine") == "PASS"
+def test_problems_are_answered_by_the_files_of_the_pack(written: Path, tmp_path: Path) -> None:
+    ((answers),) = [one.answers for one in read_sets(filled(written, tmp_path / "mine", *QUICK))]
+    assert {answer.name: judge(answer.problem, answer.history).verdict for answer in answers} == dict.fromkeys(
+        sorted(QUICK, key=names().index), "PASS"
+    )
 
 
 @pytest.mark.parametrize("name", QUICK)
@@ -59,18 +62,29 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
     for column in data.answer:
         assert 0 == column.low < column.high < 0.2 and "one per cent of" in column.reason
         assert column.until_s <= data.sampling.step_s * data.sampling.count * (1 + 1e-9)
-    assert (data.pack, data.problem, data.column is None) == (PACK, name, name not in OF_COLUMNS)
-    assert (data.block is None) == (data.contact is None) == (data.load is None) == (name in OF_COLUMNS)
+    assert (data.pack, data.problem, "column" in data.scene) == (PACK, name, name in OF_COLUMNS)
 
 
 def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
-    for schema, data in (("problem", ProblemData), ("submission", SubmissionData), ("answers", AnswersData)):
+    for schema, data in (("problem", ProblemData), ("answers", AnswersData)):
         assert data.model_json_schema().items() <= json.loads((written / f"{schema}.schema.json").read_text()).items()
     page = (written / "README.md").read_text()
-    assert f"version {PACK};" in page and f"`{united('rotation')}`" in page
-    assert [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4][
-        -len(QUICK) - len(box_questions()) :
-    ] == [*QUICK, *box_questions()]
+    assert f"version {PACK};" in page and "`rotation_rad`" in page and "| `block.density_kg_per_m3` |" in page
+    lines = [line.split("`")[1] for line in page.splitlines() if line.startswith("| `") and line.count("|") == 4]
+    assert lines[-len(QUICK) - len(BOXES) :] == [*QUICK, *BOXES]
+
+
+@pytest.mark.parametrize("model", [ProblemData, AnswersData])
+def test_what_is_required_or_unknown_is_refused(model: type[BaseModel], written: Path) -> None:
+    of_answers = {"format": ANSWERS, "pack": PACK, **pack.ANSWERS_TEMPLATE, "step_s": {"locked": 1e-3}}
+    whole = of_answers if model is AnswersData else json.loads((written / "stack.json").read_text())
+    model.model_validate_json(json.dumps(whole))
+    wrong = [
+        {key: value for key, value in whole.items() if key != name} for name in model.model_json_schema()["required"]
+    ]
+    for data in ({**whole, "unknown": 1}, *wrong):
+        with pytest.raises(ValidationError):
+            model.model_validate_json(json.dumps(data))
 
 
 @pytest.fixture
@@ -122,8 +136,8 @@ def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
     done = typed("export-pack", tmp_path / "pack")
     assert done.returncode == 0, done.stderr
     assert f"{len(names())} problems for any program" in done.stdout
-    for name in PROBLEMS:
-        assert answered(tmp_path / "pack", name, tmp_path / name) == "PASS"
+    ((answers),) = [one.answers for one in read_sets(filled(tmp_path / "pack", tmp_path / "mine", *ASKS))]
+    assert [judge(answer.problem, answer.history).verdict for answer in answers] == ["PASS"] * len(ASKS)
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path, tmp_path: Path) -> None:
@@ -134,23 +148,21 @@ def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path,
         read_sets(place)
     fields = {str(defect.field) for defect in caught.value.defects}
     assert fields == {name for name, blank in pack.ANSWERS_TEMPLATE.items() if blank} - {"settings_name"}
-    stated = json.loads((place / "submission.json").read_text())
-    filled = FILLED | {"scheme": "s", "step_s": None, "contact_model": "c", "processor": "p", "licence": "CC0-1.0"}
-    (place / "submission.json").write_text(json.dumps(stated | filled))
+    blank = filled(written, tmp_path / "blank")
     with pytest.raises(InputError, match="must hold the table of a problem"):
-        read_sets(place)
-    shutil.copy(written / "exact/rocking.csv", place / "rocking.csv")
-    ((answer,),) = [one.answers for one in read_sets(place)]
+        read_sets(blank)
+    shutil.copy(written / "exact/rocking.csv", blank / "rocking.csv")
+    ((answer,),) = [one.answers for one in read_sets(blank)]
     assert answer.name == "rocking"
 
 
-def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(written: Path) -> None:
-    for name, question in box_questions().items():
-        data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
-        assert data.rigid is not None and data.block is None and data.exact is None
-        assert [number.name for number in data.numbers] == [quantity.name for quantity in question.quantities]
-        assert all(number.low <= number.exact <= number.high for number in data.numbers)
-        assert len(data.answer) == 3 * len(data.rigid.boxes)
-        header, first, *_ = (written / "answers" / f"{name}.csv").read_text().splitlines()
-        assert header.split(",") == [pack.TIME, *(column.name for column in data.answer)]
-        assert float(first.split(",")[0]) == pytest.approx(data.sampling.step_s)
+@pytest.mark.parametrize("name", BOXES)
+def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(name: str, written: Path) -> None:
+    data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
+    assert data.exact is None and list(data.scene) == ["rigid"]
+    assert [one.name for one in data.numbers] == [one.name for one in problem(name).numbers if not one.optional]
+    assert all(number.low <= number.exact <= number.high for number in data.numbers)
+    assert len(data.answer) == 3 * len(data.scene["rigid"]["boxes"])
+    header, first, *_ = (written / "answers" / f"{name}.csv").read_text().splitlines()
+    assert header.split(",") == [pack.TIME, *(column.name for column in data.answer)]
+    assert float(first.split(",")[0]) == pytest.approx(data.sampling.step_s)

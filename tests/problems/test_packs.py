@@ -13,12 +13,11 @@ from validation.problems import packs
 from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.packs import digest, stale
-from validation.problems.problem import problem
-from validation.problems.questions import names, question
+from validation.problems.problem import names, problem
 
 
 def test_the_version_of_the_pack_is_that_of_its_problems() -> None:
-    digests = {name: digest(question(name)) for name in names()}
+    digests = {name: digest(problem(name)) for name in names()}
     assert packs.packs().get(PACK) == digests, (
         "problems are others: give the pack another version (PACK; minor where problems are added only), "
         f"and packs.json these digests of it: {json.dumps(digests)}"

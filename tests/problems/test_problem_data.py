@@ -1,179 +1,129 @@
-"""Problems as plain data: nothing of a scene is lost, the names carry the units, the version moves with the data."""
+"""Problems as plain data: nothing of a scene is lost, names carry the units, what is infinite has a name."""
 
 from __future__ import annotations
 
 import json
 import re
-from dataclasses import astuple
 from typing import Any
 
 import pytest
-from pydantic import BaseModel
 
 from validation.errors import InputError
-from validation.problems.data import (
-    BlockData,
-    ColumnContactData,
-    ColumnData,
-    ContactData,
-    InputData,
-    JointData,
-    LayerData,
-    LoadData,
-    block_data,
-    column_data,
-    contact_data,
-    load_data,
-    meaning,
-    united,
-)
-from validation.problems.problem import PREFIX, PROBLEMS
-from validation.scenes.column import ColumnSection
+from validation.problems.problem import ASKS, PREFIX, problem
+from validation.scenes.plain import scene_data, words
 from validation.scenes.scene import Scene, load_scene, parse_scene
 
-SI = ("_m", "_kg_per_m3", "_Pa", "_m_per_s", "_deg", "_N_per_m", "_m_per_s2", "_Pa_per_m", "_Pa_s_per_m", "_Hz", "_s")
-# of the data of each version; where one differs the version must be another one, so that no submission to the
-# earlier problem is judged by the new one
+SI = r"_(m|kg_per_m3|Pa|m_per_s2?|deg|rad|rad_per_s|N_per_m|Pa_per_m|Hz|s)$"
+WORDS = {"poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "contacts", "settled", "at", "shape"}
+WORDS |= {"geometry", "restitution", "boxes"}
 
 
-def plain(data: BaseModel, *without: str) -> dict[str, Any]:
-    """Return what is stated in plain data, by names without their units; what is infinite is a number."""
-    unit = re.compile(f"({'|'.join(SI)})$")
-    stated = {unit.sub("", name): value for name, value in data if value is not None}
-    numbers = {name: value for name, value in stated.items() if value and name not in without}
-    return {name: float("inf") if value == "inf" else value for name, value in numbers.items()}
-
-
-def of_column(column: ColumnData) -> dict[str, Any]:
-    """Return the tables of a scene that the plain data describe; the impedance stands for density and speed."""
-    base = plain(column.base)
-    below = {"base_density": base["impedance"], "base_speed": 1.0} if "impedance" in base else {}
-    below |= {"base_stiffness": base["stiffness"]} if "stiffness" in base else {}
-    springs = column.joints if column.law == "bonded" else column.contacts
-    return {
-        "column": {
-            **plain(column, "layers", "joints", "contacts", "input"),
-            "base": base["kind"],
-            "layer": [plain(layer) for layer in column.layers],
-            "joint": [{"height": 0.0} | plain(spring) for spring in springs],
-            **below,
-        },
-        **({"input": plain(column.input)} if column.input else {}),
-    }
+def plain(value: Any) -> Any:
+    """Return plain data by names without their units, what is null left out; what is infinite is a number."""
+    if isinstance(value, dict):
+        return {re.sub(SI, "", name): plain(part) for name, part in value.items() if part is not None}
+    if isinstance(value, list):
+        return [plain(part) for part in value]
+    return float("inf") if value == "inf" else value
 
 
 def rebuilt(scene: Scene) -> Scene:
     """Return the scene that the plain data of a scene describe."""
-    column = column_data(scene)
-    if column is None:
-        contact = plain(contact_data(scene))
-        contact["stiffness"] = contact.pop("normal_stiffness")
-        tables = {
-            "block": plain(block_data(scene), "thickness"),
-            "contact": contact,
-            "load": plain(load_data(scene)),
-            "run": {"geometry": scene.run.geometry},
-        }
-    else:
-        tables = of_column(column)
+    tables = plain(scene_data(scene))
+    geometry = tables.pop("geometry", "small")
+    tables["run"] = {"geometry": "updated" if geometry == "large rotation" else "small"}
+    if "column" in tables:
+        column = tables["column"]
+        column["layer"] = column.pop("layers")
+        springs = [
+            {name: value for name, value in spring.items() if (name, value) != ("strength", float("inf"))}
+            for spring in column.pop("contacts", column.pop("joints", []))
+        ]
+        column["joint"] = springs
+    if tables.get("input", ...) is None:
+        del tables["input"]
     return parse_scene({"name": scene.name, "time": {"step": 1.0, "steps": 1}} | tables, "plain data")
 
 
-def seen(scene: Scene) -> dict[str, Any]:
-    """Return what a scene's motion depends on."""
+def motion_data(scene: Scene) -> dict[str, Any]:
+    """Return what the motion of a scene depends on, as its own tables have it."""
     if scene.column is not None:
-        return seen_of_column(scene, scene.column)
+        column = scene.column
+        drive = scene.stated_input
+        return {
+            "contacts": column.contacts,
+            "springs": [(spring.height, spring.stiffness) for spring in column.springs] if not column.contacts else [],
+            "layers": [layer.model_dump(exclude={"blocks"}) for layer in column.layer],
+            "rest": column.model_dump(include={"motion", "law", "settled", "heights", "glue"}),
+            "impedance": column.impedance,
+            "input": None if drive is None else drive.model_dump(),
+        }
+    contact = scene.contact.model_dump() | {"shear_stiffness": scene.contact.shear}
     block = scene.block.model_dump(exclude={"side", "width", "height"}) | {"outline": scene.block.outline}
-    # no problem has a dashpot, an impact law or passes of an augmented Lagrangian
-    contact = scene.contact.model_dump(exclude={"damping_ratio", "restitution", "penetration"})
-    contact["shear_stiffness"] = scene.contact.shear
-    load = scene.load.model_dump(exclude={"ramp"})  # no exact motion is known under a ramp, and so no problem has one
-    return block | contact | load | {"geometry": scene.run.geometry}
+    return block | contact | scene.load.model_dump() | {"geometry": scene.run.geometry}
 
 
-def seen_of_column(scene: Scene, column: ColumnSection) -> dict[str, Any]:
-    """Return what the motion of a column depends on; a code of blocks has its own number of them in a bar."""
-    plain = column.model_dump(include={"motion", "law", "layer", "glue", "settled", "heights"})
-    for layer in plain["layer"]:
-        del layer["blocks"]
-    # springs below a column whose contacts open or slip are the lowest of these
-    base = "rigid" if column.base == "springs" and column.contacts else column.base
-    springs = [(joint.height, joint.stiffness) for joint in column.springs] if column.law == "bonded" else []
-    drive = scene.stated_input.model_dump() if scene.stated_input is not None else None
-    return plain | {
-        "base": base,
-        "springs": springs,
-        "contacts": [astuple(contact) for contact in column.contacts],
-        "gravity": column.gravity if column.law == "unilateral" else 0.0,
-        "impedance": column.impedance,
-        "input": drive,
-    }
+VARIANTS: list[tuple[str, dict[str, Any]]] = [
+    *((PREFIX + name, {}) for name in ASKS),
+    (
+        "field-locked",
+        {"load.eccentricity": 0.1, "load.traction": 3.0, "block.poisson": 0.2, "block.width": 3.0, "block.height": 2.5},
+    ),
+    ("field-locked", {"block.poisson": 0.2, "block.hypothesis": "plane strain", "contact.shear_stiffness": 7.0}),
+    ("field-opening", {"contact.gap": 0.1, "contact.friction": 20.0, "contact.cohesion": 5.0}),
+    ("field-locked", {"load.gravity": 3.0, "load.slope": 5.0}),
+    ("columns-shaken", {}),
+    ("columns-joint", {"input.shape": "cosine"}),
+    ("columns-slips", {}),
+    ("columns-mass-ratio", {"column.base": "springs", "column.base_stiffness": 3e9}),
+    ("field-stack", {"column.settled": True}),
+    ("field-cradle", {"column.stiffness": "inf"}),
+    ("field-joint", {"column.joint": [{"height": 40.0, "stiffness": "inf"}]}),
+]
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
-def test_nothing_of_a_problem_is_lost(name: str) -> None:
-    scene = load_scene(PREFIX + name)
-    assert seen(rebuilt(scene)) == seen(scene)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"load.eccentricity": 0.1, "load.traction": 3.0, "block.poisson": 0.2, "block.hypothesis": "plane strain"},
-        {"contact.law": "unilateral", "contact.gap": 0.1, "contact.friction": 20.0, "contact.cohesion": 5.0},
-        {"load.gravity": 3.0, "load.slope": 5.0, "contact.shear_stiffness": 7.0},
-    ],
-)
-def test_nothing_of_another_scene_is_lost(values: dict[str, Any]) -> None:
-    scene = load_scene(f"{PREFIX}locked").with_values(values)
-    assert seen(rebuilt(scene)) == seen(scene) != seen(load_scene(f"{PREFIX}locked"))
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("columns-shaken", {}),
-        ("columns-joint", {"input.shape": "cosine"}),
-        ("columns-slips", {}),
-        ("columns-spall-bars", {}),
-        ("columns-mass-ratio", {"column.base": "springs", "column.base_stiffness": 3e9}),
-        ("field-stack", {"column.settled": True}),
-        ("field-cradle", {"column.stiffness": "inf"}),
-        ("field-joint", {"column.joint": [{"height": 40.0, "stiffness": "inf"}]}),
-    ],
-)
-def test_nothing_of_another_column_is_lost(name: str, values: dict[str, Any]) -> None:
+@pytest.mark.parametrize(("name", "values"), VARIANTS)
+def test_nothing_of_a_scene_is_lost(name: str, values: dict[str, Any]) -> None:
     scene = load_scene(name).with_values(values)
-    assert seen(rebuilt(scene)) == seen(scene)
+    assert motion_data(rebuilt(scene)) == motion_data(scene)
+    if values:
+        assert scene_data(scene) != scene_data(load_scene(name))
+
+
+def test_boxes_stand_where_they_are_at_the_start() -> None:
+    data = scene_data(problem("tumbling").scene)["rigid"]
+    (box,) = data["boxes"]
+    rigid = problem("tumbling").scene.rigid
+    assert (box["x_m"], box["y_m"], box["angle_rad"]) == rigid.starts[0]
+    assert (data["gravity_m_per_s2"], data["friction_deg"]) == (rigid.gravity, rigid.friction)
 
 
 def test_what_is_infinite_stands_in_json_as_inf() -> None:
-    data = column_data(load_scene("field-stack"))
-    assert data is not None
-    assert {layer.young_Pa for layer in data.layers} == {"inf"}
-    assert [contact.height_m for contact in data.contacts] == [0.0, 1.0, 2.0, 3.0, 4.0]
-    assert [contact.gap_m for contact in data.contacts] == [0.005, 0.0005, 0.0005, 0.0005, 0.0005]
-    assert ColumnData.model_validate_json(json.dumps(data.model_dump(mode="json"), allow_nan=False)) == data
-    assert column_data(load_scene("field-joint")).contacts[0].strength_Pa == 1e5
-    assert column_data(load_scene("field-cradle")).contacts[0].strength_Pa is None
+    column = scene_data(load_scene("field-stack"))["column"]
+    assert {layer["young_Pa"] for layer in column["layers"]} == {"inf"}
+    assert [contact["height_m"] for contact in column["contacts"]] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert [contact["gap_m"] for contact in column["contacts"]] == [0.005, 0.0005, 0.0005, 0.0005, 0.0005]
+    assert json.loads(json.dumps(column, allow_nan=False)) == column
+    assert scene_data(load_scene("field-joint"))["column"]["contacts"][0]["strength_Pa"] == 1e5
 
 
 def test_a_record_is_no_plain_data() -> None:
     with pytest.raises(InputError) as caught:
-        column_data(load_scene("waves-site").with_values({}))
+        scene_data(load_scene("waves-site"))
     assert caught.value.field == "input.shape"
 
 
-def test_every_number_of_the_data_names_its_unit() -> None:
-    for data in (BlockData, ContactData, LoadData, ColumnData, LayerData, JointData, ColumnContactData, InputData):
-        for name in data.model_fields:
-            plain = name in ("poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "input")
-            plain |= name in ("contacts", "settled", "at", "shape")
-            assert plain or name.endswith(SI), name
-    assert united("displacement_2") == "displacement_2_m" and united("stress_1") == "stress_1_Pa"
-    assert united("rotation") == "rotation_rad" and united("contact_pressure") == "contact_pressure_Pa"
-    assert united("velocity_1") == "velocity_1_m_per_s" and united("force_12") == "force_12_Pa"
-    assert (united("gap_3"), united("slip_3")) == ("gap_3_m", "slip_3_m")
-    for name in ("velocity_2", "force_2", "gap_2", "slip_2"):
-        assert "the 2. of the heights" in meaning(name)
-    assert meaning("displacement_2").startswith("displacement at the 2. of the heights")
+def test_every_number_of_the_data_names_its_unit_and_has_its_words() -> None:
+    meanings = {name.rpartition(".")[2]: text for name, text in words()}
+    assert all(re.search(SI, name) or name in WORDS for name in meanings)
+    for name in ("locked", "column", "joint", "impact"):
+        for table in scene_data(problem(name).scene).values():
+            for key in table if isinstance(table, dict) else ():
+                assert re.search(SI, key) or key in WORDS, key
+
+
+def test_columns_name_their_units() -> None:
+    assert [problem("joint").named(column) for column in problem("joint").columns] == [
+        *("velocity_1_m_per_s", "velocity_2_m_per_s", "force_3_Pa", "slip_3_m"),
+    ]
+    assert problem("impact").named("force_1") == "force_1_N" and problem("impact").named("creep") == "creep"

@@ -108,9 +108,9 @@ def test_a_count_that_is_none_is_no_small_number() -> None:
     count = verdict(scene, 0.0, (0.0, 0.0), metric="displacement.fine_settling_step")
     error = verdict(scene, 0.0, (0.0, 1e-9), metric="displacement.l2")
     assert [gates.value_cell(v["value"], v["metric"]) for v in (count, error)] == ["0", "<10⁻¹²"]
-    (told,) = judged_chapter._further_numbers((Quantity("openings", "1", 0.0, 5.0),), of_boxes=False).rows
+    (told,) = judged_chapter.numbers_table((Quantity("openings", "1", 0.0, 5.0),)).rows
     assert told == ("openings", "0", "5", "1")
-    (told,) = judged_chapter._further_numbers((Quantity("damping ratio", "1", 0.0, 0.1),), of_boxes=False).rows
+    (told,) = judged_chapter.numbers_table((Quantity("damping ratio", "1", 0.0, 0.1),)).rows
     assert told[1] == "<10⁻¹²"
 
 

@@ -28,8 +28,8 @@ def scene_with(tmp_path: Path, load: str, record: str | None = None) -> Path:
         ("time,z\n0,0\n", "header must be time,x or time,y or time,x,y"),
         ("time,x\n0,0\n0,1\n", "time must increase from row to row, got 0 after 0"),
         ("time,x\n0,nan\n", "must hold finite numbers"),
-        ("time,x\n0,a\n", "must be a table of numbers"),
-        ("time,x\n", "header must begin with time and name every column"),
+        ("time,x\n0,a\n", ":2:3: must be a number, got 'a'"),
+        ("time,x\n", "must hold rows of numbers under the header"),
     ],
 )
 def test_records_are_checked(tmp_path, record, words):

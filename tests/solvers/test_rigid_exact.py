@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from validation.gates.gate import Status
 from validation.problems.boxes import BoxCase, box_problems, measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene, parse_scene
@@ -49,8 +50,8 @@ def test_the_exact_motion_passes_its_problem(name: str, case: BoxCase) -> None:
         assert "until the box comes back" in refusal(scene) or "overturns" in refusal(scene)
         return
     for one in measured(quantities, motion(scene)):
-        assert one.word == "PASS", one
-        assert one.beside is not None and one.beside < 0.05
+        error, allowed = one.shares
+        assert one.status is Status.PASS and error is not None and error <= 0.05 * allowed, one
 
 
 def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> None:

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from conftest import thinned
 
+from validation.runs.columns import unit_of
 from validation.runs.history import Array
 from validation.runs.run import Outcome
+from validation.runs.units import ratios
 from validation.scenes.scene import Scene, load_scene
+from validation.solvers.foreign import factor, run_of_columns
 from validation.solvers.registry import get_solver
-from validation.solvers.user import UNITS, _run_of_columns
 
 COLUMNS = ("displacement", "contact_pressure")
 SI = {  # how much of it makes one s, one m, one Pa: written down here once more
@@ -44,9 +46,18 @@ def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str,
 
 
 def test_every_unit_of_the_table_is_tested() -> None:
-    assert {(column, unit) for column, units in UNITS.items() for unit in units.values()} == set(NAMES) | {
-        (column, unit) for column, units in AT_HEIGHTS.items() for unit in units
-    }
+    units = {**SI, **{f"{column}_1": units for column, units in AT_HEIGHTS.items()}}
+    for column, of_column in units.items():
+        assert set(ratios("s" if column == "time" else unit_of(column)).values()) == set(of_column)
+
+
+@pytest.mark.parametrize("column", AT_HEIGHTS)
+def test_another_unit_at_a_height_is_named(scene: Scene, column: str) -> None:
+    expected = np.sin(np.linspace(0.1, 9.0, 50))
+    for unit, times in AT_HEIGHTS[column].items():
+        told = factor(f"{column}_1", 1.1 * times * expected, expected)
+        assert told is not None and told.endswith(f"{unit}?")
+    assert factor(f"{column}_1", 1.1 * expected, expected) is None
 
 
 @pytest.mark.parametrize(
@@ -57,7 +68,7 @@ def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float
     if column == "time":
         size = 1.0  # the instants are the scene's own
     scene, factor = scene.with_values(VARIANTS[variant] | (SIDEWAYS if column in ASIDE else {})), SI[column][unit]
-    run = _run_of_columns(scene, columns_of(scene, {column: size * factor}))
+    run = run_of_columns(scene, columns_of(scene, {column: size * factor}))
     assert run.outcome is Outcome.WRONG_UNITS
     assert run.notes == (f"wrong units: {column} is {factor:g} times what is expected in SI, {unit}?",)
 
@@ -66,7 +77,7 @@ def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float
 @pytest.mark.parametrize("column", COLUMNS)
 def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, object]) -> None:
     scene = scene.with_values(values)
-    run = _run_of_columns(scene, columns_of(scene, {column: -1.0}))
+    run = run_of_columns(scene, columns_of(scene, {column: -1.0}))
     assert run.outcome is Outcome.WRONG_UNITS and run.notes[0].startswith(f"wrong sign: {column} is the negative of")
     assert "downwards is negative, compression positive" in run.notes[0]
 
@@ -74,12 +85,12 @@ def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, obje
 @pytest.mark.parametrize("width", [0.4, 1.6, 2.0, 7.0])
 def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width: float) -> None:
     scene = scene.with_values({"block.width": width, "block.height": 1.5})
-    run = _run_of_columns(scene, columns_of(scene, {"contact_pressure": width}))
+    run = run_of_columns(scene, columns_of(scene, {"contact_pressure": width}))
     assert run.outcome is Outcome.WRONG_UNITS
     words = f"wrong units: contact_pressure is {width:g} times what is expected, the length of the base: a force?"
     assert run.notes == (words,)
     # a displacement off by the same factor is bad, but no force
-    assert _run_of_columns(scene, columns_of(scene, {"displacement": width})).outcome is Outcome.COMPLETED
+    assert run_of_columns(scene, columns_of(scene, {"displacement": width})).outcome is Outcome.COMPLETED
 
 
 @pytest.mark.parametrize(
@@ -96,21 +107,29 @@ def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width:
     ids=str,
 )
 def test_a_bad_answer_in_si_is_no_slip_of_units(scene: Scene, times: dict[str, float]) -> None:
-    assert _run_of_columns(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
+    assert run_of_columns(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
 
 
 def test_a_base_of_one_metre_makes_force_and_pressure_one(scene: Scene) -> None:
     scene = scene.with_values({"block.side": 1.0})
-    assert _run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+    assert run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+
+
+def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> None:
+    """A column that is alike by less than 0.8 tells nothing of units: here it is noise of a thousandfold size."""
+    columns = columns_of(scene)
+    noise = np.random.default_rng(3).standard_normal(scene.time.steps)
+    size = np.linalg.norm(columns["displacement"]) / np.linalg.norm(noise)
+    assert run_of_columns(scene, columns | {"displacement": 1e3 * size * noise}).outcome is Outcome.COMPLETED
 
 
 def test_time_is_judged_before_the_columns(scene: Scene) -> None:
-    run = _run_of_columns(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
+    run = run_of_columns(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
     assert "time is 1000 times" in run.notes[0]
     late = columns_of(scene) | {"time": columns_of(scene)["time"] + scene.time.step}
-    assert _run_of_columns(scene, late).outcome is Outcome.WRONG_SHAPE
+    assert run_of_columns(scene, late).outcome is Outcome.WRONG_SHAPE
 
 
 def test_a_column_has_no_base_that_makes_a_pressure_a_force() -> None:
     scene = load_scene("field-column").with_values({"run.columns": ["displacement", "displacement_1"]})
-    assert _run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED
+    assert run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED

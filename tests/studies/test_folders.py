@@ -138,7 +138,7 @@ def test_a_folder_that_is_taken_away_leaves_the_others_whole(
     assert typed("list", "studies").returncode == 0
 
 
-@pytest.mark.parametrize("name", sorted({*study_names()} - {"field"}))  # whose programs are those that are installed
+@pytest.mark.parametrize("name", study_names())
 def test_what_gates_and_derived_rows_need_is_run(name: str) -> None:
     study = get_study(name)
     owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes())

@@ -1,291 +1,339 @@
-"""The command ``judge``: answers to problems, from any program."""
+"""The command ``judge``: what a program answers, by a solver, a file or a folder of answers, and gates on its steps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from validation.cli.app import GATE_FAILED, NUMERICAL_FAILURE, JsonOption, SetOption, _progress, app, one_case
-from validation.cli.judging import all_defects, judged_answer, judged_sets, made_directory
+from validation.cli.app import (
+    BAD_INPUT,
+    GATE_FAILED,
+    NUMERICAL_FAILURE,
+    JsonOption,
+    SetOption,
+    _progress,
+    app,
+    one_case,
+    print_warnings,
+)
 from validation.cli.printing.output import echo, echo_json, print_blocks
 from validation.errors import InputError
 from validation.runs import extras
 
-REPEATED_WITHIN = 30.0  # s: a user's solver that took no longer runs a second time, which shows whether it repeats
-
 if TYPE_CHECKING:
+    from validation.problems.answers import AnswerSet
     from validation.problems.problem import Problem
-    from validation.report.chapters.judged import JudgedAnswer
-    from validation.report.site.submissions import JudgedSet
-    from validation.runs.history import History
-    from validation.runs.run import Run
+    from validation.suite.judging import JudgedSet
+
+INSTALLED = "installed"  # in the place of a source: all solvers that installed packages bring
 
 
 @app.command()
 def judge(
-    target: Annotated[
+    source: Annotated[
         str,
         typer.Argument(
-            help="Directory with submission.json and the answers as CSV files, or a directory of such; with --solver a "
-            "problem, scene or scene file.",
-            metavar="DIR|PROBLEM|SCENE",
+            help="Who answers: a solver (module:attribute, or a name of `list solvers`), ./program, a table of one "
+            "history, a folder of answers or a directory of such; `installed`: all solvers of other packages.",
+            metavar="SOLVER|FILE|DIR",
         ),
     ],
-    solver: Annotated[
-        str | None, typer.Option(help="Run this solver and judge its answer, see `dda-validate list`.", metavar="NAME")
+    asked: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="What is asked: problems, scenes or scene files; by default all problems, of a folder those that it "
+            "answers.",
+            metavar="[PROBLEM|SCENE]...",
+        ),
     ] = None,
-    scene: Annotated[
-        str | None,
-        typer.Option(help="The submission answers this scene, not a problem of the pack.", metavar="SCENE"),
+    beside: Annotated[
+        list[str] | None, typer.Option("--beside", help="Another one who answers, for a table.", metavar="SOLVER|DIR")
+    ] = None,
+    study: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--study",
+            help="Put the solver in the place of dda and run the gates of this study that apply, `all` of every one.",
+            metavar="NAME",
+        ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Directory for page and badge, by default that of the submission; of answers to several problems the "
-            "directory for their site, by default none.",
-            metavar="DIR",
+            help="Write the site of the answers into a directory, a table, pages with curves, badges, verdicts.json; "
+            "or the table as a PDF.",
+            metavar="DIR|FILE.pdf",
         ),
     ] = None,
     keep: Annotated[
         Path | None,
-        typer.Option(help="Copy the judged answers to DIR/PROGRAM/VERSION/SETTINGS, see docs.", metavar="DIR"),
+        typer.Option(help="Copy judged folders of answers to DIR/PROGRAM/VERSION/SETTINGS.", metavar="DIR"),
     ] = None,
-    site: Annotated[
-        Path | None,
-        typer.Option(
-            help="Write the site of all submissions below the directory, PROGRAM/VERSION/SETTINGS: a table, a page a "
-            "program, badges, verdicts.json; verdicts leave the exit status alone.",
-            metavar="DIR",
-        ),
+    layout: Annotated[
+        bool, typer.Option("--layout", help="Refuse folders that do not lie in PROGRAM/VERSION/SETTINGS.")
+    ] = False,
+    require: Annotated[
+        list[str] | None,
+        typer.Option("--require", help="Fail with status 3 if this solver gives no answer at all.", metavar="NAME"),
+    ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(help="What a table calls its columns.", metavar="time=T,displacement=UY"),
+    ] = None,
+    scale: Annotated[
+        str | None,
+        typer.Option(help="Factors that convert its values to SI, upwards positive.", metavar="displacement=-1e-3"),
     ] = None,
     assignments: SetOption = None,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="List all failing gates.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Judge answers to problems against their exact motions, and write page and badge.
+    """Judge what a program answers against exact motions and numbers, with the cause of a failure.
 
     Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
     spall, cradle, joint; of rigid boxes, whose numbers are judged: standing, restitution, bouncing, tumbling, pile,
-    heavy-top, toppling, shaken, impact, and in folders of answers their cases. They and folders to fill in, of one
-    problem or of all, come with dda-validate export-pack. A column passes where its error is below what one per cent of
-    the problem's data changes. PARTIAL: the columns that it reports pass, others that the problem asks for are
-    withheld. Stale: it answers an earlier pack, in which the problem was another. What is wrong with the files is
-    listed with file, line and character. Exit status: 0 it passes, 1 it does not or in part only, 2 bad input, 3 the
-    solver ended in a named failure.
+    heavy-top, toppling, shaken, impact, and their cases. They and a folder to fill in come with dda-validate
+    export-pack. A column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the
+    columns that it reports pass, others that the problem asks for are withheld. Stale: it answers an earlier pack, in
+    which the problem was another. What is wrong with files is listed with file, line and character. Exit status: 0 all
+    passes, 1 something does not or in part only, 2 bad input, 3 a run ended in a named failure.
 
-    Example: [bold]dda-validate judge my-answer[/bold] or [bold]dda-validate judge locked --solver
-    my_solver:solve[/bold]
+    Example: [bold]dda-validate judge my_solver:solve locked[/bold] or [bold]dda-validate judge answers/[/bold]
     """
-    if site is not None:
-        given = {"--solver": solver, "--scene": scene, "--out": out, "--keep": keep, "--set": assignments}
-        for option, value in given.items():
+    if study:
+        options = {"--beside": beside, "--out": out, "--keep": keep, "--set": assignments}
+        for option, value in options.items():
             if value:
-                raise InputError("excludes --site", field=option, value=value)
-        extras.require("--site", *extras.SITE)
-        _write_submissions(Path(target), site)
+                raise InputError("excludes --study", field=option, value=value)
+        _judge_by_gates(source, study, verbose, as_json)
         return
     if out is not None:
-        extras.require("--out", *extras.SITE)
-    if solver is None and scene is None and _has_answers(Path(target)):
-        _refuse_set(assignments)
-        with all_defects():
-            _judge_folder(Path(target), out, keep, as_json)
-        return
-    if keep is not None:
-        rule = "goes with a folder of answers, whose submission.json says licence, scheme and step"
-        raise InputError(rule, field="--keep", advice="dda-validate export-pack DIR writes one to fill in")
-    with all_defects(), _progress("judge") as progress:
-        judged, program = _judge_target(target, solver, scene, assignments, progress)
-        directory = Path(target) if out is None and solver is None else out
-        written: list[Path] = []
-        page_lacks = extras.missing(*extras.SITE)
-        if directory is not None and page_lacks is None:
-            from validation.report.site.judged import write_judged
-
-            progress(3, 3, "page and badge")
-            written = write_judged(judged, program, made_directory(directory))
-    if as_json:
-        from validation.report.chapters.judged import as_data
-
-        echo_json(as_data(judged, program))
-    else:
-        _print(judged, program, written)
-    if directory is not None and page_lacks is not None:
-        echo(f"no page and badge: {page_lacks}", err=True)
-    if judged.judgement.word != "PASS":  # PARTIAL neither: what is withheld may be what is wrong
-        raise typer.Exit(GATE_FAILED)
-
-
-def _has_answers(directory: Path) -> bool:
-    """Whether a directory is not that of an answer to one problem, stated by itself."""
-    from validation.problems.data import SUBMISSION
-    from validation.problems.stated import read_document
-    from validation.problems.submission import EXPORT, FILE
-
-    if not directory.is_dir():
-        return False
-    if not (directory / FILE).exists():
-        return any(directory.rglob(FILE))
-    with all_defects():
-        stated = read_document(directory / FILE, EXPORT).content
-    return stated.get("format") != SUBMISSION and "problem" not in stated
-
-
-def _refuse_set(assignments: list[str] | None) -> None:
-
-    if assignments:
-        raise InputError("goes with --scene or --solver", field="--set", value="a submission to a problem of the pack")
-
-
-def _judge_folder(root: Path, out: Path | None, keep: Path | None, as_json: bool) -> None:
-    """Judge folders of answers, write their site and keep them where that is asked for."""
-    from validation.problems import answers
-    from validation.problems.judge import Word
-    from validation.report.site.submissions import summary, verdicts, write_site
-
-    with _progress("judge", between_calls=True) as progress:
-        sets = answers.read_sets(root, progress=progress)
-        judged = judged_sets(sets, progress)
-        places = [] if keep is None else answers.keep(sets, keep)  # first: what it refuses leaves no page
-        written = [f"kept in {place}" for place in places]
-        if out is not None:
-            written.append(f"wrote {write_site(judged, out, progress)}")
-    if as_json:
-        echo_json(verdicts(judged))
-    else:
-        for one in judged:
-            _print_set(one)
-        for line in written:
-            echo(line)
-    if any(count for word, count in summary(judged).items() if word != Word.PASS):
-        raise typer.Exit(GATE_FAILED)
-
-
-def _write_submissions(source: Path, out: Path) -> None:
-    """Judge all submitted answers and write their site."""
-    from validation.problems.answers import read_sets
-    from validation.report.site.submissions import write_site
-
+        extras.require("--out", *(extras.PDF if out.suffix == ".pdf" else extras.SITE))
+    if assignments and not asked:
+        raise InputError("goes with a problem or a scene", field="--set", value=assignments[0])
     with all_defects(), _progress("judge", between_calls=True) as progress:
-        sets = read_sets(source, in_layout=True, progress=progress)
-        page = write_site(judged_sets(sets, progress), out, progress)
-    echo(f"wrote {page}: {len(sets)} folder{'s' if len(sets) > 1 else ''} of answers")
+        problems = [_asked(name, assignments) for name in asked or ()]
+        sets: list[AnswerSet] = []
+        for one in _sources([source, *(beside or ())]):
+            sets += _answers(one, problems, layout, (columns, scale), progress)
+        if len(sets) == 1 and len(sets[0].answers) == 1:
+            _refuse_inapplicable(sets[0])
+        judged, written = _judged_and_written(sets, out, keep, progress)
+    _print(judged, as_json)
+    for line in written:
+        if not as_json:
+            echo(line)
+    raise typer.Exit(_status(judged, require or ()))
+
+
+def _sources(named: Sequence[str]) -> list[str]:
+    """Return who answers, `installed` spelled out; each once."""
+    from validation.solvers.registry import entry_points
+
+    sources: list[str] = []
+    for name in named:
+        sources += entry_points() if name == INSTALLED else [name]
+    if not sources:
+        raise InputError("no other package brings a solver", field="source", value=repr(INSTALLED))
+    return list(dict.fromkeys(sources))
+
+
+def _asked(name: str, assignments: list[str] | None) -> Problem:
+    """Return a problem of the pack by name, or the one that a scene poses."""
+    from validation.problems.problem import names, problem, problem_of
+    from validation.scenes.scene import parse_assignment
+
+    if name not in names():
+        return problem_of(one_case(name, assignments))
+    if not assignments:
+        return problem(name)
+    scene = problem(name).scene.with_values(dict(map(parse_assignment, assignments)))
+    print_warnings(scene)
+    return problem_of(scene)
+
+
+def _answers(
+    source: str, problems: Sequence[Problem], layout: bool, header: tuple[str | None, str | None], progress: Any
+) -> list[AnswerSet]:
+    """Return what one source answers; `header` is what tables call columns, and factors of them."""
+    from validation.problems import answers
+    from validation.problems.problem import names, problem
+    from validation.runs.units import factors_of, theirs_of
+    from validation.solvers.history_table import HeaderNames
+    from validation.solvers.registry import is_program, is_solver, solver_names
+    from validation.suite.judging import answers_of
+
+    asked = problems or [problem(name) for name in names()]
+    place = Path(source)
+    if os.sep not in source and source not in solver_names() and is_program(os.path.join(".", source)):
+        source = os.path.join(".", source)
+    if source in solver_names() or is_program(source) or (is_solver(source) and ":" in source):
+        return [answers_of(source, asked, progress)]
+    if place.is_dir() and (layout or any(place.rglob(answers.FILE))):
+        return answers.read_sets(place, layout, progress, {posed.name: posed for posed in problems} or None)
+    if place.is_dir() or place.is_file():
+        ours = list(dict.fromkeys(["time", *(column for posed in asked for column in posed.columns)]))
+        theirs, factors = header
+        names_of_tables = HeaderNames(theirs_of(theirs, ours), factors_of(factors, ours))
+        return [answers.read_tables(place, asked, names_of_tables)]
+    rule = "must be a solver, module:attribute, ./program, a file of a history or a directory of answers"
+    raise InputError(rule, field="source", value=repr(source), advice=answers.EXPORT)
+
+
+def _refuse_inapplicable(answer_set: AnswerSet) -> None:
+    """Refuse a solver's only answer where it does not apply, and end the command where it gave none."""
+    from validation.gates.gate import Status
+
+    (answer,) = answer_set.answers
+    if answer.status is Status.NOT_APPLICABLE:
+        raise InputError(f"solver {answer_set.place} does not apply: {answer.reason}", source=answer.name)
+    if answer.status in (Status.NOT_RUN, Status.FAIL):
+        echo(f"{answer.name} {answer_set.place}: {answer.status}: {answer.reason}")
+        raise typer.Exit(NUMERICAL_FAILURE)
+
+
+def _judged_and_written(
+    sets: Sequence[AnswerSet], out: Path | None, keep: Path | None, progress: Any
+) -> tuple[list[JudgedSet], list[str]]:
+    """Judge answers, keep them and write their pages where that is asked for; return what was written in words."""
+    from validation.problems import answers
+    from validation.suite.judging import judged_sets
+
+    judged = judged_sets(sets, progress)
+    places = [] if keep is None else answers.keep(sets, keep)  # first: what it refuses leaves no page
+    written = [f"kept in {place}" for place in places]
+    if out is not None and out.suffix == ".pdf":
+        from validation.report.chapters.answers import first_page
+        from validation.report.render.pdf import write_document
+
+        written.append(f"wrote {write_document(out, lambda directory: first_page(judged))}")
+    elif out is not None:
+        from validation.report.site.submissions import write_site
+
+        written.append(f"wrote {write_site(judged, out, progress)}")
+    return judged, written
+
+
+def _print(judged: Sequence[JudgedSet], as_json: bool) -> None:
+    """Print one answer with what its verdict rests on, several as a table, those of several programs side by side."""
+    from validation.report.chapters import answers
+    from validation.report.chapters.judged import verdict_blocks
+
+    if as_json:
+        echo_json(answers.verdicts(judged))
+        return
+    if len(judged) > 1 and all(one.answers.place.name == str(one.answers.place) for one in judged):
+        print_blocks([answers.answer_table(judged), *answers.reason_blocks(judged)])
+        return
+    for one in judged:
+        judged_answers = [*one.judged.values()]
+        if len(judged_answers) == len(one.answers.answers) == 1:
+            (answer,) = judged_answers
+            print_blocks(verdict_blocks(answer, f"{one.answers.program} on {answer.problem.name}: "))
+        else:
+            _print_set(one)
 
 
 def _print_set(judged: JudgedSet) -> None:
-    """Print the verdict on each answer of a folder, then how many passed."""
+    """Print the verdict on each answer of a program, then how many passed."""
+    from validation.gates.gate import Status
     from validation.report.blocks import TableColumn, table
-    from validation.report.site.submissions import NOT_ANSWERED, cells, headline
+    from validation.report.chapters.answers import answered, cells, headline
 
-    name = " ".join(part for part in (judged.answers.program, judged.answers.settings_name) if part)
-    echo(f"{name}: {headline(judged)}\n")
-    answered_cells = [cell for cell in cells(judged) if cell.word != NOT_ANSWERED]
+    echo(f"{judged.answers.title}: {headline(judged)}\n")
     rows = []
-    for cell in answered_cells:
+    unanswered: dict[str, list[str]] = {}
+    for cell in answered(judged):
+        if cell.status in (Status.NOT_APPLICABLE, Status.NOT_RUN):
+            unanswered.setdefault(f"{cell.status}: {cell.reason}", []).append(cell.problem)
+            continue
         explanation = "; ".join(text for text in (cell.column, cell.reason) if text)
-        rows.append((cell.problem, cell.word, cell.error, cell.allowed, explanation))
+        rows.append((cell.problem, str(cell.status), cell.error, cell.allowed, explanation))
     error, allowed = (TableColumn(title, "decimal") for title in ("error", "allowed"))
-    print_blocks([table(("problem", "verdict", error, allowed, "what decides, and the cause"), rows)])
-    missing = len(cells(judged)) - len(answered_cells)
+    if rows:
+        print_blocks([table(("problem", "verdict", error, allowed, "what decides, and the cause"), rows)])
+    for reason, problems in unanswered.items():
+        echo(f"\n{reason}\n  {', '.join(problems)}")
+    missing = len(cells(judged)) - len(answered(judged))
     echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
 
-def _judge_target(
-    target: str, solver: str | None, scene: str | None, assignments: list[str] | None, progress: Any
-) -> tuple[JudgedAnswer, str]:
-    from validation.problems.problem import problem_of
-    from validation.problems.submission import read_submission
+def _status(judged: Sequence[JudgedSet], required: Sequence[str]) -> int:
+    """Return the exit status: PARTIAL is no PASS, since what is withheld may be what is wrong."""
+    from validation.gates.gate import Status
+    from validation.report.chapters.answers import summary
+
+    for name in required:
+        of_solver = [one.answers.answers for one in judged if str(one.answers.place) == name]
+        reasons = [answer.reason for answers in of_solver for answer in answers if answer.history is None]
+        if not any(answer.history is not None for answers in of_solver for answer in answers):
+            echo(
+                f"error: --require: {name} answered nothing: {reasons[0] if reasons else 'it was not asked'}", err=True
+            )
+            return NUMERICAL_FAILURE
+    return GATE_FAILED if any(status is not Status.PASS for status in summary(judged)) else 0
+
+
+@contextmanager
+def all_defects() -> Iterator[None]:
+    """End the command with all defects of answers' files, one a line, where there are several."""
+    from validation.runs.defects import DefectsError
     from validation.runs.text import printable
 
-    if solver is not None:
-        if scene is not None:
-            raise InputError(
-                "goes with a submission",
-                field="--scene",
-                value=f"--solver {solver} too",
-                advice="name the scene first",
-            )
-        return _judge_solver(target, solver, assignments, progress)
-    if scene is None:
-        _refuse_set(assignments)
-    scene_problem = None if scene is None else problem_of(one_case(scene, assignments))
-    progress(0, 3, "reading, and the exact motion")
-    submission = read_submission(Path(target), scene_problem)
-    data = submission.data
-    about = [(field, printable(getattr(data, field))) for field in ("program", "version", "settings", "who")]
-    if data.not_reported:
-        about.append(("not reported", ", ".join(data.not_reported)))
-    name = printable(f"{data.program} {data.version}")
-    return judged_answer(submission.problem, submission.history, tuple(about), _step(progress)), name
+    try:
+        yield
+    except DefectsError as error:
+        for defect in error.defects:
+            echo(f"error: {printable(str(defect))}", err=True)
+        if len(error.defects) > 1:
+            files = len({str(defect.source).partition(":")[0] for defect in error.defects})
+            echo(f"{len(error.defects)} defects in {files} file{'s' if files > 1 else ''}; nothing is judged", err=True)
+        raise typer.Exit(BAD_INPUT) from None
 
 
-def _step(progress: Any) -> Callable[[str], None]:
-    """Return what tells a progress bar what is done next with one answer."""
-    steps = ("the exact motion and the bands", "the cause")
-    return lambda label: progress(1 + steps.index(label), 3, label)
+# ---- gates ----------------------------------------------------------------------------------------------------------
 
 
-def _judge_solver(target: str, solver: str, assignments: list[str] | None, progress: Any) -> tuple[JudgedAnswer, str]:
-    from validation.engine.measure import completed
-    from validation.problems.boxes import ASKS as BOX_PROBLEMS
-    from validation.problems.problem import PROBLEMS, problem, problem_of, scene_name
+def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> None:
+    """Run the gates of studies with a solver in the place of dda, and print what they tell."""
+    import tempfile
+
+    from validation.gates.gate import Status
+    from validation.runs.results import Results
     from validation.solvers.registry import get_solver
-    from validation.solvers.user import SAME_AS, UserSolver
+    from validation.solvers.user import UserSolver
+    from validation.suite.own_solver.block import block, wrapped
+    from validation.suite.own_solver.gates import applying
+    from validation.suite.own_solver.session import Session, plain
 
-    of_pack = target in PROBLEMS or target in BOX_PROBLEMS
-    source = scene_name(target) if of_pack else target
-    case = one_case(source, assignments)
-    posed_problem: Problem = problem(target) if of_pack and not assignments else problem_of(case)
-    adapter = get_solver(solver)
-    if isinstance(adapter, UserSolver):
-        adapter.check_module()
-    progress(0, 3, f"{case.name} {solver}")
-    run = completed(adapter, case)
-    history = _completed_history(run, case.name, solver)
-    if not isinstance(adapter, UserSolver):
-        return judged_answer(posed_problem, history, (("solver", solver),), _step(progress)), solver
-    warnings = [f"It is {note}: the suite's own solver was judged." for note in run.notes if note.startswith(SAME_AS)]
-    if sum(run.seconds.values()) < REPEATED_WITHIN:
-        warnings += _not_repeatable(history, completed(adapter, case).history)
-    about = (("solver", solver), *adapter.about().items())
-    return judged_answer(posed_problem, history, about, _step(progress), warnings), solver
-
-
-def _not_repeatable(history: History, again: History | None) -> list[str]:
-    """Return in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
-    from validation.metrics.sameness import largest_difference
-    from validation.runs.numbers import error_percent
-
-    if again is None:
-        return ["Not repeatable: a second run gave no history; the verdict is one of several."]
-    column, difference = largest_difference(history, again)
-    if not column:
-        return []
-    size = "in length or columns" if difference == float("inf") else f"by {error_percent(difference)} in {column}"
-    return [f"Not repeatable: a second run differs {size} (relative L2); the verdict may change from run to run."]
-
-
-def _completed_history(run: Run, case: str, solver: str) -> History:
-    """Return the history of a run, or end the command with what it ended in."""
-    from validation.runs.run import Outcome
-
-    why = "; ".join(run.notes)
-    if run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED):
-        raise InputError(f"solver {solver} does not apply: {why}", source=case)
-    if run.outcome is Outcome.NOT_RUN:
-        raise InputError(f"NOT RUN: {why}")
-    if run.outcome is not Outcome.COMPLETED or run.history is None:
-        echo(f"{case} {solver}: {run.outcome}: {run.outcome.sentence} {why}".rstrip())
-        raise typer.Exit(NUMERICAL_FAILURE)
-    return run.history
-
-
-def _print(judged: JudgedAnswer, program: str, written: list[Path]) -> None:
-    """Print the verdict first, then what it rests on."""
-    from validation.report.chapters.judged import verdict_blocks
-
-    print_blocks(verdict_blocks(judged, f"{program} on {judged.problem.name}: "))
-    for path in written:
-        echo(f"wrote {path}")
+    solver = get_solver(source)
+    if isinstance(solver, UserSolver):
+        solver.check_module()
+        if reason := solver.load_error():
+            raise InputError(f"cannot be loaded: {reason}", field="source", value=repr(source))
+    known = list(dict.fromkeys(study for study, _ in applying().values()))
+    for name in studies:
+        if name not in (*known, "all"):
+            raise InputError(f"must be all or one of {', '.join(known)}", field="--study", value=repr(name))
+    gates = [name for name, (study, _) in applying().items() if study in studies or "all" in studies]
+    reports = []
+    with tempfile.TemporaryDirectory() as place, _progress("judge", between_calls=True) as progress:
+        session = Session(source, Results(Path(place)))
+        for number, name in enumerate(gates):
+            progress(number, len(gates), name)
+            reports.append(session.judge(name)[1])
+        lines = block(reports, every=verbose)
+    if as_json:
+        echo_json([plain(report) | {"results": ""} for report in reports])
+    else:
+        for line in wrapped(lines):
+            echo(line)
+    judged = [report.status for report in reports if report.status != Status.NOT_RUN]
+    if not judged:
+        echo("no gate was judged", err=True)
+    raise typer.Exit(GATE_FAILED if not judged or Status.FAIL in judged else 0)

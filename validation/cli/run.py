@@ -172,15 +172,13 @@ class Judging:
         from validation.errors import InputError
         from validation.gates.changes import read_verdicts
         from validation.solvers.registry import is_solver, solver_names
-        from validation.suite.programs import known
 
         output_options = {"--verbose": self.verbose, "--json": self.as_json, "--quiet": self.quiet}
         exclusive = [option for option, is_set in output_options.items() if is_set]
         if len(exclusive) > 1:
             raise InputError(f"{exclusive[0]}, {exclusive[1]}: exclude each other", value="both")
-        adapters = {program.name for program in known()}  # which need not be installed: their gates are NOT RUN then
         for name in self.required:
-            if not is_solver(name) and name not in adapters:
+            if not is_solver(name):
                 raise InputError(
                     f"must be among {', '.join(solver_names())}, or module:attribute",
                     field="--require",

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.diagnosis.fits.bar import last_digits
 from validation.errors import InputError
 from validation.metrics.values import largest
+from validation.runs.columns import unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
-from validation.runs.regular import regular
+from validation.runs.tables import Row, number, read_text, rows_of
+from validation.runs.units import factors_of, recognised, theirs_of
 
 SIDEWAYS = "horizontal_displacement"  # m, towards +x
 OURS = ("time", DISPLACEMENT, PRESSURE, SIDEWAYS)
@@ -52,48 +53,14 @@ class Foreign:
     scale: Mapping[str, float] = field(default_factory=dict)
 
 
-def _pairs(text: str | None, option: str, theirs: str, parsed: Callable[[str], Any]) -> dict[str, Any]:
-    """Return what stands behind each of our columns in ``OURS=THEIRS,OURS=THEIRS``, as a function parses it."""
-    pairs = {}
-    try:
-        for part in filter(str.strip, (text or "").split(",")):
-            name, _, value = map(str.strip, part.partition("="))
-            if not value or name not in OURS:
-                raise ValueError
-            pairs[name] = parsed(value)
-    except ValueError:
-        rule = f"must be OURS={theirs} with ours among {', '.join(OURS)}"
-        raise InputError(rule, field=option, value=repr(text)) from None
-    return pairs
-
-
 def parse_columns(text: str | None) -> dict[str, str]:
-    """Return the mapping of ``time=t,displacement=uy``: our column to theirs.
-
-    Raises
-    ------
-    InputError
-        A part is not ours=theirs, or names no column of ours.
-    """
-    return _pairs(text, "--columns", "THEIRS", str)
+    """Return the mapping of ``time=t,displacement=uy``: our column to theirs."""
+    return theirs_of(text, OURS)
 
 
 def parse_scale(text: str | None) -> dict[str, float]:
-    """Return the factors of ``displacement=-1e-3``: what their numbers are multiplied by.
-
-    Raises
-    ------
-    InputError
-        A part is not ours=factor, or a factor is no finite number other than zero.
-    """
-
-    def factor(number: str) -> float:
-        value = float(number)
-        if not math.isfinite(value) or value == 0:
-            raise ValueError
-        return value
-
-    return _pairs(text, "--scale", "FACTOR", factor)
+    """Return the factors of ``displacement=-1e-3``: what their numbers are multiplied by."""
+    return factors_of(text, OURS)
 
 
 def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[str, float] | None = None) -> Foreign:
@@ -114,21 +81,15 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
         The file cannot be read, or is no such history.
     """
     try:
-        regular(path, LARGEST_FILE)
-        text = path.read_bytes().decode("utf-8-sig").replace("\0", "")
+        text = read_text(path, LARGEST_FILE).replace("\0", "")
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
-    except UnicodeDecodeError:
-        raise InputError("must be UTF-8 text", source=path, value="bytes that are not UTF-8") from None
     columns, scale = columns or {}, scale or {}
     reader = _measured_point if re.search(r"measpoint\d+\s*=\s*\[", text) else _table
-    columns_of_file = reader(text, path, columns)
-    scaled = {name: values * scale.get(name, 1.0) for name, values in columns_of_file.items() if name in OURS}
-    rounded = {
-        name: last_digits(columns_of_file[name]) * abs(scale.get(name, 1.0))
-        for name in OURS[1:]
-        if name in columns_of_file
-    }
+    columns_of_file, factors = reader(text, path, columns)
+    si = {name: factors.get(name, 1.0) * scale.get(name, 1.0) for name in OURS}
+    scaled = {name: values * si[name] for name, values in columns_of_file.items() if name in OURS}
+    rounded = {name: last_digits(columns_of_file[name]) * abs(si[name]) for name in OURS[1:] if name in columns_of_file}
     history = _checked(scaled, rounded, columns_of_file.get("dt"), path)
     return replace(history, names=columns, scale=scale)
 
@@ -136,40 +97,49 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
 # ---- tables -------------------------------------------------------------------------------------------------------
 
 
-def _table(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
-    """Return our columns of a table."""
-    lines = [line for line in map(str.strip, re.sub(r"[#%].*", "", text).splitlines()) if line]
-    if not lines:
+def _table(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
+    """Return our columns of a table, and the factors by which those whose header names another unit become SI."""
+    rows = rows_of(text)
+    if not rows:
         raise InputError("must hold a history", source=path, value="an empty file")
-    _bounded(len(lines), path)
-    rows = [_cells(line) for line in lines]
-    header = None if _numbers(rows[0]) else rows.pop(0)
+    _bounded(len(rows), path)
+    header = None if _numbers(rows[0]) else [cell.text for cell in rows.pop(0)]
     names = header or [str(i + 1) for i in range(len(rows[0]) if rows else 0)]
     values = []
-    for number, row in enumerate(rows, start=1):
+    for row_number, row in enumerate(rows, start=1):
         parsed = _numbers(row)
         if parsed is None or len(parsed) != len(names):
-            raise InputError(
-                f"row {number}: must be {len(names)} numbers", source=path, value=repr(", ".join(row)[:60])
-            )
+            listed = ", ".join(cell.text for cell in row)
+            raise InputError(f"row {row_number}: must be {len(names)} numbers", source=path, value=repr(listed[:60]))
         values.append(parsed)
     table = np.array(values, dtype=float).reshape(len(values), len(names))
-    places = {ours: _place(ours, columns.get(ours, ours), names, path) for ours in OURS}
-    return {ours: table[:, place] for ours, place in places.items() if place is not None}
+    columns_of_file = {}
+    factors = {}
+    for ours in OURS:
+        theirs, factor = columns.get(ours, ours), 1.0
+        if ours not in columns:
+            theirs, factor = _recognised(ours, names)
+        place = _place(ours, theirs, names, path)
+        if place is not None:
+            columns_of_file[ours] = table[:, place]
+            factors[ours] = factor
+    return columns_of_file, factors
 
 
-def _cells(line: str) -> list[str]:
-    separator = next((mark for mark in (";", "\t", ",") if mark in line), None)
-    cells = [cell.strip().strip('"') for cell in line.split(separator)]
-    return cells[:-1] if cells and not cells[-1] else cells
+def _recognised(ours: str, names: Sequence[str]) -> tuple[str, float]:
+    """Return the header that names a column of ours, perhaps with a unit, and the factor to SI."""
+    units = {ours: "s" if ours == "time" else unit_of(ours)}
+    for name in names:
+        found = recognised(name, units)
+        if found is not None:
+            return name, found[1]
+    return ours, 1.0
 
 
-def _numbers(row: list[str]) -> list[float] | None:
-    """Return the numbers of a row; a comma left within a cell is a decimal comma, a D opens an exponent."""
-    try:
-        return [float(cell.replace("D", "e").replace("d", "e").replace(",", ".")) for cell in row]
-    except ValueError:
-        return None
+def _numbers(row: Row) -> list[float] | None:
+    """Return the numbers of a row, None where a cell holds none."""
+    values = [number(cell.text) for cell in row]
+    return None if None in values else [value for value in values if value is not None]
 
 
 def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
@@ -193,8 +163,8 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
 # ---- measured points of ntdda -------------------------------------------------------------------------------------
 
 
-def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
-    """Return time, displacement and dt of one measured point.
+def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
+    """Return time, displacement and dt of one measured point, which are in SI.
 
     The file gives the position with seven digits, so that a displacement keeps few of them, and its unsigned size
     with seven digits of its own. The sign is that of the summed steps (velocity is the step's displacement over dt),
@@ -204,9 +174,9 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     name = columns.get(DISPLACEMENT, next(iter(points)))
     if name not in points:
         raise InputError(f"no measured point {name!r}", source=path, advice=f"it has {', '.join(points)}")
-    lines = [line for line in re.sub(r"%.*", "", points[name]).splitlines() if line.strip()]
-    _bounded(len(lines), path)
-    rows = [_numbers(line.split()) for line in lines]
+    cells = rows_of(points[name])
+    _bounded(len(cells), path)
+    rows = [_numbers(row) for row in cells]
     full_rows = [row for row in rows if row is not None and len(row) == NTDDA_COLUMNS]
     if not full_rows or len(full_rows) < len(rows) - 1:  # an interrupted run may leave half a last row
         raise InputError(
@@ -224,7 +194,7 @@ def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> dict[s
     if sideways > 1e-4 * float(np.max(size)):  # the size holds a horizontal part, too
         moved = summed
     aside = np.cumsum(vx * dt) if every else x - (x[0] - vx[0] * dt[0])
-    return {"time": time, DISPLACEMENT: moved, SIDEWAYS: aside} | ({"dt": dt} if every else {})
+    return {"time": time, DISPLACEMENT: moved, SIDEWAYS: aside} | ({"dt": dt} if every else {}), {}
 
 
 def _bounded(rows: int, path: Path) -> None:

@@ -14,11 +14,12 @@ from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.values import largest
+from validation.runs.columns import unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.units import ratios
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
-from validation.solvers.user import UNITS
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
 FURTHEST = 1e3  # times its first row, beyond which the history of a scene of one block is unstable
@@ -47,7 +48,7 @@ class Slip:
         name = self.column.replace("_", " ")
         if self.cause == "sign":
             return f"the sign of the {name} is reversed: {POSITIVE.get(self.column, 'along the load')} is positive"
-        unit = UNITS[self.column].get(self.factor)
+        unit = ratios("s" if self.column == "time" else unit_of(self.column)).get(self.factor)
         return f"the {name} is in other units, {self.factor:g} times the scene's" + (f" ({unit}?)" if unit else "")
 
 

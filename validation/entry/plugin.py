@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import json
 import os
-import textwrap
 from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 
@@ -20,7 +19,6 @@ from .siblings import shadowed
 STATEMENT = "dda-validation"  # the property of a report that holds what a gate said of a user's solver, as JSON
 GATE = "test_gates.py::test_gate["  # in the id of a gate's test
 FAILED = "failed gates"  # how pytest counts them; the block at the end tells them, once, in the place of its own list
-BLOCK_WIDTH = 110  # characters
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -128,15 +126,13 @@ def pytest_terminal_summary(
             statements += _statements(report)
     if user is None or not statements:
         return
-    from validation.suite.own_solver.block import block
+    from validation.suite.own_solver.block import block, wrapped
     from validation.suite.own_solver.session import GateReport
 
     terminalreporter.write_sep("=", f"{user}: what the gates tell")
-    for line in block([GateReport(**json.loads(text)) for text in statements], every=config.getoption("verbose") > 0):
-        for part in line.split("\n"):
-            indent = " " * (len(part) - len(part.lstrip()) + 4)
-            for row in textwrap.wrap(part, BLOCK_WIDTH, subsequent_indent=indent, drop_whitespace=True) or [""]:
-                terminalreporter.write_line(row)
+    reports = [GateReport(**json.loads(text)) for text in statements]
+    for line in wrapped(block(reports, every=config.getoption("verbose") > 0)):
+        terminalreporter.write_line(line)
 
 
 def _statements(report: pytest.TestReport) -> list[str]:

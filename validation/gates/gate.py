@@ -15,11 +15,17 @@ LARGEST = sys.float_info.max
 
 
 class Status(enum.StrEnum):
-    """What a gate says."""
+    """What is said of an answer, of what is judged on it, or by a gate: the words of all verdicts."""
 
     PASS = "PASS"
     FAIL = "FAIL"
     NOT_RUN = "NOT RUN"
+    PARTIAL = "PARTIAL"  # of an answer: what it reports passes, but it withholds a column that the problem asks for
+    NOT_REPORTED = "not reported"
+    NOT_JUDGED = "not judged"
+    NOT_APPLICABLE = "not applicable"
+    NOT_ANSWERED = "not answered"
+    STALE = "stale"  # it answers an earlier pack, in which the problem was another
 
 
 @dataclass(frozen=True)

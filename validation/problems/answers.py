@@ -1,4 +1,4 @@
-"""Folders of answers: all that one program answers with one choice of settings, and the layout in which they are kept.
+"""Answers of programs to problems: what they hold, and how folders of them are read, all defects at once, and kept.
 
 The layout: `submissions/PROGRAM/VERSION/SETTINGS/submission.json` and, beside it, a `PROBLEM.csv` for each problem.
 """
@@ -8,41 +8,68 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
-from validation.problems.answer_table import read_answer
-from validation.problems.data import PACK, SUBMISSION, AnswersData, SubmissionData
-from validation.problems.defects import Defects, Place
+from validation.gates.gate import Status
+from validation.problems.bands import standard
+from validation.problems.data import PACK, AnswersData
 from validation.problems.pack import ANSWERS_TEMPLATE, CHOSEN
 from validation.problems.packs import packs, stale
-from validation.problems.questions import Question
-from validation.problems.questions import names as names_of_pack
-from validation.problems.questions import question as question_named
+from validation.problems.problem import Problem, problem
+from validation.problems.problem import names as names_of_pack
 from validation.problems.stated import Document, checked, read_document
-from validation.problems.submission import EXPORT, FILE, check_pack, read_submission, reported
+from validation.runs.columns import split, unit_of
+from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
-from validation.runs.history import History
+from validation.runs.history import PRESSURE, History
+from validation.runs.units import ratios
 from validation.scenes.unknown import did_you_mean
+from validation.solvers.foreign import factor, force
+from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
 
+FILE = "submission.json"
+EXPORT = "dda-validate export-pack DIR writes the problems, and files to fill in"
+ABSENT = f"not_reported in {FILE} is for what the program cannot report"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
+FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
 Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """An answer to a problem, or why an answer to an earlier pack is none any more."""
+    """An answer to a problem, or why there is none.
 
-    name: str  # of the problem
-    problem: Question | None  # None of a stale answer
-    history: History | None  # of the columns that are reported; None of a stale answer
-    withheld: tuple[str, ...] = ()  # columns that the program cannot report, as the pack names them
-    stale: str | None = None
+    Attributes
+    ----------
+    name
+        Of the problem.
+    problem
+        The problem; None where it is one of an earlier pack.
+    history
+        The columns that are reported; None where there is no answer to judge.
+    status
+        In place of a judgement where there is no history: stale, NOT RUN, not applicable, or FAIL.
+    reason
+        Why so.
+    warnings
+        What makes a verdict worth less, in sentences.
+    seconds
+        What a run took; None where nothing was run.
+    """
+
+    name: str
+    problem: Problem | None
+    history: History | None
+    status: Status | None = None
+    reason: str = ""
+    warnings: tuple[str, ...] = ()
+    seconds: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,23 +77,23 @@ class AnswerSet:
     """What one program answers with one choice of settings."""
 
     place: Path
-    data: AnswersData | SubmissionData
+    data: AnswersData
     answers: tuple[Answer, ...]  # in the order of the pack
 
     @property
     def program(self) -> str:
         """Program and version."""
-        return f"{self.data.program} {self.data.version}"
+        return f"{self.data.program} {self.data.version}".rstrip()
 
     @property
-    def settings_name(self) -> str:
-        """Name of the settings; the answer to one problem alone has none."""
-        return self.data.settings_name if isinstance(self.data, AnswersData) else ""
+    def title(self) -> str:
+        """Program, version and settings."""
+        return f"{self.program} {self.data.settings_name}".rstrip()
 
     @property
     def address(self) -> tuple[str, str, str]:
         """Names of the three folders of the layout."""
-        return folder_name(self.data.program), folder_name(self.data.version), self.settings_name
+        return folder_name(self.data.program), folder_name(self.data.version), self.data.settings_name
 
 
 def folder_name(text: str) -> str:
@@ -78,7 +105,10 @@ def folder_name(text: str) -> str:
 
 
 def read_sets(
-    root: Path, in_layout: bool = False, progress: Progress = lambda number, total, label: None
+    root: Path,
+    in_layout: bool = False,
+    progress: Progress = lambda number, total, label: None,
+    own: Mapping[str, Problem] | None = None,
 ) -> list[AnswerSet]:
     """Read all folders of answers at or below a directory.
 
@@ -90,6 +120,8 @@ def read_sets(
         Whether each has to lie in its own place, `PROGRAM/VERSION/SETTINGS`.
     progress
         Told before each table: how many are read, of how many, and which is next.
+    own
+        Problems that are answered, by the names of their tables; those of the pack by default.
 
     Raises
     ------
@@ -109,14 +141,16 @@ def read_sets(
             progress(first, total, f"reading {name}")
 
         try:
-            answer_set = _read_set(folder, defects, step)
+            answer_set = _read_set(folder, own, defects, step)
         except InputError as error:
             defects.take(error)
             answer_set = None
         number += len(_tables(folder))
         if answer_set is not None:
             sets.append(answer_set)
-            _check_place(root, answer_set, in_layout, defects)
+            if in_layout and folder.relative_to(root).parts != answer_set.address:
+                rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
+                defects.add(Place(folder), rule)
     _check_once(sets, defects)
     defects.check()
     return sets
@@ -127,8 +161,7 @@ def _folders(root: Path) -> Iterator[Path]:
     for directory, names, files in os.walk(root):
         depth = len(Path(directory).relative_to(root).parts)
         names[:] = sorted(name for name in names if not name.startswith(".")) if depth < DEEPEST else []
-        tables = [name for name in files if _is_table(name)]
-        if FILE in files or tables:
+        if FILE in files or any(_is_table(name) for name in files):
             yield Path(directory)
 
 
@@ -140,18 +173,17 @@ def _tables(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if _is_table(path.name))
 
 
-def _read_set(folder: Path, defects: Defects, step: Callable[[str], None]) -> AnswerSet | None:
+def _read_set(
+    folder: Path, own: Mapping[str, Problem] | None, defects: Defects, step: Callable[[str], None]
+) -> AnswerSet | None:
     """Return what a folder answers; None, and the defects, where something is wrong."""
     document = read_document(folder / FILE, EXPORT)
-    if document.content.get("format") == SUBMISSION:
-        submission = read_submission(folder)
-        step(submission.problem.name)
-        answer = Answer(
-            submission.problem.name, submission.problem, submission.history, tuple(submission.data.not_reported)
-        )
-        return AnswerSet(folder, submission.data, (answer,))
     before = len(defects)
-    pack = check_pack(document, defects)
+    pack = document.content.get("pack")
+    if pack is not None and pack not in packs():
+        rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
+        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack), advice=EXPORT)
+        pack = None
     data = checked(document, AnswersData, FILLED_IN, defects)
     for field in ("program", "version"):
         text = document.content.get(field)
@@ -159,88 +191,203 @@ def _read_set(folder: Path, defects: Defects, step: Callable[[str], None]) -> An
             rule = "must hold a letter or digit of ASCII, for the name of its folder"
             defects.add(document.place((field,)), rule, field=field, value=repr(text))
     # Tables of an unknown pack are checked by this one, so that all defects are told at once.
-    answers = _answers(folder, document, pack or PACK, defects, step)
+    answers = _answers(folder, document, pack or PACK, own, defects, step)
     if len(defects) == before and not answers:
         defects.add(Place(folder), "must hold the table of a problem", value="none that is filled in")
     return AnswerSet(folder, data, answers) if data is not None and len(defects) == before else None
 
 
 def _answers(
-    folder: Path, document: Document, pack: str, defects: Defects, step: Callable[[str], None]
+    folder: Path,
+    document: Document,
+    pack: str,
+    own: Mapping[str, Problem] | None,
+    defects: Defects,
+    step: Callable[[str], None],
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
-    digests = packs()[pack]
+    digests: Mapping[str, Any] = packs()[pack] if own is None else own
+    this_pack: Mapping[str, Any] = packs()[PACK] if own is None else own
     later: list[str] = []  # tables of problems that the stated pack did not have yet
     withheld_by_name = document.content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
         withheld_by_name = {}
     answers: dict[str, Answer] = {}
-    names = [path.name for path in _tables(folder)]
-    for path in _tables(folder):
+    tables = _tables(folder)
+    for path in tables:
         name = path.name.removesuffix(TABLE)
-        is_later = name not in digests and name in packs()[PACK]
+        if own is not None and name not in own and name in packs()[PACK]:
+            continue  # it answers a problem that is not asked
+        is_later = name not in digests and name in this_pack
         if name not in digests and not is_later:
             advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
-            defects.add(Place(path), f"must be named after a problem of pack {pack}", value=path.name, advice=advice)
+            whose = f"of pack {pack}" if own is None else "that is asked"
+            defects.add(Place(path), f"must be named after a problem {whose}", value=path.name, advice=advice)
             continue
-        reason = None if is_later else stale(pack, name)
+        reason = None if is_later or own is not None else stale(pack, name)
         if reason is not None:
-            answers[name] = Answer(name, None, None, stale=reason)
+            answers[name] = Answer(name, None, None, Status.STALE, reason)
             continue
         step(name)
-        posed = question_named(name)
-        withheld = withheld_by_name.get(name, [])
-        columns = reported(document, ("not_reported", name), withheld, posed, defects)
+        posed = problem(name) if own is None else own[name]
+        columns = _reported(document, ("not_reported", name), withheld_by_name.get(name, []), posed, defects)
         known_defects = len(defects)
-        history = read_answer(path, posed, columns, defects) if columns else None
+        history = read_answer(path, posed, defects, columns) if columns else None
         if is_later and (history is not None or len(defects) > known_defects):
             later.append(path.name)
         if history is not None:
-            answers[name] = Answer(name, posed, history, tuple(withheld))
+            answers[name] = Answer(name, posed, history)
     if later:
         more = f" and {len(later) - 1} more" if len(later) > 1 else ""
         rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
         defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
+    names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
-        _check_problems(document, field, digests, names, defects)
+        _check_problems(document, field, {**digests, **this_pack}, names, defects)
     order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
     return tuple(answers[name] for name in order if name in answers)
 
 
-def _check_problems(document: Document, field: str, digests: Any, tables: Sequence[str], defects: Defects) -> None:
+def _reported(
+    document: Document, address: tuple[str, ...], withheld: object, posed: Problem, defects: Defects
+) -> list[str]:
+    """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
+    if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
+        return []
+    names = [posed.named(column) for column in posed.columns]
+    field = ".".join(address)
+    before = len(defects)
+    for i, name in enumerate(withheld):
+        place = document.place((*address, i))
+        if name not in names:
+            defects.add(place, f"must be among {', '.join(names)}", field=field, value=repr(name))
+        elif name in withheld[:i]:
+            defects.add(place, "must not repeat a column", field=field, value=repr(name))
+    remaining = [column for column in posed.columns if posed.named(column) not in withheld]
+    if not remaining:
+        rule = "must leave a column to judge"
+        defects.add(document.place(address), rule, field=field, value=f"all of {', '.join(names)}")
+    return remaining if len(defects) == before else []
+
+
+def _check_problems(
+    document: Document, field: str, known: Mapping[str, Any], tables: Sequence[str], defects: Defects
+) -> None:
     """Add a defect for each problem that a field names and no table answers."""
     stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
         place = document.place((field, name), of_key=True)
-        if name not in digests and name not in packs()[PACK]:
-            rule = f"{name}: must be among {', '.join(digests)}"
-            defects.add(place, rule, field=field, advice=did_you_mean(name, digests))
+        if name not in known:
+            rule = f"{name}: must be among {', '.join(known)}"
+            defects.add(place, rule, field=field, advice=did_you_mean(name, known))
         elif name + TABLE not in tables:
             defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
-def _check_place(root: Path, answer_set: AnswerSet, in_layout: bool, defects: Defects) -> None:
-    """Add a defect where a folder of a layout does not lie where its program, version and settings say."""
-    if not in_layout:
-        return
-    if not isinstance(answer_set.data, AnswersData):
-        defects.add(Place(answer_set.place / FILE), "must be a folder of answers", field="format", advice=EXPORT)
-    elif answer_set.place.relative_to(root).parts != answer_set.address:
-        rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
-        defects.add(Place(answer_set.place), rule)
-
-
 def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
     """Add a defect for each folder that stands for the same program, version and settings as another."""
-    known: dict[tuple[object, ...], Path] = {}
+    known: dict[tuple[str, str, str], Path] = {}
     for answer_set in sets:
-        names = tuple(answer.name for answer in answer_set.answers)
-        settings_key = () if isinstance(answer_set.data, AnswersData) else (answer_set.data.settings, *names)
-        key = (*answer_set.address, *settings_key)
-        if key in known:
+        if answer_set.address in known:
             rule = "must have another settings_name, or another version"
-            defects.add(Place(answer_set.place / FILE), rule, value=f"those of {known[key]}")
-        known.setdefault(key, answer_set.place)
+            other = f"those of {known[answer_set.address]}"
+            defects.add(Place(answer_set.place / FILE), rule, value=other)
+        known.setdefault(answer_set.address, answer_set.place)
+
+
+def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
+    """Return the answers of a table, or of a directory with a table ``PROBLEM.csv`` each, of which nothing is stated.
+
+    `header` says what the tables call their columns.
+
+    Raises
+    ------
+    DefectsError
+        Something is wrong; every defect of all files is named.
+    """
+    if not place.is_dir() and len(problems) != 1:
+        rule = "must name the one problem or scene that a table answers"
+        raise InputError(rule, field="asked", value=f"{len(problems)} of them", advice="dda-validate judge FILE locked")
+    defects = Defects()
+    answers = []
+    for posed in problems:
+        path = place / f"{posed.name}{TABLE}" if place.is_dir() else place
+        if path.exists() or not place.is_dir():
+            history = read_answer(path, posed, defects, header=header)
+            if history is not None:
+                answers.append(Answer(posed.name, posed, history))
+    if not answers and not len(defects):
+        rule = "must hold an answer" if place.is_file() else "must be a directory with PROBLEM.csv"
+        raise InputError(rule, source=place, value="none that is filled in", advice=EXPORT)
+    defects.check()
+    return AnswerSet(place, stated_by(place.stem), tuple(answers))
+
+
+def stated_by(program: str, **fields: Any) -> AnswersData:
+    """Return what is known of answers beside their program, where no file states it: what is not is empty."""
+    nothing = dict.fromkeys(AnswersData.model_fields, "")
+    plain: dict[str, Any] = {"pack": PACK, "step_s": None, "link": None, "not_reported": {}}
+    return AnswersData.model_construct(**{**nothing, **plain, "program": program, **fields})
+
+
+# ---- one table ------------------------------------------------------------------------------------------------------
+
+
+def read_answer(
+    path: Path,
+    posed: Problem,
+    defects: Defects,
+    columns: Sequence[str] | None = None,
+    header: HeaderNames = AS_NAMED,
+) -> History | None:
+    """Return the answer that a table holds; None where it has defects, or where it is blank.
+
+    Parameters
+    ----------
+    path
+        Of the text file.
+    posed
+        The problem that it answers.
+    defects
+        Which takes what is wrong.
+    columns
+        Those that the table has to hold; all of the problem by default.
+    header
+        What the table calls its columns.
+    """
+    required = posed.columns if columns is None else columns
+    units = {column: posed.unit(column) for column in (*required, *posed.further_columns)}
+    table = read_table(path, posed.instants, units, required, defects, ABSENT, header=header)
+    if table is None:
+        return None
+    before = len(defects)
+    for column, difference in _differences(table.history, posed):
+        cell = table.header[column]
+        defects.add(Place(path, cell.line, cell.column), difference, field=cell.text)
+    return table.history if len(defects) == before else None
+
+
+def _differences(history: History, posed: Problem) -> Iterator[tuple[str, str]]:
+    """Yield the columns that are the exact ones, or begin where they do, in another unit or of another sign."""
+    if posed.scene.rigid is not None:
+        for column, values in history.columns.items():
+            part, box = split(column)
+            start = posed.scene.rigid.starts[int(box) - 1][1] if part == "y" else 0.0
+            for ratio, other_unit in ratios(unit_of(column)).items():
+                if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
+                    rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
+                    yield column, rule
+        return
+    exact = standard(posed).exact
+    for column, values in history.columns.items():
+        if column not in exact.columns:
+            continue
+        rows = len(exact.time)
+        difference = factor(column, values[:rows], exact.columns[column])
+        if difference is None and column == PRESSURE:
+            difference = force(posed.scene, history, exact)
+        if difference is not None:
+            yield column, difference.replace(column, "it", 1)
 
 
 # ---- keeping --------------------------------------------------------------------------------------------------------
@@ -252,17 +399,11 @@ def keep(sets: Sequence[AnswerSet], layout: Path) -> list[Path]:
     Raises
     ------
     InputError
-        Another answer is kept in its place, or a folder is no folder of answers, or it cannot be written.
+        Another answer is kept in its place, or it cannot be written.
     """
     for answer_set in sets:
-        if not isinstance(answer_set.data, AnswersData):
-            raise InputError(
-                "must be a folder of answers, to be kept",
-                source=answer_set.place / FILE,
-                field="format",
-                value=repr(answer_set.data.format),
-                advice=EXPORT,
-            )
+        if not (answer_set.place / FILE).is_file():
+            raise InputError("must be a folder of answers, to be kept", source=answer_set.place, advice=EXPORT)
         place = layout.joinpath(*answer_set.address)
         if place.exists() and not _same_files(answer_set, place):
             raise InputError(

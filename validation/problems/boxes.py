@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
+from validation.gates.gate import Status
 from validation.metrics import boxes as measures
 from validation.runs.history import Array, History
 from validation.scenes.rigid import FORCE, RigidSection
@@ -50,7 +51,7 @@ class BoxQuantity:
     low, high
         Edges of the band, both inside.
     scale
-        What an error is told as a share of, in the number's unit; `of` says it in words.
+        What an error is told as a share of, in the number's unit.
     reason
         Why the band ends there.
     measure
@@ -65,7 +66,6 @@ class BoxQuantity:
     low: float
     high: float
     scale: float
-    of: str
     reason: str
     measure: Callable[[History], float | None]
     optional: bool = False
@@ -74,14 +74,6 @@ class BoxQuantity:
         """Whether a value is in the band."""
         margin = ROUNDING * max(abs(self.low), abs(self.high))
         return self.low - margin <= value <= self.high + margin
-
-    def beside_band(self, value: float) -> float:
-        """Return the error over the part of the band on its side: 1 is just allowed."""
-        room = self.high - self.exact if value > self.exact else self.exact - self.low
-        error = abs(value - self.exact)
-        if error == 0:
-            return 0.0
-        return error / room if room > 0 else math.inf
 
 
 @dataclass(frozen=True)
@@ -93,18 +85,13 @@ class MeasuredQuantity:
     is_reported: bool = True  # whether the columns are there that it is measured on
 
     @property
-    def optional_and_absent(self) -> bool:
-        """Whether an answer does without a number that it may do without."""
-        return self.quantity.optional and self.value is None
-
-    @property
-    def word(self) -> str:
-        """PASS, FAIL or "not reported"."""
-        if self.optional_and_absent or not self.is_reported:
-            return "not reported"
+    def status(self) -> Status:
+        """Whether it is in its band, or not reported; a number that the positions hold and do not give fails."""
+        if not self.is_reported or (self.quantity.optional and self.value is None):
+            return Status.NOT_REPORTED
         if self.value is None:
-            return "FAIL"
-        return "PASS" if self.quantity.passes(self.value) else "FAIL"
+            return Status.FAIL
+        return Status.PASS if self.quantity.passes(self.value) else Status.FAIL
 
     @property
     def shares(self) -> tuple[float | None, float]:
@@ -114,15 +101,6 @@ class MeasuredQuantity:
         room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
         error = None if self.value is None else abs(self.value - quantity.exact) / quantity.scale
         return error, room / quantity.scale
-
-    @property
-    def beside(self) -> float | None:
-        """Error over band; infinite where a number that the positions hold cannot be measured."""
-        if self.optional_and_absent or not self.is_reported:
-            return None
-        if self.value is None:
-            return math.inf
-        return self.quantity.beside_band(self.value)
 
 
 @dataclass(frozen=True)
@@ -223,7 +201,7 @@ def measured(quantities: Sequence[BoxQuantity], history: History) -> tuple[Measu
 def around(name: str, unit: str, exact: float, changed: Sequence[float], reason: str, **others: Any) -> BoxQuantity:
     """Return a number whose band reaches as far to both sides as changed data move it, told as a share of itself."""
     half = max(abs(value - exact) for value in changed)
-    band = {"low": exact - half, "high": exact + half, "scale": abs(exact), "of": "the exact value"}
+    band = {"low": exact - half, "high": exact + half, "scale": abs(exact)}
     return BoxQuantity(name, unit, exact, reason=reason, **{**band, **others})
 
 
@@ -244,7 +222,6 @@ def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
                 low=0.0,
                 high=allowed,
                 scale=allowed / UNKNOWN,
-                of="the width in a minute",
                 reason="it stands exactly; the place of a block is known to one per cent of its width, and a creep "
                 "that moves it further in a minute changes the answer",
                 measure=lambda history: 1e3 * measures.creep(history),
@@ -290,7 +267,6 @@ def restitution(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=rigid.restitution - UNKNOWN,
             high=rigid.restitution + UNKNOWN,
             scale=1.0,
-            of="the landing speed",
             reason="one per cent of the speed of landing: no rebound is known better",
             measure=lambda history: measures.speed_between(history, "y", landing + SETTLED) / speed,
         ),
@@ -318,7 +294,6 @@ def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
     rigid = boxes_of(scene)
     first = measures.first_energy(rigid)
     reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
-    of = "the energy at the start"
     return (
         BoxQuantity(
             "energy in the end over that at the start",
@@ -327,7 +302,6 @@ def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
             low=1.0 - UNKNOWN,
             high=1.0 + UNKNOWN,
             scale=1.0,
-            of=of,
             reason=reason,
             measure=lambda history: measures.last_energy(history, rigid) / first,
         ),
@@ -338,7 +312,6 @@ def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
             low=0.0,
             high=UNKNOWN,
             scale=1.0,
-            of=of,
             reason=reason,
             measure=lambda history: measures.largest_gain(history, rigid),
         ),
@@ -367,7 +340,6 @@ def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=0.0,
             high=UNKNOWN * landing_speed,
             scale=landing_speed,
-            of="the landing speed",
             reason="without friction nothing acts along the ground; one per cent of the speed of landing is what a "
             "coefficient of friction of 0.01 takes in one impact",
             measure=lambda history: abs(
@@ -406,7 +378,6 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=0.0,
             high=drift,
             scale=drift / UNKNOWN,
-            of="the width",
             reason="it stands exactly; the place of a block is known to one per cent of its width",
             measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, "x", top) - start[0]))),
         ),
@@ -417,7 +388,6 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=-sinking,
             high=sinking,
             scale=sinking / UNKNOWN,
-            of="the height",
             reason="rigid boxes do not sink; the height of what is piled up is known to one per cent",
             measure=lambda history: 1e3 * float(start[1] - measures.column(history, "y", top)[-1]),
         ),
@@ -428,7 +398,6 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=(1 - UNKNOWN) * weight,
             high=(1 + UNKNOWN) * weight,
             scale=weight,
-            of="the weight",
             reason="the weight above it, which one per cent of the density changes by as much; mean of the last tenth",
             measure=force,
             optional=True,
@@ -499,7 +468,6 @@ def overturning(scene: Scene) -> tuple[BoxQuantity, ...]:
             low=exact,
             high=exact,
             scale=1.0,
-            of="",
             reason="1 where the centre passes above the corner, by the energy at the start",
             measure=lambda history: float(rotation(history) > box.alpha),
         ),
@@ -538,7 +506,7 @@ def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
     changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
     ground = shaken_box(scene).ground(time)
     why = "one per cent of tan(phi), which is not known better, changes it by as much"
-    width = {"scale": 1e3 * float(np.max(np.abs(exact))), "of": "the largest slip"}
+    width = {"scale": 1e3 * float(np.max(np.abs(exact)))}
 
     def slip(history: History) -> Array:
         moved: Array = measures.column(history, "x") - rigid.box[0].x - ground

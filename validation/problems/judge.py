@@ -1,17 +1,17 @@
-"""The judgement of an answer to a problem: the error of each column against the exact motion, in its band."""
+"""The judgement of an answer to a problem: errors of columns against the exact motion, or numbers, in their bands."""
 
 from __future__ import annotations
 
-import enum
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from validation.errors import InputError
+from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
-from validation.problems.boxes import measured, problem_posed
+from validation.problems.boxes import measured
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
@@ -20,98 +20,95 @@ ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is
 SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
 
 
-class Word(enum.StrEnum):
-    """What is said of an answer or of one of its columns."""
-
-    PASS = "PASS"
-    PARTIAL = "PARTIAL"  # of an answer: what it reports passes, but it withholds a column that the problem asks for
-    FAIL = "FAIL"
-    NOT_REPORTED = "not reported"
-    NOT_JUDGED = "not judged"
-
-
 @dataclass(frozen=True)
-class Column:
-    """A column of an answer.
+class Criterion:
+    """A column or a number of an answer that is judged.
 
     Attributes
     ----------
     name
-        Of the column.
-    word
+        Of the column or the number.
+    status
         PASS or FAIL, or why it is neither.
     error
-        ||x - exact|| / ||exact|| over the judged rows [1]; infinite where the column is not finite, None if not judged.
-    band
-        Upper edge of the band, whose lower edge is 0 [1]; None where the column cannot be judged.
+        Of a column ||x - exact|| / ||exact|| over the judged rows, of a number the error as a share of its scale [1];
+        infinite where it is not finite or cannot be measured, None if not judged.
+    allowed
+        Upper edge of the band of the error, whose lower edge is 0 [1]; None where the column cannot be judged.
     until
         Instant up to which it is judged [s].
     reason
         Why the band ends there, or why the column is not judged.
     within
         Instant up to which its error is within what is allowed [s]: it would pass, were it exact from there on.
+    datum
+        The datum of which one per cent sets the band of a column; empty of a number.
     """
 
     name: str
-    word: Word
+    status: Status
     error: float | None
-    band: float | None
+    allowed: float | None
     until: float
     reason: str
     within: float = 0.0
+    datum: str = ""
+
+    @property
+    def beside(self) -> float:
+        """The error over what is allowed; what is rounding is nothing, so that it decides nothing."""
+        error = self.error or 0.0
+        if not self.allowed:
+            return math.inf if error > ROUNDING else 0.0
+        share = error / self.allowed
+        return share if share > ROUNDING else 0.0
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """The judgement of an answer; it fails where a column that it reports fails."""
+    """The judgement of an answer; it fails where something that it reports fails."""
 
     problem: str
-    columns: tuple[Column, ...]
+    criteria: tuple[Criterion, ...]
     quantities: tuple[Quantity, ...] = ()
 
     @property
-    def word(self) -> Word:
-        """PASS, PARTIAL or FAIL; `NOT_JUDGED` where it reports no column that is judged."""
-        words = [column.word for column in self.columns]
-        if Word.PASS in words and Word.FAIL not in words and self.withheld:
-            return Word.PARTIAL
-        return next((word for word in (Word.FAIL, Word.PASS) if word in words), Word.NOT_JUDGED)
+    def status(self) -> Status:
+        """PASS, PARTIAL or FAIL; `NOT_JUDGED` where it reports nothing that is judged."""
+        statuses = [criterion.status for criterion in self.criteria]
+        if Status.PASS in statuses and Status.FAIL not in statuses and self.withheld:
+            return Status.PARTIAL
+        return next((status for status in (Status.FAIL, Status.PASS) if status in statuses), Status.NOT_JUDGED)
 
     @property
     def withheld(self) -> tuple[str, ...]:
-        """Columns that the problem asks for and judges, and the answer does not report."""
-        return tuple(column.name for column in self.columns if column.word is Word.NOT_REPORTED)
+        """What the problem asks for and judges, and the answer does not report."""
+        return tuple(criterion.name for criterion in self.criteria if criterion.status is Status.NOT_REPORTED)
 
     @property
     def verdict(self) -> str:
-        """The word, with the columns that it does not speak of."""
-        passed = [column.name for column in self.columns if column.word is Word.PASS]
-        silent = [f"{column.name} {column.word}" for column in self.columns if column.band is None or _absent(column)]
+        """The status, with what it does not speak of."""
+        passed = ", ".join(criterion.name for criterion in self.criteria if criterion.status is Status.PASS)
+        judged = (Status.PASS, Status.FAIL)
+        silent = [
+            f"{criterion.name} {criterion.status}" for criterion in self.criteria if criterion.status not in judged
+        ]
         if not silent:
-            return str(self.word)
-        verdicts = {Word.PASS: f"PASS on {', '.join(passed)}", Word.PARTIAL: f"PARTIAL: PASS on {', '.join(passed)}"}
-        return "; ".join([verdicts.get(self.word, str(self.word)), *silent])
+            return str(self.status)
+        verdicts = {Status.PASS: f"PASS on {passed}", Status.PARTIAL: f"PARTIAL: PASS on {passed}"}
+        return "; ".join([verdicts.get(self.status, str(self.status)), *silent])
 
     @property
     def within(self) -> float:
-        """Instant up to which the errors of all columns that it reports are within what is allowed [s]."""
-        judged = [column.within for column in self.columns if column.error is not None]
+        """Instant up to which all errors of what it reports are within what is allowed [s]."""
+        judged = [criterion.within for criterion in self.criteria if criterion.error is not None]
         return min(judged, default=0.0)
 
     @property
-    def deciding(self) -> Column | None:
-        """The column whose error is largest beside its band, None where none is judged."""
-        judged = [column for column in self.columns if column.error is not None]
-        return max(judged, key=lambda column: _beside(column), default=None)
-
-
-def _absent(column: Column) -> bool:
-    return column.word is Word.NOT_REPORTED
-
-
-def _beside(column: Column) -> float:
-    """Return the error over the band."""
-    return (column.error or 0.0) / (column.band or math.inf)
+    def deciding(self) -> Criterion | None:
+        """What has the largest error beside its band, None where nothing is judged."""
+        judged = [criterion for criterion in self.criteria if criterion.error is not None]
+        return max(judged, key=lambda criterion: criterion.beside, default=None)
 
 
 def judge(problem: Problem, history: History, against: Standard | None = None) -> Judgement:
@@ -131,56 +128,53 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
     InputError
         The answer is not at the steps of the scene, or no exact motion could be computed.
     """
-    reference = against or standard(problem)
-    rows, step = len(reference.exact.time), problem.scene.time.step
+    instants = problem.instants
+    rows = len(instants)
     if len(history.time) < rows:
         raise InputError(f"must hold {rows} rows", source=problem.name, field="time", value=len(history.time))
-    apart = np.abs(history.time[:rows] - reference.exact.time)
-    if not np.all(apart <= SAME_INSTANT * step):
-        row = int(np.argmin(apart <= SAME_INSTANT * step))
-        expected, stated = reference.exact.time[row], history.time[row]
+    same = np.abs(history.time[:rows] - instants) <= SAME_INSTANT * problem.scene.time.step
+    if not np.all(same):
+        row = int(np.argmin(same))
+        expected, stated = instants[row], history.time[row]
         raise InputError(
             f"must be {expected:.9g} s in row {row + 1}", source=problem.name, field="time", value=f"{stated:.9g}"
         )
-    if problem.scene.rigid is not None:
-        return _judged_boxes(problem, history)
-    names = problem.scene.run.columns
-    columns = tuple(_judged(name, history.columns.get(name), reference) for name in names)
-    return Judgement(problem.name, columns, quantities(problem, history, reference.exact))
+    if problem.numbers:
+        return _judged_numbers(problem, history)
+    reference = against or standard(problem)
+    criteria = tuple(_judged(name, history.columns.get(name), reference) for name in problem.columns)
+    return Judgement(problem.name, criteria, quantities(problem, history, reference.exact))
 
 
-def _judged_boxes(problem: Problem, history: History) -> Judgement:
-    """Judge the numbers of rigid boxes: each stands where a column does, its error as a share of its scale."""
+def _judged_numbers(problem: Problem, history: History) -> Judgement:
+    """Judge numbers that are measured on an answer: the error of each is a share of its scale."""
     until = problem.scene.time.duration
-    posed = problem_posed(problem.scene)
-    answers = measured(posed.quantities(problem.scene), history.until(until))
-    columns = []
+    criteria = []
     numbers = []
-    for one in answers:
-        if one.optional_and_absent:
-            continue
+    for one in measured(problem.numbers, history.until(until)):
         quantity = one.quantity
-        numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact))
+        if quantity.optional and one.value is None:
+            continue
+        numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact, (quantity.low, quantity.high)))
         error, allowed = one.shares
-        word = Word(one.word)
-        if error is None and word is not Word.NOT_REPORTED:
+        if error is None and one.status is Status.FAIL:
             error = math.inf
-        within = until if word is Word.PASS else 0.0
-        columns.append(Column(quantity.name, word, error, allowed, until, quantity.reason, within))
-    return Judgement(problem.name, tuple(columns), tuple(numbers))
+        within = until if one.status is Status.PASS else 0.0
+        criteria.append(Criterion(quantity.name, one.status, error, allowed, until, quantity.reason, within))
+    return Judgement(problem.name, tuple(criteria), tuple(numbers))
 
 
-def _judged(name: str, values: Array | None, reference: Standard) -> Column:
+def _judged(name: str, values: Array | None, reference: Standard) -> Criterion:
     band = reference.bands.get(name)
     if band is None:
-        return Column(name, Word.NOT_JUDGED, None, None, 0.0, _without_band(name, reference))
+        return Criterion(name, Status.NOT_JUDGED, None, None, 0.0, _without_band(name, reference))
     if values is None:
-        return Column(name, Word.NOT_REPORTED, None, band.high, band.until, band.reason)
+        return Criterion(name, Status.NOT_REPORTED, None, band.high, band.until, band.reason, datum=band.datum)
     error = error_of(values, reference.exact.columns[name], band)
     inside = error <= band.high * (1 + ROUNDING)
-    word = Word.PASS if inside else Word.FAIL
+    status = Status.PASS if inside else Status.FAIL
     within = band.until if inside else _within_until(values, reference.exact, name, band)
-    return Column(name, word, error, band.high, band.until, band.reason, within)
+    return Criterion(name, status, error, band.high, band.until, band.reason, within, band.datum)
 
 
 def _within_until(values: Array, exact: History, name: str, band: Band) -> float:

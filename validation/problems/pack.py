@@ -1,59 +1,50 @@
-"""The problem pack: every problem as JSON, its exact motion as CSV, and what a submission has to look like."""
+"""The problem pack: every problem as JSON, its exact motion as CSV, and what an answer has to look like."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from validation.errors import InputError
-from validation.problems.bands import Band, Standard, standard
+from validation.problems.bands import standard
 from validation.problems.data import (
     ANSWERS,
     PACK,
-    SUBMISSION,
     AnswersData,
     ColumnOfAnswer,
     NumberData,
     ProblemData,
     SamplingData,
-    SubmissionData,
-    meaning,
-    united,
 )
-from validation.problems.packs import digest, parts
-from validation.problems.problem import PROBLEMS, Problem, problem
-from validation.problems.questions import BoxQuestion, Question, box_questions
+from validation.problems.packs import digest
+from validation.problems.problem import Problem, names, problem
+from validation.runs.columns import kind_of, split
 from validation.runs.files import write_atomically
-from validation.runs.history import History
+from validation.runs.history import Array, History
+from validation.scenes.plain import scene_data, words
 
 Progress = Callable[[int, int, str], None]
 PAGE = Path(__file__).with_suffix(".md")  # of the pack, to be filled in
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
 DIALECT = "https://json-schema.org/draft/2020-12/schema"  # of pydantic's schemas
-TEMPLATE = {  # what a submitter changes
+MOST_NAMED = 7  # columns of a problem that the page names
+ANSWERS_TEMPLATE: Mapping[str, Any] = {
     "program": "name of the program",
     "version": "its version",
-    "settings": "time step, integrator, contact model, damping: what another user would need to repeat it",
-    "who": "who ran it",
-    "not_reported": [],
-}
-ANSWERS_TEMPLATE: Mapping[str, Any] = {
-    "program": TEMPLATE["program"],
-    "version": TEMPLATE["version"],
     "settings_name": "default",
     "settings": "damping, tolerances, iterations: what another user would need to repeat it",
     "scheme": "its time scheme, or event-driven",
     "step_s": "its time step, a number [s]; an object where it differs by problem; null where there is none",
     "contact_model": "what its contacts are made of, and their parameters",
     "processor": "the processor it ran on",
-    "who": TEMPLATE["who"],
+    "who": "who ran it",
     "licence": "of these answers, such as CC-BY-4.0",
     "link": None,
     "not_reported": {},
@@ -61,45 +52,35 @@ ANSWERS_TEMPLATE: Mapping[str, Any] = {
 CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 
-def problem_data(posed: Problem, reference: Standard) -> ProblemData:
+def problem_data(posed: Problem) -> ProblemData:
     """Return a problem as plain data."""
-    judged = tuple(_judged(column, reference.bands[column]) for column in posed.columns)
-    return _data(posed, judged, exact=f"exact/{posed.name}.csv")
-
-
-def box_problem_data(question: BoxQuestion) -> ProblemData:
-    """Return a problem of rigid boxes as plain data."""
     numbers = []
-    for quantity in question.quantities:
-        band = {"exact": quantity.exact, "low": quantity.low, "high": quantity.high}
-        numbers.append(NumberData(name=quantity.name, unit=quantity.unit, reason=quantity.reason, **band))
-    columns = tuple(ColumnOfAnswer(name=united(column), meaning=meaning(column)) for column in question.columns)
-    return _data(question, columns, numbers=tuple(numbers), exact=None)
-
-
-def _data(question: Question, columns: tuple[ColumnOfAnswer, ...], **others: Any) -> ProblemData:
+    for number in posed.numbers:
+        if not number.optional:
+            band = {"exact": number.exact, "low": number.low, "high": number.high}
+            numbers.append(NumberData(name=number.name, unit=number.unit, reason=number.reason, **band))
     return ProblemData(
-        problem=question.name,
-        digest=digest(question),
-        title=question.title,
-        asks=question.asks,
-        **parts(question.scene),
-        sampling=SamplingData(step_s=question.scene.time.step, count=len(question.instants)),
-        answer=columns,
-        **others,
+        problem=posed.name,
+        digest=digest(posed),
+        title=posed.title,
+        asks=posed.asks,
+        scene=scene_data(posed.scene),
+        sampling=SamplingData(step_s=posed.scene.time.step, count=len(posed.instants)),
+        answer=tuple(_column_data(posed, column) for column in posed.columns),
+        numbers=tuple(numbers),
+        exact=None if posed.numbers else f"exact/{posed.name}.csv",
     )
 
 
-def _judged(column: str, band: Band) -> ColumnOfAnswer:
-    return ColumnOfAnswer(
-        name=united(column),
-        meaning=meaning(column),
-        measure=MEASURE,
-        until_s=band.until,
-        low=0.0,
-        high=band.high,
-        reason=band.reason,
-    )
+def _column_data(posed: Problem, column: str) -> ColumnOfAnswer:
+    """Return a column of an answer; with its band where it is judged by the exact motion."""
+    kind = kind_of(column, posed.scene.rigid is not None)
+    meaning = "" if kind is None else kind.meaning.format(n=split(column)[1])
+    if posed.numbers:
+        return ColumnOfAnswer(name=posed.named(column), meaning=meaning)
+    band = standard(posed).bands[column]
+    limits: dict[str, Any] = {"until_s": band.until, "low": 0.0, "high": band.high, "reason": band.reason}
+    return ColumnOfAnswer(name=posed.named(column), meaning=meaning, measure=MEASURE, **limits)
 
 
 def check_place(directory: Path) -> None:
@@ -138,49 +119,43 @@ def write_pack(place: Path, progress: Progress = lambda number, total, label: No
         The directory cannot be made or written.
     """
     rows = []
-    for number, name in enumerate(PROBLEMS):
-        progress(number, len(PROBLEMS), name)
+    for number, name in enumerate(names()):
+        progress(number, len(names()), name)
         posed = problem(name)
-        reference = standard(posed)
-        data = problem_data(posed, reference)
+        data = problem_data(posed)
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / str(data.exact), table_of(reference.exact, posed.scene.run.columns))
-        blank = {"format": SUBMISSION, "pack": PACK, "problem": name, **TEMPLATE}
-        _write(place / "submissions" / name / "submission.json", _json(blank))
+        if data.exact is not None:
+            _write(place / data.exact, table_of(posed, standard(posed).exact))
         _write(place / "answers" / f"{name}.csv", blank_table(posed))
-        rows.append(f"| `{name}` | {posed.asks} | {', '.join(f'`{c.name}`' for c in data.answer)} |")
-    for name, box_question in box_questions().items():
-        data = box_problem_data(box_question)
-        _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
-        _write(place / "answers" / f"{name}.csv", blank_table(box_question))
-        columns = ", ".join(f"`{column.name}`" for column in data.answer[:3])
-        more = " and those of the other boxes" if len(data.answer) > 3 else ""
-        rows.append(f"| `{name}` | {data.asks} | {columns}{more} |")
+        columns = ", ".join(f"`{column.name}`" for column in data.answer[:MOST_NAMED])
+        more = " and more" if len(data.answer) > MOST_NAMED else ""
+        rows.append(f"| `{name}` | {posed.asks} | {columns}{more} |")
     _write(place / "answers" / "submission.json", _json({"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}))
-    for data_of in (ProblemData, SubmissionData, AnswersData):
+    for data_of in (ProblemData, AnswersData):
         stem = data_of.__name__.removesuffix("Data").lower()
         _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
+    meanings = "\n".join(["| name | meaning |", "|---|---|", *(f"| `{name}` | {text} |" for name, text in words())])
     readme = PAGE.read_text(encoding="utf-8")
-    _write(place / "README.md", readme.format(pack=PACK, table=table))
-    return len(PROBLEMS) + len(box_questions())
+    _write(place / "README.md", readme.format(pack=PACK, table=table, words=meanings))
+    return len(names())
 
 
-def table_of(motion: History, columns: Iterable[str]) -> str:
-    """Return a motion as CSV under the pack's names, with all digits."""
-    names = list(columns)
+def table_of(posed: Problem, motion: History, columns: Sequence[str] | None = None) -> str:
+    """Return a motion as CSV under the pack's names, with all digits; columns are all of the problem by default."""
+    names_of_columns = posed.columns if columns is None else columns
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([TIME, *map(united, names)])
-    writer.writerows(np.column_stack([motion.time, *(motion.columns[name] for name in names)]).tolist())
+    writer.writerow([TIME, *map(posed.named, names_of_columns)])
+    values: list[Array] = [motion.columns[name] for name in names_of_columns]
+    writer.writerows(np.column_stack([motion.time, *values]).tolist())
     return text.getvalue()
 
 
-def blank_table(question: Question) -> str:
+def blank_table(posed: Problem) -> str:
     """Return the table of an answer to fill in: header and instants."""
-    columns = question.columns
-    lines = [",".join([TIME, *map(united, columns)])]
-    lines += [format(instant, ".9g") + "," * len(columns) for instant in question.instants]
+    lines = [",".join([TIME, *map(posed.named, posed.columns)])]
+    lines += [format(instant, ".9g") + "," * len(posed.columns) for instant in posed.instants]
     return "\n".join(lines) + "\n"
 
 

@@ -4,8 +4,8 @@ The rule:
 
 - The *digest* of a problem is taken of its question: its data, its instants and its columns. Titles, words, bands and
   the exact motion are not among them, so that a band or an exact motion that is corrected judges old answers anew.
-- A *minor* version (3.0, 3.1) adds problems; the digests of the others stay, and every earlier answer with them.
-- A *major* version (3.1, 4.0) changes the question of a problem or drops one. Answers to these problems are *stale*,
+- A *minor* version (4.0, 4.1) adds problems; the digests of the others stay, and every earlier answer with them.
+- A *major* version (4.1, 5.0) changes the question of a problem or drops one. Answers to these problems are *stale*,
   which is said, and not judged; answers to all others stay valid, since their digests do.
 
 `packs.json` holds the digests of every version; what it says of an earlier version never changes.
@@ -20,36 +20,22 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-from validation.problems.data import PACK, block_data, column_data, contact_data, load_data, rigid_data
-from validation.problems.questions import Question
-from validation.scenes.scene import Scene
+from validation.problems.data import PACK
+from validation.problems.problem import Problem
+from validation.scenes.plain import scene_data
 
 DIGITS = 12  # of a number in a digest: the last ones of a computed one may differ from processor to processor
 DIGEST_LENGTH = 16  # hexadecimal digits
 
 
-def parts(scene: Scene) -> dict[str, Any]:
-    """Return what a scene asks as plain data: the parts of a problem by their names."""
-    on_base = scene.kind == "block"
-    return {
-        "block": block_data(scene) if on_base else None,
-        "contact": contact_data(scene) if on_base else None,
-        "load": load_data(scene) if on_base else None,
-        "geometry": "large rotation" if scene.run.geometry == "updated" else "small",
-        "column": column_data(scene),
-        "rigid": None if scene.rigid is None else rigid_data(scene.rigid),
-    }
-
-
-def digest(problem: Question) -> str:
+def digest(problem: Problem) -> str:
     """Return the digest of a problem's question, in hexadecimal digits."""
     scene = problem.scene
-    stated: dict[str, Any] = {
-        name: part if part is None or isinstance(part, str) else part.model_dump(mode="json")
-        for name, part in parts(scene).items()
+    stated = {
+        "scene": scene_data(scene),
+        "sampling": {"step_s": scene.time.step, "count": scene.time.steps},
+        "columns": list(problem.columns),
     }
-    stated["sampling"] = {"step_s": scene.time.step, "count": scene.time.steps}
-    stated["columns"] = list(problem.columns)
     text = json.dumps(_canonical(stated), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
 

@@ -1,14 +1,22 @@
-"""A problem: a scene, the question that it asks, and the exact motion that answers it."""
+"""A problem: a scene, the question that it asks, and what answers are judged by: an exact motion, or exact numbers."""
 
 from __future__ import annotations
 
+import functools
+import math
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from validation.problems import boxes
+from validation.problems.boxes import BoxQuantity
 from validation.problems.truth import Truth, truth_of
+from validation.runs.columns import unit_of
 from validation.runs.history import Array
+from validation.runs.units import named
+from validation.scenes.rigid import POSE
 from validation.scenes.scene import Scene, load_scene
 
 ROUNDING = 1e-12  # relative, of the last instant
@@ -22,35 +30,52 @@ class Problem:
     Attributes
     ----------
     name
-        What tables and submissions call it.
+        What tables and answers call it.
     asks
         What a program has to get right, in a sentence.
+    title
+        The problem in words.
     scene
-        The scene; its steps are the instants at which the answer is judged, its columns are what is judged.
+        The scene; its steps are the instants at which the answer is judged.
     truth
-        The exact motion.
+        The exact motion; None where numbers are judged.
+    numbers
+        What is measured on an answer of rigid boxes.
     """
 
     name: str
     asks: str
+    title: str
     scene: Scene
-    truth: Truth
-
-    @property
-    def title(self) -> str:
-        """Title of the scene."""
-        return self.scene.title or self.name
+    truth: Truth | None
+    numbers: tuple[BoxQuantity, ...] = ()
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Columns of an answer."""
-        return self.scene.run.columns
+        """Columns that an answer has to hold: those of the scene, of boxes their positions."""
+        if self.scene.rigid is None:
+            return self.scene.run.columns
+        return tuple(f"{part}_{number}" for number in range(1, len(self.scene.rigid.box) + 1) for part in POSE)
+
+    @property
+    def further_columns(self) -> tuple[str, ...]:
+        """Columns that an answer may hold, by which a number more is judged."""
+        return tuple(name for name in self.scene.run.columns if name not in self.columns)
+
+    def unit(self, column: str) -> str:
+        """Return the SI unit of a column."""
+        return unit_of(column, self.scene.rigid is not None)
+
+    def named(self, column: str) -> str:
+        """Return a column as tables of answers name it, with its unit; a number of boxes has its own name."""
+        return named(column, self.unit(column))
 
     @property
     def instants(self) -> Array:
         """Instants at which it is answered [s]: the steps of the scene up to where its exact motion ends."""
         steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)
-        return np.asarray(steps[steps <= self.truth.until * (1 + ROUNDING)])
+        until = math.inf if self.truth is None else self.truth.until
+        return np.asarray(steps[steps <= until * (1 + ROUNDING)])
 
 
 ASKS = {
@@ -67,25 +92,47 @@ ASKS = {
     "joint": "A shear wave through a joint that slips: what passes, what is sent back, and the slip.",
     "mass-ratio": "A heavy block on one of a thousandth of its mass: the light one rings between stiff contacts.",
 }
-PROBLEMS = tuple(ASKS)  # of blocks and columns; those of rigid boxes are in `validation.problems.boxes`
 
 
-def scene_name(name: str) -> str:
-    """Return the name of a problem's scene."""
-    return (boxes.PREFIX if name in boxes.ASKS else PREFIX) + name
+def _of_scene(name: str) -> Problem:
+    scene = load_scene(PREFIX + name)
+    return Problem(name, ASKS[name], scene.title or name, scene, truth_of(scene))
 
 
+def _of_boxes(name: str, posed: boxes.BoxProblem, case: boxes.BoxCase) -> Problem:
+    scene = posed.scene(case)
+    title = ": ".join(part for part in (scene.title, case.label) if part)
+    return Problem(name, boxes.ASKS[posed.name], title, scene, None, (case.quantities or posed.quantities)(scene))
+
+
+@functools.cache
+def _makers() -> dict[str, Callable[[], Problem]]:
+    """Return what makes each problem of the pack, by name; a case of rigid boxes has its values in the name."""
+    makers: dict[str, Callable[[], Problem]] = {name: functools.partial(_of_scene, name) for name in ASKS}
+    for posed in boxes.box_problems().values():
+        for case in posed.cases:
+            label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower()).strip("-")
+            name = "-".join(part for part in (posed.name, label) if part)
+            makers[name] = functools.partial(_of_boxes, name, posed, case)
+    return makers
+
+
+@functools.cache
+def names() -> tuple[str, ...]:
+    """Return the names of all problems of the pack, in its order."""
+    return tuple(_makers())
+
+
+@functools.cache
 def problem(name: str) -> Problem:
-    """Return a problem of the suite by name.
+    """Return a problem of the pack by name.
 
     Raises
     ------
     KeyError
         There is none of this name.
     """
-    asks = {**ASKS, **boxes.ASKS}[name]
-    scene = load_scene(scene_name(name))
-    return Problem(name, asks, scene, truth_of(scene))
+    return _makers()[name]()
 
 
 def problem_of(scene: Scene) -> Problem:
@@ -96,6 +143,8 @@ def problem_of(scene: Scene) -> Problem:
     InputError
         The scene has a sweep, no exact motion is known for it, or nothing is known that could be measured on it.
     """
-    if scene.rigid is not None:
-        boxes.problem_posed(scene)
-    return Problem(scene.name, f"The scene {scene.name}.", scene, truth_of(scene))
+    asks = f"The scene {scene.name}."
+    title = scene.title or scene.name
+    if scene.rigid is None:
+        return Problem(scene.name, asks, title, scene, truth_of(scene))
+    return Problem(scene.name, asks, title, scene, None, boxes.problem_posed(scene).quantities(scene))

@@ -25,12 +25,16 @@ ROTATION, SIDEWAYS = "rotation", "horizontal_displacement"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of an answer and of the exact motion; None where the answer or the motion has none."""
+    """A number of an answer and of the exact motion; None where the answer or the motion has none.
+
+    `band` are the edges in which it passes, None where it is not judged.
+    """
 
     name: str
     unit: str
     value: float | None
     exact: float | None
+    band: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from validation.errors import InputError
 from validation.problems.data import Data
-from validation.problems.defects import Defects, Place
-from validation.runs.regular import regular
+from validation.runs.defects import Defects, Place
+from validation.runs.tables import read_text
 from validation.scenes.scene import rule_and_value
 from validation.scenes.unknown import clip, did_you_mean
 
@@ -104,31 +104,6 @@ class Document:
         while self._text[at] in BLANKS:
             at += 1
         return at
-
-
-def read_text(path: Path, largest: int) -> str:
-    """Return the text of a file of at most so many bytes.
-
-    Raises
-    ------
-    InputError
-        It is no regular file, is too large, or is not in UTF-8.
-    OSError
-        It is not there, or is out of reach.
-    """
-    regular(path, largest)
-    content = path.read_bytes()
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        before = content[: error.start]
-        utf16 = content[:2] in (b"\xff\xfe", b"\xfe\xff")
-        raise InputError(
-            "must be text in UTF-8",
-            source=Place(path, before.count(b"\n") + 1, error.start - before.rfind(b"\n")),
-            value=f"the byte 0x{content[error.start]:02x}",
-            advice="it is UTF-16; save it as UTF-8" if utf16 else None,
-        ) from None
 
 
 def read_document(path: Path, advice: str) -> Document:

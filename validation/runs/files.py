@@ -18,8 +18,10 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs import extras
+from validation.runs.defects import Place
 from validation.runs.history import Array, History
-from validation.runs.regular import kind_of, regular
+from validation.runs.regular import kind_of
+from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
 
@@ -204,7 +206,7 @@ def read_csv(path: Path) -> History:
 
 
 def read_table(path: Path) -> tuple[list[str], Array]:
-    """Read a CSV table of numbers under a header that begins with time: names and values, a row a time.
+    """Read a table of numbers under a header that begins with time: names and values, a row a time.
 
     Raises
     ------
@@ -212,15 +214,23 @@ def read_table(path: Path) -> tuple[list[str], Array]:
         The file cannot be read or is not such a table.
     """
     try:
-        regular(path)
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            names = [name.strip() for name in next(csv.reader(stream), [])]
-            lines = [line for line in stream if line.strip()]
-            table = np.atleast_2d(np.loadtxt(lines, delimiter=",")) if lines else np.zeros((0, 0))
+        header, *rows = rows_of(read_text(path)) or [[]]
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
-    except (ValueError, csv.Error) as error:  # no numbers, no UTF-8, or a field beyond csv's limit
-        raise InputError(f"must be a table of numbers under a header: {error}", source=path) from None
-    if not names or names[0] != "time" or table.shape[1] != len(names):
+    names = [cell.text for cell in header]
+    if not names or names[0] != "time" or not all(names):
         raise InputError("header must begin with time and name every column", source=path, value=repr(",".join(names)))
+    if not rows:
+        raise InputError("must hold rows of numbers under the header", source=path, value="none")
+    table = np.empty((len(rows), len(names)))
+    for i, row in enumerate(rows):
+        if len(row) != len(names):
+            place = Place(path, row[0].line)
+            raise InputError(f"must have {len(names)} numbers under the header", source=place, value=len(row))
+        for j, cell in enumerate(row):
+            value = number(cell.text)
+            if value is None:
+                place = Place(path, cell.line, cell.column)
+                raise InputError("must be a number", source=place, value=repr(cell.text), advice=meant(cell.text))
+            table[i, j] = value
     return names, table

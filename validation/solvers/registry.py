@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import importlib.metadata
+import os
 from collections.abc import Mapping
 from typing import Any
 
@@ -35,6 +36,8 @@ BUILT_IN = {
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
 }
 USERS = "validation.solvers.user:UserSolver"
+FILES = "validation.solvers.files:HistoryFiles"
+PROGRAM = "validation.solvers.files:Program"
 OF_STUDIES = "validation.studies."  # how the name of a solver begins that a study brings in its folder, a class
 FULL = ":full"  # a solver's name with this ending runs without numerical savings
 GROUP = "dda_validation.solvers"  # entry points of other packages: name = "module:attribute"
@@ -55,17 +58,28 @@ def solver_names() -> list[str]:
 def is_solver(name: str) -> bool:
     """Whether a name is a solver's, with or without an option, or names one as ``module:attribute``."""
     plain, _, attribute = name.removesuffix(FULL).partition(":")
-    return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute)
+    return plain in BUILT_IN or name in entry_points() or _is_target(plain, attribute) or _is_place(name)
+
+
+def _is_place(name: str) -> bool:
+    """Whether a name is the path of a program, or of a file or a folder of histories."""
+    return os.sep in name.rstrip(os.sep) or name.endswith((os.sep, ".csv"))
 
 
 def _is_target(module: str, attribute: str) -> bool:
     return all(part.isidentifier() for part in (*module.split("."), *attribute.split(".")))
 
 
+def is_program(name: str) -> bool:
+    """Whether a name is the path of a file that can be started."""
+    return _is_place(name) and os.path.isfile(name) and os.access(name, os.X_OK) and not name.endswith(".csv")
+
+
 def get_solver(name: str) -> Solver:
     """Return a solver by name, importing its adapter now.
 
-    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own or a study's.
+    ``name:option`` gives a built-in solver an option, ``module:attribute`` names a user's own or a study's,
+    ``./program`` a program, ``history.csv`` and ``folder/`` what one has left in files.
 
     Raises
     ------
@@ -76,11 +90,15 @@ def get_solver(name: str) -> Solver:
     if plain.startswith(OF_STUDIES):
         brought: Solver = _imported(name)()
         return brought
+    if plain not in BUILT_IN and name not in entry_points() and _is_place(name):
+        outside: Solver = _imported(PROGRAM if is_program(name) else FILES)(name)
+        return outside
     if plain not in BUILT_IN and is_solver(name):
         user: Solver = _imported(USERS)(name, entry_points().get(name, name))
         return user
     if plain not in BUILT_IN:
-        rule = f"must be one of {', '.join(solver_names())}, or module:attribute"
+        others = "module:attribute, ./program, or a file or folder/ of histories"
+        rule = f"must be one of {', '.join(solver_names())}, {others}"
         raise InputError(rule, field="solver", value=repr(name))
     solver: Solver = _imported(BUILT_IN[plain])()
     return solver.option(option) if colon else solver

@@ -6,7 +6,6 @@ The solver runs in a process of its own, so that one that hangs, exits or crashe
 from __future__ import annotations
 
 import importlib.util
-import math
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -19,9 +18,6 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
-from validation.metrics.sameness import is_identical
-from validation.metrics.values import norm
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.modes import Mode
 from validation.runs.run import Outcome, Run
 from validation.runs.threads import environment
@@ -29,8 +25,8 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
+from validation.solvers.foreign import one_line, run_of_columns
 from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
-from validation.solvers.translation import tension_note
 
 TIME_LIMIT = 300.0  # s a case beside the steps
 # s of a case of rigid boxes, of which a study has dozens, and s more for each second of motion, box and halving of the
@@ -42,26 +38,7 @@ VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
-PROGRAM_STEPS = "program_steps"  # of an answer: a number, how many steps the program made where a row takes several
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
-LENGTHS = {1e3: "mm", 1e2: "cm", 1e6: "micrometres", 1e-3: "km"}
-STRESSES = {1e-3: "kPa", 1e-6: "MPa", 1e-9: "GPa", 1e-5: "bar"}
-UNITS = {  # what a value in another unit is, over the value in SI
-    "time": {1e3: "milliseconds", 1e6: "microseconds"},
-    DISPLACEMENT: LENGTHS,
-    "horizontal_displacement": LENGTHS,
-    "rotation": {math.degrees(1): "degrees", 1e3: "mrad"},
-    PRESSURE: STRESSES,
-    "velocity": {1e3: "mm/s", 1e2: "cm/s", 1e-3: "km/s"},
-    "force": STRESSES,
-    "gap": LENGTHS,
-    "slip": LENGTHS,
-}
-FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
-FORCE_TOLERANCE = 0.02  # of the length of the base, and of the motion that a force in place of a pressure leaves right
-NEAR_ONE = 0.1  # m: on such a base force and pressure are one number
-SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
-LONGEST_NOTE = 400  # characters of what a user's solver says
 # The first argument is the directory of this package. It is on the path for the import of `validation` alone: neither
 # does a folder of that name beside the solver stand in the way, nor do packages beside ours hide those of Python.
 START = (
@@ -69,7 +46,6 @@ START = (
     "from validation.solvers.processes.user_worker import main; main(sys.argv[2], sys.argv[3:])"
 )
 HOME = Path(__file__).resolve().parents[2]
-LEAST_CORRELATION = 0.8  # correlation from which two histories are one but for their unit
 
 
 class UserSolver(Solver):
@@ -176,7 +152,7 @@ class UserScene(Prepared):
             return Run(Outcome.RAISED, notes=(one_line(str(self._answer["raised"])) + place,))
         seconds = {"setup": 0.0, "stepping": perf_counter() - start}
         columns = {name: np.asarray(x, float) for name, x in self._answer["columns"].items()}
-        return replace(_run_of_columns(self.scene, columns), seconds=seconds)
+        return replace(run_of_columns(self.scene, columns), seconds=seconds)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution that the solver reports."""
@@ -208,100 +184,3 @@ def base_limit(scene: Scene | None = None) -> float:
         motion = scene.time.duration * len(scene.rigid.box) * 2**scene.rigid.refine
         usual = BOXES_LIMIT + BOXES_ALLOWANCE * motion
     return float(os.environ.get(VARIABLE, usual))
-
-
-def one_line(text: str) -> str:
-    """Return a user's text as one line of a note: no half characters, none that a terminal obeys, not a book."""
-    line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())[: LONGEST_NOTE + 1]
-    escaped = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
-    return escaped if len(escaped) <= LONGEST_NOTE else f"{escaped[:LONGEST_NOTE]} ..."
-
-
-def _run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
-    """Return the run of columns, or the outcome that names what is wrong with them."""
-    steps = scene.time.steps
-    required = [DISPLACEMENT] if DISPLACEMENT in scene.run.columns else list(scene.run.columns)
-    if not any(name in columns for name in required):
-        names = one_line(", ".join(columns)) or "nothing"
-        return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {names}",))
-    expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
-    time = columns.pop("time", expected)
-    program_steps = columns.pop(PROGRAM_STEPS, np.array(float(steps)))
-    columns = {name: values for name, values in columns.items() if name in (*UNITS, *scene.run.columns)}
-    history = History(time, columns)
-    for name, values in {"time": history.time, **columns}.items():
-        if values.shape != (steps,):
-            hint = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
-            return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){hint}",))
-    notes: tuple[str, ...] = ()
-    if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
-        reference = _reference(scene)
-        if wrong := _wrong_units(scene, history, expected, reference):
-            return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
-        if reference is not None and is_identical(history, reference):
-            notes = (f"{SAME_AS}{DDA.name}",)
-        if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
-            return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
-    counted = program_steps.size == 1 and np.isfinite(program_steps).all()
-    work = {"steps": int(program_steps.item()) if counted else steps}
-    return Run(Outcome.COMPLETED, history, work, notes=(*notes, *tension_note(history)))
-
-
-def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
-    """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (difference := factor("time", history.time, expected)) is not None:
-        return difference
-    for name, values in history.columns.items():
-        if reference is not None and name in UNITS and name in reference.columns:
-            expected_values = reference.columns[name]
-            if np.isfinite(expected_values).all() and (difference := factor(name, values, expected_values)) is not None:
-                return difference
-    return None if reference is None else force(scene, history, reference)
-
-
-def force(scene: Scene, history: History, reference: History) -> str | None:
-    """Say that the pressure is a force, if it is larger by the length of the base and the motion is the expected one.
-
-    With one spring in place of two the pressure is larger by two, and so is the gap: no force on a base of 2 m.
-    """
-    if DISPLACEMENT not in history.columns or PRESSURE not in history.columns or PRESSURE not in reference.columns:
-        return None
-    expected = reference.columns[DISPLACEMENT]
-    size = norm(expected)
-    if not (0 < size < math.inf and norm(history.columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
-        return None
-    width = scene.block.base_length if scene.kind == "block" else 1.0
-    values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
-    sizes = norm(values), norm(pressure)
-    if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:
-        return None
-    is_alike = float((values / sizes[0]) @ (pressure / sizes[1])) >= LEAST_CORRELATION
-    if is_alike and abs(sizes[0] / sizes[1] / width - 1) < FORCE_TOLERANCE:
-        return f"wrong units: {PRESSURE} is {width:g} times what is expected, the length of the base: a force?"
-    return None
-
-
-def _reference(scene: Scene) -> History | None:
-    """Return the built-in solution, None where there is none: nobody's answer is refused for that."""
-    dda = DDA()
-    try:
-        return None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
-    except InputError:
-        return None
-
-
-def factor(name: str, values: Array, expected: Array) -> str | None:
-    """Say by which known factor a column of `UNITS` differs from what is expected, if by one."""
-    norms = norm(values), norm(expected)
-    if min(norms) == 0 or not np.isfinite(norms).all():
-        return None
-    correlation = float((values / norms[0]) @ (expected / norms[1]))
-    if abs(correlation) < LEAST_CORRELATION:
-        return None
-    ratio = norms[0] / norms[1]
-    for factor, unit in UNITS[name].items():
-        if abs(ratio / factor - 1) < FACTOR_TOLERANCE:
-            return f"wrong units: {name} is {factor:g} times what is expected in SI, {unit}?"
-    if correlation < 0:
-        return f"wrong sign: {name} is the negative of what is expected (downwards is negative, compression positive)"
-    return None

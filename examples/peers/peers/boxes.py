@@ -10,7 +10,7 @@ import numpy as np
 from validation.runs.history import Array
 from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
 from validation.scenes.scene import Scene
-from validation.solvers.user import PROGRAM_STEPS
+from validation.solvers.foreign import PROGRAM_STEPS
 
 Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9

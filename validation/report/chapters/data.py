@@ -99,7 +99,7 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
     """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
     rows = results.rows()
     scenes: dict[str, dict[str, list[CaseRecord]]] = {}
-    for entry in spoken_of(manifest):
+    for entry in manifest.get("cases", []):
         scenes.setdefault(scene_of(entry["scene"]), {}).setdefault(entry["scene"], []).append(entry)
     verdicts = results.verdicts(manifest.get("study"))
     groups = []
@@ -126,21 +126,6 @@ def groups_by_name(results: Results, manifest: Manifest) -> Groups:
 def derived_rows(manifest: Manifest) -> DerivedRows:
     """Return the metrics of a study's derived rows."""
     return {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
-
-
-def spoken_of(manifest: Manifest) -> list[CaseRecord]:
-    """Return the cases of a study that a page speaks of: all, or those of the scenes of the field's cells.
-
-    The field's data name the `runs` of its cells. Its other scenes are what bands and checks are computed from, and
-    show nothing by themselves.
-    """
-    cases = manifest.get("cases", [])
-    data = manifest.get("data", {})
-    try:
-        scenes = {case[0] for case, _ in data["runs"].values()}
-    except (AttributeError, LookupError, TypeError, ValueError):  # no field, or one of another version
-        return cases
-    return [entry for entry in cases if entry["scene"] in scenes]
 
 
 def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:

@@ -1,56 +1,59 @@
-"""The page of `judge`: the verdict on an answer, the curves, what the answer says of itself."""
+"""The page of a judged answer: the verdict, what it rests on, the curves; and the same as plain data."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from validation.problems.bands import Standard
-from validation.problems.data import PACK, united
-from validation.problems.judge import Column, Judgement, Word
-from validation.problems.problem import Problem
+import numpy as np
+
+from validation.gates.gate import Status
+from validation.problems.cause import Cause
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
-from validation.runs.numbers import DASH, bounded, error_percent, plain, short
-
-if TYPE_CHECKING:
-    from validation.problems.cause import Cause
+from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
+from validation.scenes.rigid import POSE
+from validation.scenes.tables import TimeSection
+from validation.suite.judging import JudgedAnswer
 
 ANSWER = "answer"
+STILL = 1e-9  # m or rad: a position that changes by less does not move
+DIGITS = 3  # of an error in plain data
+LEAST_ERROR = 1e-11  # what is less is rounding, and stands as this
+TONES = {Status.PASS: "pass", Status.FAIL: "fail"}
 ALLOWED = (
     "Allowed is what one per cent of the datum that is named changes in the exact motion: data of a block are not "
     "known to better than one per cent, and an error below that changes nothing for its user."
 )
 
 
-@dataclass(frozen=True, eq=False)
-class JudgedAnswer:
-    """An answer with its verdict and all that the page holds of it."""
-
-    problem: Problem
-    history: History
-    standard: Standard
-    judgement: Judgement
-    cause: Cause | None  # of a failure
-    about: tuple[tuple[str, str], ...]  # what the answer says of itself: field and text
-    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
-
-
 def headline(answer: JudgedAnswer) -> str:
     """Return the verdict and what it rests on, in a sentence."""
     judgement = answer.judgement
-    column = judgement.deciding
-    if column is None or column.band is None:
+    deciding = judgement.deciding
+    if deciding is None or deciding.allowed is None or deciding.error is None:
         return f"{judgement.verdict}: no column of it is judged."
-    at_most = "at most " if judgement.word in (Word.PASS, Word.PARTIAL) else ""
+    name = answer.problem.named(deciding.name)
+    number = next((number for number in judgement.quantities if number.band and number.name == deciding.name), None)
+    if number is not None and number.band is not None:
+        value = "cannot be measured" if number.value is None else f"is {_with_unit(number.value, number.unit)}"
+        low, high = (short(edge, 4) for edge in number.band)
+        unit = "" if number.unit == "1" else f" {number.unit}"
+        return f"{judgement.verdict}: {name} {value}, where {low} to {high}{unit} is allowed."
+    at_most = "at most " if judgement.status in (Status.PASS, Status.PARTIAL) else ""
     return (
-        f"{judgement.verdict}: it is {at_most}{error_percent(column.error)} off in {united(column.name)}, where "
-        f"{error_percent(column.band)} is allowed."
+        f"{judgement.verdict}: it is {at_most}{error_percent(deciding.error)} off in {name}, where "
+        f"{error_percent(deciding.allowed)} is allowed."
     )
+
+
+def _with_unit(value: float, unit: str) -> str:
+    text = bounded(value, short(value, 4))
+    return text if unit == "1" else f"{text} {unit}"
 
 
 def reached(answer: JudgedAnswer) -> str:
@@ -58,36 +61,55 @@ def reached(answer: JudgedAnswer) -> str:
     within = answer.judgement.within
     if not within:
         return "Its error is more than what is allowed from the first step on."
-    until = max(column.until for column in answer.judgement.columns)
+    until = max(criterion.until for criterion in answer.judgement.criteria)
     return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
 
 
-def as_data(judged: JudgedAnswer, program: str) -> dict[str, Any]:
-    """Return a judgement as plain data."""
-    columns = [
-        {
-            "column": united(column.name),
-            "verdict": str(column.word),
-            "error": column.error if column.error is None or column.error < float("inf") else "inf",
-            "allowed": column.band,
-            "until_s": column.until,
-            "within_until_s": column.within,
-            "reason": column.reason,
-        }
-        for column in judged.judgement.columns
-    ]
-    why = judged.cause
+def as_data(judged: JudgedAnswer) -> dict[str, Any]:
+    """Return a judgement as plain data, its numbers without the last digits, which differ between processors."""
+    named = judged.problem.named
+    criteria = []
+    for criterion in judged.judgement.criteria:
+        error = "inf" if criterion.error == math.inf else rounded(criterion.error)
+        criteria.append(
+            {
+                "name": named(criterion.name),
+                "verdict": str(criterion.status),
+                "error": error,
+                "allowed": rounded(criterion.allowed),
+                "until_s": rounded(criterion.until),
+                "within_until_s": rounded(criterion.within),
+                "reason": criterion.reason,
+            }
+        )
+    numbers = []
+    for number in judged.judgement.quantities:
+        low, high = number.band or (None, None)
+        numbers.append(
+            {
+                "name": number.name,
+                "unit": number.unit,
+                "value": rounded(number.value),
+                "exact": rounded(number.exact),
+                "low": rounded(low),
+                "high": rounded(high),
+            }
+        )
     return {
-        "pack": PACK,
-        "problem": judged.problem.name,
-        "program": program,
-        "verdict": str(judged.judgement.word),
-        "not_reported": [united(name) for name in judged.judgement.withheld],
-        "cause": None if why is None else _cause_data(why),
-        "columns": columns,
+        "verdict": str(judged.judgement.status),
+        "not_reported": [named(name) for name in judged.judgement.withheld],
+        "cause": None if judged.cause is None else _cause_data(judged.cause),
+        "criteria": criteria,
+        "numbers": numbers,
         "warnings": list(judged.warnings),
-        "about": dict(judged.about),
     }
+
+
+def rounded(value: float | None) -> float | None:
+    """Return a number to a few digits; what is smaller than rounding stands as that."""
+    if value is None or not math.isfinite(value) or value == 0:
+        return value
+    return significant(math.copysign(max(abs(value), LEAST_ERROR), value), DIGITS)
 
 
 def _cause_data(cause: Cause) -> dict[str, Any]:
@@ -100,96 +122,112 @@ def _cause_data(cause: Cause) -> dict[str, Any]:
 def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
     """Return the verdict first, where it needs one with its title before it, then what it rests on."""
     judgement = answer.judgement
-    tone = {Word.PASS: "pass", Word.FAIL: "fail"}.get(judgement.word, "warn")
+    tone = TONES.get(judgement.status, "warn")
     blocks: Blocks = [Callout(title + headline(answer), tone)]  # type: ignore[arg-type]
     blocks += [Callout(sentence, "warn") for sentence in answer.warnings]
-    if judgement.word is Word.PARTIAL:
-        missing = ", ".join(map(united, judgement.withheld))
+    if judgement.status is Status.PARTIAL:
+        missing = ", ".join(map(answer.problem.named, judgement.withheld))
         blocks.append(Paragraph(f"No full PASS: the problem asks for {missing} too; report it to be judged."))
     if answer.cause is not None:
-        passing_step = answer.cause.passing_step
-        passes = "" if passing_step is None else f" This scheme passes at a step of {short(passing_step)} s."
-        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}.{passes} {reached(answer)}"))
+        blocks.append(Paragraph(f"Cause: {answer.cause.sentence}. {reached(answer)}"))
+        time = answer.problem.scene.time
+        if answer.cause.passing_step is not None:
+            every = round(time.step / answer.cause.passing_step)
+            blocks.append(Paragraph(f"This scheme passes at a step of {_step(time, every)}."))
         if answer.cause.would_tell:
-            blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}."))
-    return [
-        *blocks,
-        Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
-        _columns(judgement.columns, answer.standard),
-    ]
+            half = "" if answer.cause.alike else f"; half the step is {_step(time, 2)}"
+            blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}{half}."))
+    blocks += [Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."), _criteria(answer)]
+    if judgement.quantities:
+        blocks.append(numbers_table(judgement.quantities))
+    return blocks
+
+
+def _step(time: TimeSection, parts: int) -> str:
+    """Return a part of the step of a scene, and what to type for it."""
+    step = time.step / parts
+    return f"{short(step, 4)} s: --set time.step={step:.12g} --set time.steps={time.steps * parts}"
 
 
 def page(answer: JudgedAnswer, directory: Path) -> Blocks:
     """Return the blocks of the page; its figures are written to a directory."""
-    judgement = answer.judgement
-    further = []
-    if judgement.quantities:
-        further.append(_further_numbers(judgement.quantities, answer.problem.scene.rigid is not None))
-    return [
-        *verdict_blocks(answer),
-        *figures(answer, directory),
-        *further,
-        *([table(("Of the answer", TableColumn("", "fill")), tuple(answer.about))] if answer.about else []),
-    ]
+    return [*verdict_blocks(answer), *figures(answer, directory)]
 
 
 def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
-    """Draw every column that is judged, with the exact one."""
+    """Draw every column that is judged, with the exact one; of boxes what moves of the uppermost."""
     from validation.report.figures import histories, motion  # which load matplotlib; a verdict alone needs none
 
     drawn = []
-    exact = answer.standard.exact
-    rows = len(exact.time)
-    for name in answer.history.columns:
+    for name, exact in _curves(answer):
+        united = answer.problem.named(name)
+        values = answer.history.columns[name]
+        if exact is None:
+            lines = {ANSWER: History(answer.history.time, {name: values})}
+            panel = HistoryPanel(f"{name} [{answer.problem.unit(name)}]", lines, {}, ANSWER)
+            figure = motion.history_figure([panel], name)
+            drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", f"The answer: {united}."))
+            continue
+        rows = len(exact.time)
         lines = {
             EXACT: History(exact.time, {name: exact.columns[name]}),
-            ANSWER: History(answer.history.time[:rows], {name: answer.history.columns[name][:rows]}),
+            ANSWER: History(answer.history.time[:rows], {name: values[:rows]}),
         }
         panel = HistoryPanel(name.replace("_", " "), lines, {}, EXACT)
         if ANSWER in motion.twins([panel], [name]).get(EXACT, {}):
-            caption = f"The answer lies on the exact motion: {united(name)}."
+            caption = f"The answer lies on the exact motion: {united}."
         else:
-            caption = (
-                f"The answer beside the exact motion, and their difference over its largest value: {united(name)}."
-            )
+            caption = f"The answer beside the exact motion, and their difference over its largest value: {united}."
         figure = motion.history_figure([panel], name, apart=True)
         drawn.append(histories.saved(figure, directory, f"judged-{name}.svg", caption))
     return drawn
 
 
-def _columns(columns_of_answer: Sequence[Column], standard: Standard) -> Table:
+def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
+    """Return the columns that are drawn, each with the exact motion beside it where it is judged by that."""
+    columns = answer.history.columns
+    if answer.standard is not None:
+        return [(name, answer.standard.exact) for name in columns if name in answer.standard.exact.columns]
+    top = len(answer.problem.columns) // len(POSE)
+    poses = [f"{part}_{top}" for part in POSE]
+    return [(name, None) for name in poses if name in columns and np.ptp(columns[name]) >= STILL]
+
+
+def _criteria(answer: JudgedAnswer) -> Table:
+    criteria = answer.judgement.criteria
+    caption = "Relative L2 error of each column."
+    notes = [ALLOWED]
+    if answer.problem.numbers:
+        caption = "Errors of the numbers that are judged, as shares of their scales."
+        notes = list(dict.fromkeys(f"{criterion.name}: {criterion.reason}." for criterion in criteria))
     rows = []
-    numbers = [column for column in columns_of_answer if column.name not in standard.bands and column.band is not None]
-    notes = [] if numbers else [ALLOWED]
-    notes += [f"{column.name}: {column.reason}." for column in numbers]
-    caption = "Errors of the numbers that are judged." if numbers else "Relative L2 error of each column."
-    for column in columns_of_answer:
-        name = united(column.name)
-        error, band = map(error_percent, (column.error, column.band))
-        rows.append((name, str(column.word), error, band, datum(column, standard) or DASH, plain(column.until)))
-        if column.band is None:
-            notes.append(f"{name}: {column.reason}.")
+    for criterion in criteria:
+        name = answer.problem.named(criterion.name)
+        error, allowed = map(error_percent, (criterion.error, criterion.allowed))
+        rows.append((name, str(criterion.status), error, allowed, criterion.datum or DASH, plain(criterion.until)))
+        if criterion.allowed is None:
+            notes.append(f"{name}: {criterion.reason}.")
     return table(
-        ("Column", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
+        ("Judged", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
         rows,
         caption,
         tuple(notes),
     )
 
 
-def datum(column: Column, standard: Standard) -> str:
-    """Return the datum of which one per cent sets a column's band, nothing where it has none."""
-    band = standard.bands.get(column.name)
-    return band.datum if band else ""
+def numbers_table(numbers: Sequence[Quantity]) -> Table:
+    """Return the numbers of an answer beside the exact ones, and the edges between which those that are judged pass."""
+    rows = []
+    judged = any(number.band is not None for number in numbers)
+    for number in numbers:
+        edges = [] if number.band is None else [short(edge, 4) for edge in number.band]
+        rows.append((number.name, _cell(number, number.value), _cell(number, number.exact), *edges, number.unit))
+    edge_heads = ("From", "To") if judged else ()
+    caption = "The numbers that are judged." if judged else "Further numbers, which are not judged."
+    return table((TableColumn("Number", "fill"), "Answer", "Exact", *edge_heads, "Unit"), rows, caption)
 
 
-def _further_numbers(numbers: Sequence[Quantity], of_boxes: bool) -> Table:
-    caption = "The numbers that are judged." if of_boxes else "Further numbers, which are not judged."
-    rows = [(one.name, _number_cell(one, one.value), _number_cell(one, one.exact), one.unit) for one in numbers]
-    return table((TableColumn("Number", "fill"), "Answer", "Exact", "Unit"), rows, caption)
-
-
-def _number_cell(number: Quantity, value: float | None) -> str:
+def _cell(number: Quantity, value: float | None) -> str:
     if value is None:
         return DASH
     return f"{value:.0f}" if number.name in COUNTED else bounded(value, plain(value))

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
-from validation.report.chapters.data import CaseGroup, case_groups, spoken_of
+from validation.report.chapters.data import CaseGroup, case_groups
 from validation.report.chapters.gates import gate_list, not_passed
 from validation.report.chapters.scene import scene_page
 from validation.report.front.decisions import discount_page, spring_page, step_page
@@ -93,7 +93,7 @@ class Site:
         self._study_pages = page_names("study", studies)
         names: dict[str, None] = {}
         for manifest in self._manifests.values():
-            names |= dict.fromkeys(scene_of(case["scene"]) for case in spoken_of(manifest))
+            names |= dict.fromkeys(scene_of(case["scene"]) for case in manifest.get("cases", []))
         self._scene_pages = page_names("scene", list(names))
         self._studies: list[Link] = []
         self._scenes: dict[str, Link] = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -22,7 +23,8 @@ from validation.suite.own_solver.session import LARGEST, GateReport
 
 SHOWN = 3  # gates of a group, and scenes of an ending, that are listed; the rest are counted
 FOLLOWS = ("statics", "frequency", "damping", "start", "digits")  # a fault in one shows in those after it
-WIDTH = 11  # of the first column
+FIRST_WIDTH = 11  # characters of the first column
+WIDTH = 110  # characters of a line
 LONGEST = 2000  # steps of a scene that is compared: every explanation that is tried steps through all of them
 MAY_FOLLOW = "may follow from it, look again when it is right"
 
@@ -58,9 +60,17 @@ def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
     return [*lines, *diagnosis(plain or _moving(failed), first(judged, plain)), *_unseen(judged)]
 
 
+def wrapped(lines: Sequence[str]) -> Iterator[str]:
+    """Yield lines no longer than a block is wide, what goes on indented below its beginning."""
+    for line in lines:
+        for part in line.split("\n"):
+            indent = " " * (len(part) - len(part.lstrip()) + 4)
+            yield from textwrap.wrap(part, WIDTH, subsequent_indent=indent, drop_whitespace=True) or [""]
+
+
 def _table(results: Sequence[GateReport]) -> Iterator[str]:
     """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
-    yield f"{'':<{WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
+    yield f"{'':<{FIRST_WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
     for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
         of_group = [t for t in results if t.group == group]
         sound = [t.status for t in of_group if t.outcome == Outcome.COMPLETED]
@@ -68,7 +78,7 @@ def _table(results: Sequence[GateReport]) -> Iterator[str]:
         passed, failed = sound.count(Status.PASS), sound.count(Status.FAIL)
         if of_group:
             counts = f"{passed:>8}{failed:>8}{len(of_group) - passed - failed - absent:>11}{absent:>9}"
-            yield f"{group:<{WIDTH}}{counts}   {says}"
+            yield f"{group:<{FIRST_WIDTH}}{counts}   {says}"
 
 
 def _warnings(results: Sequence[GateReport]) -> Iterator[str]:

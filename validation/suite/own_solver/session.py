@@ -16,8 +16,10 @@ from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
+from validation.solvers.files import Outside
+from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
-from validation.solvers.user import PARTS, SAME_AS, UserSolver
+from validation.solvers.user import PARTS, UserSolver
 from validation.suite.own_solver import gates, history
 
 REPEATED, SHORT = 2, 1000  # scenes that are run twice, and the most steps of one
@@ -62,7 +64,7 @@ class Session:
     def parts(self) -> frozenset[str]:
         """What the solver reports beside its history, among "modes" and "static"."""
         solver = get_solver(self.user)
-        return solver.parts() if isinstance(solver, UserSolver) else PARTS
+        return solver.parts() if isinstance(solver, UserSolver | Outside) else PARTS
 
     def judge(self, name: str) -> tuple[Verdict, GateReport]:
         """Run what a gate needs and has not been run, and judge it; what cannot be judged is not run."""

@@ -1,0 +1,160 @@
+"""Rigid boxes for programs of contact: the program's own step beside the instants of a scene, and the columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from validation.runs.history import Array
+from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
+from validation.scenes.scene import Scene
+from validation.solvers.foreign import PROGRAM_STEPS
+
+Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
+ROUNDING = 1e-9
+SLOW_CORRECTION = 0.2  # 1/s
+FAST_CORRECTION = 20.0  # 1/s
+SPRING_RESOLUTION = 0.005  # angular frequency times step of the lightest box on a contact of given stiffness
+
+
+def boxes_of(scene: Scene) -> RigidSection:
+    """Return the rigid boxes of a scene.
+
+    Raises
+    ------
+    NotImplementedError
+        The scene is of a block or a column.
+    """
+    if scene.rigid is None:
+        raise NotImplementedError("rigid boxes only: its bodies neither strain nor stand on springs of given stiffness")
+    return scene.rigid
+
+
+def substeps(scene: Scene, own_step: float) -> int:
+    """Return how many steps a program makes in one of the scene's.
+
+    Parameters
+    ----------
+    scene
+        A scene of rigid boxes; `rigid.refine` says how often the program's step is halved.
+    own_step
+        The step that the program is used with [s].
+    """
+    return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
+
+
+def spring_step(scene: Scene) -> float:
+    """Return a step that resolves a contact of given stiffness [s]; no bound where none is given."""
+    rigid = boxes_of(scene)
+    if rigid.stiffness is None:
+        return math.inf
+    return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
+
+
+def corners_of(box: BoxSection) -> list[tuple[float, float]]:
+    """Return the corners of a box from its centre, the two lower ones first [m]."""
+    half_width = box.width / 2
+    half_height = box.height / 2
+    return [(side * half_width, end * half_height) for end in (-1, 1) for side in (-1, 1)]
+
+
+def correction_rate(scene: Scene) -> float:
+    """Return the rate at which overlap is to decay in a program that corrects it by a velocity that stays [1/s].
+
+    A landing overlaps by as much as the program's step, and what a box is pushed out by it keeps: energy that no one
+    brought. Boxes that stand on each other overlap more and more where their impulses are not solved to the end; there
+    it is to go.
+    """
+    rigid = boxes_of(scene)
+    piled = len(rigid.box) > 1 and not rigid.restitution
+    return FAST_CORRECTION if piled else SLOW_CORRECTION
+
+
+def ground_ends(scene: Scene) -> tuple[float, float]:
+    """Return x of both ends of a ground that no box leaves [m].
+
+    For programs whose ground has ends: a box slides without friction, its speed at first and that of its fall turned
+    along the ground, and rolls over a few times beside that.
+    """
+    rigid = boxes_of(scene)
+    duration = scene.time.steps * scene.time.step
+    fastest = max(
+        math.sqrt(math.hypot(*box.velocity) ** 2 + box.inertia / box.mass * box.spin**2 + 2 * rigid.gravity * box.lift)
+        for box in rigid.box
+    )
+    margin = 10.0 + 4 * sum(box.width + box.height for box in rigid.box) + 4 * abs(rigid.base_amplitude)
+    along, _ = rigid.pull
+    free = along * duration**2 / 2
+    starts = [box.x for box in rigid.box]
+    left = min(starts) - margin - fastest * duration + min(free, 0.0)
+    right = max(starts) + margin + fastest * duration + max(free, 0.0)
+    return left, right
+
+
+def base_velocity(scene: Scene, start: float, step: float, position: float) -> float:
+    """Return the velocity [m/s] that takes the ground from where it is [m] to where it must be at the end of a step.
+
+    Read back from the program before every step, so that its rounding does not add up.
+    """
+    end, _ = boxes_of(scene).base(start + step)
+    return (end - position) / step
+
+
+def record(
+    scene: Scene,
+    own_step: float,
+    advance: Callable[[float, float], None],
+    poses: Callable[[], Sequence[Pose]],
+    forces: Callable[[], Sequence[float]] | None = None,
+) -> dict[str, Array]:
+    """Step a program through a scene and return its columns.
+
+    Parameters
+    ----------
+    scene
+        A scene of rigid boxes.
+    own_step
+        The step that the program is used with [s]; see `substeps`.
+    advance
+        Makes one step: called with the instant at which it begins [s] and its length [s].
+    poses
+        Position and angle of each box, in the order of the scene.
+    forces
+        Normal force below each box [N]; absent where the program tells none.
+
+    Returns
+    -------
+    Column name to values, one a step of the scene, and how many steps the program made. Rows after a position that is
+    no number are NaN.
+    """
+    per_row = substeps(scene, own_step)
+    step = scene.time.step / per_row
+    count = len(boxes_of(scene).box)
+    rows = np.full((scene.time.steps, count, 3 if forces is None else 4), np.nan)
+    for row in range(scene.time.steps):
+        for part in range(per_row):
+            advance((row * per_row + part) * step, step)
+        rows[row, :, :3] = poses()
+        if forces is not None:
+            rows[row, :, 3] = forces()
+        if not np.isfinite(rows[row, :, :3]).all():
+            break
+    return named(rows, per_row * scene.time.steps)
+
+
+def named(rows: Array, program_steps: int) -> dict[str, Array]:
+    """Return the columns of an answer.
+
+    Parameters
+    ----------
+    rows
+        x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
+    program_steps
+        How many steps the program made, for the curves of error over cost.
+    """
+    names = (*POSE, FORCE)[: rows.shape[2]]
+    boxes = range(rows.shape[1])
+    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
+    return columns | {PROGRAM_STEPS: np.array(float(program_steps))}

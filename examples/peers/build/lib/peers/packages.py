@@ -1,0 +1,29 @@
+"""Programs that are Python packages: imported where they are needed, and named where they are absent."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+from typing import Any
+
+
+def imported(module: str, title: str, recipe: str) -> Any:
+    """Return the module of a program.
+
+    Raises
+    ------
+    NotImplementedError
+        It is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise NotImplementedError(f"{title} is not installed: {recipe}") from error
+
+
+def version_of(package: str) -> str:
+    """Return the version of a package, or that it is not installed."""
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return "not installed"

@@ -1,0 +1,59 @@
+"""What this suite's own solvers answer: at fine steps DDA passes, by its habit it damps; the page has the bands."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from oracles.pages import ROOT
+
+from validation.diagnosis.numbers import accurate
+from validation.gates.gate import Status
+from validation.problems.bands import standard
+from validation.problems.judge import judge
+from validation.problems.problem import ASKS, problem
+from validation.runs.history import History
+from validation.runs.numbers import error_percent
+from validation.scenes import features
+from validation.solvers.registry import get_solver
+
+FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; of a block that turns, which takes long
+OF_BLOCKS = ("locked", "opening", "rebound", "sliding", "creep", "rocking", "column")
+LONG = ("rebound", "sliding", "creep", "spall")
+PAGE = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
+
+
+def each(names: tuple[str, ...]) -> list[object]:
+    return [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in names]
+
+
+@pytest.mark.parametrize("name", each(OF_BLOCKS))
+def test_at_fine_steps_dda_passes(name: str) -> None:
+    """Its error is that of its scheme, far below what one per cent of the data changes."""
+    one = problem(name)
+    scene = one.scene
+    every = FINER_TURNING if features.ROTATION in features.of(scene) else FINER
+    steps = {"time.step": scene.time.step / every, "time.steps": scene.time.steps * every}
+    history = get_solver("dda").solve(scene.with_values(accurate(scene) | steps)).history
+    rows = slice(every - 1, None, every)
+    sampled = History(history.time[rows], {column: x[rows] for column, x in history.columns.items()})
+    assert judge(one, sampled).status is Status.PASS
+
+
+@pytest.mark.parametrize("name", each(("locked", "opening", "rebound")))
+def test_by_habit_dda_damps(name: str) -> None:
+    """Alpha = 1/2, delta = 1, one step an instant: as DDA codes are run."""
+    judgement = judge(problem(name), get_solver("dda").solve(problem(name).scene).history)
+    assert judgement.status is Status.FAIL and 1 < judgement.deciding.beside < 1e3
+
+
+@pytest.mark.parametrize("name", each(tuple(ASKS)))
+def test_the_page_has_the_bands(name: str) -> None:
+    """One by one, or from the least to the largest."""
+    (cell,) = re.findall(rf"^\| `{name}` \| [^|]* \| ([^|]*) \|$", PAGE, re.MULTILINE)
+    bands = [standard(problem(name)).bands[column] for column in problem(name).columns]
+    shown = [error_percent(band.high).removesuffix(" %") for band in bands]
+    stated = re.findall(r"\d+(?:\.\d+)?", cell)
+    assert stated == ([min(shown, key=float), max(shown, key=float)] if " to " in cell else shown)
+    words = cell.partition(":")[2]
+    assert all(band.datum.split()[-1].strip("'") in words or band.datum.split()[0] in words for band in bands)

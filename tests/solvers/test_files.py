@@ -1,0 +1,161 @@
+"""Solvers that are no Python: programs that read a scene and print a table, and tables that are read."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.pages import BLOCK, ROOT
+
+from validation.engine.measure import completed
+from validation.errors import InputError
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.plain import lines, words
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver, is_solver
+from validation.solvers.user import VARIABLE
+from validation.suite.own_solver.gates import applying
+from validation.suite.own_solver.session import Session
+
+PAGE = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
+FILES = {file: text for _, file, text in BLOCK.findall(PAGE)}
+LOCKED = load_scene("field-locked")
+SPRINGS, DENSITY, PRESSURE = (
+    "contact.stiffness_N_per_m",
+    "block.density_kg_per_m3",
+    "-2 * p * (D[0] - h / 2 * D[1]) / w",
+)
+SOUND = "sound"
+FAULTS = {  # of the program in C++: what is changed in it, and the group that the gates name
+    SOUND: ("", "", None),
+    "springs of half the stiffness": (f'p = number("{SPRINGS}")', f'p = number("{SPRINGS}") / 2', "statics"),
+    "twice the density": (f'm = number("{DENSITY}")', f'm = 2 * number("{DENSITY}")', "frequency"),
+    "delta of a half": ('delta = number("time.delta")', "delta = 0.5", "damping"),
+    "gg is not read": ('gg = number("time.gg")', "gg = 1", "damping"),
+    "always from zero": ('scene["time.start"] == "consistent"', "false", "start"),
+    "pressure of the step before": (f"n * dt, D[0], {PRESSURE}", "n * dt, D[0], late", "pressure"),
+}
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory):
+    """Return what compiles the program of the page with a change in it."""
+    if shutil.which("g++") is None:
+        pytest.skip("NOT RUN: there is no compiler of C++")
+
+    def compile_with(old: str, new: str) -> str:
+        place = tmp_path_factory.mktemp("program")
+        text = FILES["block.cpp"]
+        assert old in text
+        text = text.replace(old, new)
+        if "late" in new:
+            text = text.replace("double ahead[2]", f"double late = {PRESSURE}, ahead[2]")
+        (place / "block.cpp").write_text(text)
+        subprocess.run(["g++", "-o", place / "block", place / "block.cpp"], check=True)
+        return str(place / "block")
+
+    return compile_with
+
+
+MARKED = [SOUND, *(pytest.param(name, marks=pytest.mark.long) for name in FAULTS if name != SOUND)]
+
+
+@pytest.mark.parametrize("fault", MARKED)
+def test_a_program_in_c_goes_through_the_gates(fault: str, compiled, tmp_path: Path) -> None:
+    old, new, group = FAULTS[fault]
+    session = Session(compiled(old, new), Results(tmp_path))
+    scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start", "figures-3-4[time.step=0.002")
+    names = [name for name, (_, gate) in applying().items() if gate.scene.startswith(scenes)]
+    reports = [session.judge(name)[1] for name in names]
+    assert sum(report.status == "PASS" for report in reports) > (20 if group is None else 0)
+    failed = {report.group for report in reports if report.status == "FAIL"}
+    assert (not failed) if group is None else group in failed
+
+
+def program(place: Path, text: str) -> str:
+    """Write a program of a shell and return its path."""
+    path = place / "program"
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+ROWS = "\n".join(f"echo 0.00{n},-1e-3" for n in range(1, 4))
+SCENE = LOCKED.with_values({"time.step": 0.001, "time.steps": 3})
+
+
+@pytest.mark.parametrize(
+    ("text", "outcome", "said"),
+    [
+        (f"cat > /dev/null\necho time,displacement\n{ROWS}", Outcome.COMPLETED, ""),
+        (f"echo time,displacement\n{ROWS}", Outcome.COMPLETED, ""),  # which does not read
+        ("echo a column >&2\nexit 77", Outcome.NOT_APPLICABLE, "not made for it: a column"),
+        ("echo no licence >&2\nexit 3", Outcome.RAISED, "ended with status 3: no licence"),
+        ("echo time,displacement\necho 0.001,x", Outcome.WRONG_SHAPE, "displacement: must be a number, got 'x'"),
+        ("exit 0", Outcome.WRONG_SHAPE, "got an empty file"),
+        (f"echo time,displacement_m\n{ROWS.replace('-1e-3', 'nan')}", Outcome.WRONG_SHAPE, "must be a finite number"),
+        ("sleep 30", Outcome.TIMEOUT, "no history within"),
+    ],
+)
+def test_how_a_program_ends_is_named(
+    text: str, outcome: Outcome, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if outcome is Outcome.TIMEOUT:
+        monkeypatch.setenv(VARIABLE, "0.2")
+    run = completed(get_solver(program(tmp_path, text)), SCENE)
+    assert run.outcome is outcome, run.notes
+    assert said in "".join(run.notes)
+
+
+def test_what_cannot_be_started_and_kinds_without_words(tmp_path: Path) -> None:
+    path = Path(program(tmp_path, "exit 0"))
+    path.write_bytes(b"\x7fELF no such thing")
+    assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
+    plane = completed(get_solver(str(path)), load_scene("patch-strip").expand()[0])
+    assert plane.outcome is Outcome.NOT_APPLICABLE and "must be a block, a column or rigid boxes" in plane.notes[0]
+
+
+def test_a_program_is_told_what_problems_never_have() -> None:
+    changed = LOCKED.with_values({"damping.mass": 2.0, "load.ramp": 0.01})
+    assert set(lines(changed)) - set(lines(LOCKED)) == {"also damping.mass_1_per_s 2.0", "also load.ramp_s 0.01"}
+
+
+def test_files_are_solvers(tmp_path: Path) -> None:
+    history = get_solver("dda").solve(LOCKED).history
+    rows = np.column_stack([history.time, history.displacement, history.columns["contact_pressure"]])
+    options: dict[str, str] = {"delimiter": ",", "header": "time,displacement,contact_pressure", "comments": ""}
+    np.savetxt(tmp_path / "field-locked.csv", rows, **options)
+    for name in (f"{tmp_path}/", str(tmp_path / "field-locked.csv")):
+        assert is_solver(name)
+        run = completed(get_solver(name), LOCKED)
+        assert run.outcome is Outcome.COMPLETED
+        np.testing.assert_array_equal(run.history.displacement, history.displacement)
+    other = completed(get_solver(f"{tmp_path}/"), load_scene("field-opening"))
+    assert other.outcome is Outcome.NOT_APPLICABLE
+    np.savetxt(tmp_path / "field-locked.csv", rows * [1, 1e3, 1], **options)
+    assert completed(get_solver(f"{tmp_path}/"), LOCKED).outcome is Outcome.WRONG_UNITS
+    with pytest.raises(InputError) as caught:
+        get_solver("no such solver")
+    assert caught.value.field == "solver"
+
+
+def test_the_page_lists_what_a_solver_may_read() -> None:
+    table = PAGE.partition("## What a solver may read")[2].partition("\n\n`dda-validate show")[0]
+    rows = re.findall(r"^\| (.*?) \| (.*?) \| .* \|$", table, re.MULTILINE)[1:]
+    known = {line.split()[0] for name in ("field-locked", "field-creep") for line in lines(load_scene(name))}
+    read = set()
+    for python, of_program in rows:
+        names = re.findall(r"`([\w.]+)`", python)
+        section = names[0].rpartition(".")[0]
+        for name in names:
+            value = load_scene("field-creep")
+            for part in (name if name.startswith("scene") else section + name).split(".")[1:]:
+                value = getattr(value, part)
+        read |= set(re.findall(r"`([\w.]+)`", of_program))
+    assert known - read - {"geometry", "time.scheme"} == set() and read - known == set()
+    assert {name.partition(".")[0] for name, _ in words()} == {"block", "contact", "load", "column", "input", "rigid"}

@@ -1,0 +1,210 @@
+"""Answers of programs in tables: verdicts against problems, why so, what programs say of themselves; as plain data."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+from validation.gates.gate import Status
+from validation.problems.data import PACK
+from validation.problems.problem import names, problem
+from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
+from validation.report.chapters.judged import as_data
+from validation.runs.numbers import DASH, error_percent, short, significant
+from validation.suite.judging import JudgedAnswer, JudgedSet
+
+FORMAT = "dda-validation verdicts"
+STATED = {  # fields of the metadata and what a page calls them
+    "settings": "Settings",
+    "scheme": "Scheme",
+    "step_s": "Step [s]",
+    "contact_model": "Contact",
+    "processor": "Processor",
+    "who": "Who",
+    "licence": "Licence",
+    "link": "Link",
+    "pack": "Pack",
+}
+LEAD = (
+    "Every problem has an exact motion, or exact numbers of it. An answer passes where each of its errors is "
+    "below what one per cent of the problem's data changes; the first number is the error, the second what is "
+    "allowed, of what decides."
+)
+
+
+@dataclass(frozen=True)
+class AnswerCell:
+    """An answer in a table: the verdict, and what decides it."""
+
+    problem: str
+    status: Status
+    error: str = DASH
+    allowed: str = DASH
+    column: str = ""
+    reason: str = ""  # the cause of a failure, or why it is not judged
+
+
+def cells(judged: JudgedSet) -> list[AnswerCell]:
+    """Return what a table holds of a program: each problem of the pack, then those that are in it no more."""
+    by_name = {answer.name: answer for answer in judged.answers.answers}
+    rows = []
+    for name in dict.fromkeys([*names(), *by_name]):
+        answer = by_name.get(name)
+        if answer is None:
+            rows.append(AnswerCell(name, Status.NOT_ANSWERED))
+        elif answer.status is not None:
+            rows.append(AnswerCell(name, answer.status, reason=answer.reason))
+        else:
+            rows.append(_cell(judged.judged[name]))
+    return rows
+
+
+def answered(judged: JudgedSet) -> list[AnswerCell]:
+    """Return the cells of the problems that a program was asked."""
+    return [cell for cell in cells(judged) if cell.status is not Status.NOT_ANSWERED]
+
+
+def _cell(judged: JudgedAnswer) -> AnswerCell:
+    judgement = judged.judgement
+    named = judged.problem.named
+    deciding = judgement.deciding
+    reasons = [f"cause: {judged.cause.sentence}"] if judged.cause is not None else []
+    if judgement.withheld:
+        reasons.append(f"{', '.join(map(named, judgement.withheld))} not reported")
+    reasons += judged.warnings
+    return AnswerCell(
+        judged.problem.name,
+        judgement.status,
+        error_percent(deciding.error) if deciding else DASH,
+        _allowed(deciding.allowed) if deciding else DASH,
+        named(deciding.name) if deciding else "",
+        "; ".join(reasons),
+    )
+
+
+def _allowed(share: float | None) -> str:
+    return "0 %" if share == 0 else error_percent(share)
+
+
+def summary(sets: Sequence[JudgedSet]) -> Counter[Status]:
+    """Return how many answers there are of each status."""
+    return Counter(cell.status for judged in sets for cell in answered(judged))
+
+
+def headline(judged: JudgedSet) -> str:
+    """Return how many of its answers pass, in a few words."""
+    counts = summary([judged])
+    other_counts = [f"{count} {status}" for status, count in sorted(counts.items()) if status is not Status.PASS]
+    return ", ".join([f"{counts[Status.PASS]} of {counts.total()} PASS", *other_counts])
+
+
+# ---- plain data -----------------------------------------------------------------------------------------------------
+
+
+def verdicts(sets: Sequence[JudgedSet]) -> dict[str, Any]:
+    """Return the verdicts on all answers as plain data."""
+    return {
+        "format": FORMAT,
+        "pack": PACK,
+        "made_by": f"dda-validation {metadata.version('dda-validation')}",
+        "answers": [row for judged in sets for row in _rows(judged)],
+    }
+
+
+def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
+    data = judged.answers.data
+    rows = []
+    for answer in judged.answers.answers:
+        row: dict[str, Any] = {
+            "program": data.program,
+            "version": data.version,
+            "settings_name": data.settings_name,
+            "answered_pack": data.pack,
+            "problem": answer.name,
+            "step_s": data.step_of(answer.name),
+        }
+        if answer.status is not None:
+            rows.append(row | {"verdict": str(answer.status), "reason": answer.reason})
+        else:
+            rows.append(row | as_data(judged.judged[answer.name]))
+    return rows
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+
+def first_page(sets: Sequence[JudgedSet]) -> Blocks:
+    """Return a report of some programs on one page or two: problems against programs, reasons, who they are."""
+    title = f"Answers to the problems of pack {PACK}"
+    return [Heading(title), Paragraph(LEAD), answer_table(sets), *reason_blocks(sets), stated_table(sets)]
+
+
+def answer_table(sets: Sequence[JudgedSet]) -> Table:
+    """Return programs against problems: the verdict, the error that decides and what is allowed, and what runs took."""
+    by_set = [{cell.problem: cell for cell in answered(judged)} for judged in sets]
+    rows = []
+    for name in asks_of(sets):
+        of_problem = [of_set.get(name, AnswerCell(name, Status.NOT_ANSWERED)) for of_set in by_set]
+        texts = [f"{cell.status} {cell.error} of {cell.allowed}" if cell.column else cell.status for cell in of_problem]
+        rows.append((name, *texts))
+    times = [_seconds(judged) for judged in sets]
+    if any(time != DASH for time in times):
+        rows.append(("time [s]", *times))
+    heads = [
+        TableColumn(f"{judged.answers.data.version} {judged.answers.data.settings_name}".strip(), "outcome",
+                    judged.answers.data.program)
+        for judged in sets
+    ]  # fmt: skip
+    return table(("Problem", *heads), rows, "Problems, and what programs answered.")
+
+
+def _seconds(judged: JudgedSet) -> str:
+    """Return what the answers of a program took together [s], to two digits."""
+    times = [answer.seconds for answer in judged.answers.answers if answer.seconds is not None and answer.history]
+    return short(significant(sum(times), 2), 2) if times else DASH
+
+
+def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
+    """Return why answers fail or are not judged, those of one program with one reason in a line."""
+    rows = []
+    for judged in sets:
+        problems_by_reason: dict[tuple[str, str], list[str]] = {}
+        for cell in cells(judged):
+            if cell.reason:
+                reason = "; ".join(filter(None, (cell.column, cell.reason)))
+                problems_by_reason.setdefault((str(cell.status), reason), []).append(cell.problem)
+        for (status, reason), problems in problems_by_reason.items():
+            rows.append((status, judged.answers.title, ", ".join(problems), reason))
+    heads = (TableColumn("Verdict", "outcome"), "Of", "Problems", TableColumn("What decides, and the cause", "fill"))
+    return [Heading("Causes, and what is not judged", 2), table(heads, rows)] if rows else []
+
+
+def stated_table(sets: Sequence[JudgedSet]) -> Table:
+    """Return what folders of answers say of themselves, a column each."""
+    rows = [(title, *(_stated(judged, field) for judged in sets)) for field, title in STATED.items()]
+    return table(("", *(TableColumn(judged.answers.title, "fill") for judged in sets)), rows)
+
+
+def asks_of(sets: Sequence[JudgedSet]) -> dict[str, str]:
+    """Return the problems that some program was asked, and what they ask."""
+    asked = {cell.problem for judged in sets for cell in answered(judged)}
+    own = {answer.name: answer.problem for judged in sets for answer in judged.answers.answers}
+    asks = {}
+    for name in dict.fromkeys([*names(), *(cell.problem for judged in sets for cell in cells(judged))]):
+        if name in asked:
+            posed = problem(name) if name in names() else own.get(name)
+            asks[name] = f"no problem of pack {PACK} any more" if posed is None else posed.asks
+    return asks
+
+
+def _stated(judged: JudgedSet, field: str) -> str:
+    """Return what a program says of itself, in words."""
+    value = getattr(judged.answers.data, field)
+    if not value:
+        return "none" if field == "step_s" and judged.answers.data.who else DASH
+    if isinstance(value, dict):
+        return "; ".join(f"{name} {short(step)}" for name, step in value.items())
+    return short(value) if isinstance(value, float) else str(value)

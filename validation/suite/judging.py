@@ -1,0 +1,173 @@
+"""Answers of programs, judged: those that a folder holds, and those that a solver gives when it is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from validation.engine.measure import completed
+from validation.gates.gate import Status
+from validation.metrics.sameness import is_identical, largest_difference
+from validation.problems.answers import Answer, AnswerSet, stated_by
+from validation.problems.bands import Standard, standard
+from validation.problems.cause import Cause, cause
+from validation.problems.data import AnswersData
+from validation.problems.judge import Judgement, judge
+from validation.problems.problem import Problem
+from validation.runs.history import History
+from validation.runs.numbers import error_percent
+from validation.runs.run import Outcome, Run
+from validation.solvers.contract import Solver
+from validation.solvers.files import Outside
+from validation.solvers.foreign import SAME_AS
+from validation.solvers.registry import get_solver
+from validation.solvers.user import UserSolver
+
+# The first answers of a user's solver that took no longer [s] are run a second time, which shows whether it repeats.
+REPEATED, REPEATED_WITHIN = 2, 10.0
+# A run that ends so has told that it is wrong; every other end says nothing of the program's mechanics.
+WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UNSTABLE)
+MISSING = "is not installed"  # what an adapter says where its program is absent
+DEFAULTS = "-default"  # ending of the name of a program as it comes
+HANDED_BACK = "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back."
+Progress = Callable[[int, int, str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedAnswer:
+    """An answer with its verdict."""
+
+    answer: Answer
+    problem: Problem
+    history: History
+    standard: Standard | None  # None of numbers, which no exact motion is needed for
+    judgement: Judgement
+    cause: Cause | None  # of a failure
+    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedSet:
+    """What one program answers and the judgement of each answer that can be judged, by problem."""
+
+    answers: AnswerSet
+    judged: Mapping[str, JudgedAnswer]
+
+    @property
+    def stem(self) -> str:
+        """What the names of its files have in common; names of folders hold no underscore."""
+        return "_".join(part for part in self.answers.address if part)
+
+
+def judged_answer(answer: Answer, problem: Problem, history: History) -> JudgedAnswer:
+    """Judge an answer, and look for the cause of a failure."""
+    reference = None if problem.numbers else standard(problem)
+    judgement = judge(problem, history, reference)
+    identified_cause = None
+    warnings = answer.warnings
+    # of numbers no other motion is at hand that could explain theirs
+    if reference is not None:
+        if judgement.status is Status.FAIL:
+            identified_cause = cause(problem, history, reference)
+        if is_identical(history, reference.exact):
+            warnings = (*warnings, HANDED_BACK)
+    return JudgedAnswer(answer, problem, history, reference, judgement, identified_cause, warnings)
+
+
+def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet]:
+    """Judge all answers of some programs."""
+    total = sum(len(answer_set.answers) for answer_set in sets)
+    number = 0
+    judged_of_sets = []
+    for answer_set in sets:
+        judged = {}
+        for answer in answer_set.answers:
+            progress(number, total, f"{answer_set.program} {answer.name}")
+            if answer.problem is not None and answer.history is not None:
+                judged[answer.name] = judged_answer(answer, answer.problem, answer.history)
+            number += 1
+        judged_of_sets.append(JudgedSet(answer_set, judged))
+    return judged_of_sets
+
+
+# ---- a solver's answers ---------------------------------------------------------------------------------------------
+
+
+def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> AnswerSet:
+    """Return what a solver answers to problems.
+
+    Raises
+    ------
+    InputError
+        There is no such solver, or what it reads is no history.
+    """
+    solver = get_solver(name)
+    about: Mapping[str, str] = {}
+    if isinstance(solver, UserSolver):
+        solver.check_module()
+        about = solver.about()
+    answers: list[Answer] = []
+    repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
+    for number, problem in enumerate(problems):
+        progress(number, len(problems), f"{name} {problem.name}")
+        answer = _answer(solver, problem)
+        if repeats and answer.history is not None and (answer.seconds or 0.0) < REPEATED_WITHIN:
+            repeats -= 1
+            answer = _repeated(answer, answer.history, solver, problem)
+        answers.append(answer)
+    return AnswerSet(Path(name), _stated(name, about), tuple(answers))
+
+
+def _stated(name: str, about: Mapping[str, str]) -> AnswersData:
+    """Return what a solver says of itself, as a folder of answers states it; what it does not say is empty."""
+    settings_name = "default" if name.endswith(DEFAULTS) else "chosen"
+    if "program" not in about:
+        settings_name = ""
+    return stated_by(
+        about.get("program", name),
+        version=about.get("version", ""),
+        settings_name=settings_name,
+        settings=about.get("settings", ""),
+        contact_model=about.get("model", ""),
+    )
+
+
+def _answer(solver: Solver, problem: Problem) -> Answer:
+    run = completed(solver, problem.scene)
+    seconds = sum(run.seconds.values()) if run.seconds else None
+    if run.outcome is not Outcome.COMPLETED or run.history is None:
+        return Answer(problem.name, problem, None, *_ending(run), seconds=seconds)
+    same = [note for note in run.notes if note.startswith(SAME_AS)]
+    warnings = tuple(f"It is {note}: the suite's own solver was judged." for note in same)
+    return Answer(problem.name, problem, run.history, warnings=warnings, seconds=seconds)
+
+
+def _repeated(answer: Answer, history: History, solver: Solver, problem: Problem) -> Answer:
+    """Return an answer with how far a second run is from it, where it is not the same."""
+    again = completed(solver, problem.scene).history
+    return replace(answer, warnings=(*answer.warnings, *_not_repeatable(history, again)))
+
+
+def _ending(run: Run) -> tuple[Status, str]:
+    """Return the status of a run without a history to judge, and why."""
+    note = run.notes[-1] if run.notes else run.outcome.sentence
+    if run.outcome in WRONG:
+        sentence = run.outcome.sentence[0].lower() + run.outcome.sentence[1:].rstrip(".")
+        return Status.FAIL, note if run.outcome is Outcome.WRONG_UNITS else f"{sentence} ({note})"
+    refused = run.outcome in (Outcome.NOT_APPLICABLE, Outcome.REFUSED)
+    if refused and MISSING not in note:
+        return Status.NOT_APPLICABLE, note
+    return Status.NOT_RUN, note if refused or run.outcome is Outcome.NOT_RUN else f"{run.outcome.sentence} {note}"
+
+
+def _not_repeatable(history: History, again: History | None) -> Iterator[str]:
+    """Yield in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
+    if again is None:
+        yield "Not repeatable: a second run gave no history; the verdict is one of several."
+        return
+    column, difference = largest_difference(history, again)
+    if column:
+        size = "in length or columns" if math.isinf(difference) else f"by {error_percent(difference)} in {column}"
+        yield f"Not repeatable: a second run differs {size} (relative L2); the verdict may change from run to run."
